@@ -103,7 +103,7 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
     me_.set_id(own->author.agent);
     radio_ = RadioRange(mission().radio_range_m);
     state_.emplace<InMission>(mission(), *own, me_.counted(own->active_from));
-    if (tells_places(mission()))
+    if (uses_beacons(mission()))
       in_mission()->beacons.emplace(mission(), own->author, follower().revision());
     note_roster();
   }

@@ -22,7 +22,7 @@ constexpr int kToleratedPeriods = 2;
 bool lacks_something(const CoverageTable& table, std::size_t row, bool will_speak,
                      std::int64_t steps, std::uint64_t state_hash) {
   if (will_speak && table.min_steps(row) <= steps) return false;  // nearly always
-  const CoverageTable::RowSummary ours = table.holding(row);
+  const CoverageTable::RowSummary ours = table.summary_of(row);
   if (will_speak) return ours.steps - steps > kToleratedPeriods * ours.announced_period;
   // Two may each hold a block that the other lacks, and both say the same number of steps.
   return ours.steps > steps || (state_hash != ours.state_hash && ours.newest_steps > steps);
@@ -33,7 +33,7 @@ std::uint64_t hash_of_settled(const CoverageTable& table, const std::vector<Rost
   std::uint64_t sum = 0;
   for (const RosterEntry& entry : roster) {
     if (entry.active_until < 0) continue;
-    const std::uint64_t mark = table.holding(entry.author).state_hash ^ entry.author.incarnation;
+    const std::uint64_t mark = table.summary_of(entry.author).state_hash ^ entry.author.incarnation;
     sum += (mark ^ mark >> 32) * 0x9e3779b97f4a7c15;
   }
   return sum;
@@ -84,7 +84,7 @@ Digest AntiEntropy::digest(const CoverageTable& table, const std::vector<RosterE
                            Tick tick) {
   Digest digest;
   for (const Author& author : to_be_named(table, roster, tick)) {
-    const CoverageTable::RowSummary held = table.holding(author);
+    const CoverageTable::RowSummary held = table.summary_of(author);
     digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {author, held.steps,
                                                                       held.state_hash};
   }
@@ -159,7 +159,7 @@ bool AntiEntropy::may_answer(Instant now, Tick tick) {
 void AntiEntropy::on_relayed(const Contribution& theirs, const CoverageTable& table) {
   const auto planned = answers_.find(theirs.author());
   if (planned == answers_.end()) return;
-  if (theirs.steps >= table.holding(theirs.author()).newest_steps) answers_.erase(planned);
+  if (theirs.steps >= table.summary_of(theirs.author()).newest_steps) answers_.erase(planned);
 }
 
 std::vector<Contribution> AntiEntropy::answers_due(const CoverageTable& table, Instant now,

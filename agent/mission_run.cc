@@ -167,9 +167,9 @@ bool Agent::may_answer(InMission& mission_run) const {
   }
   if (mission().timing.pace == Pace::kRealtime) return true;
   // A command must not depend on the order in which the parts of the state arrive.
-  const bool reckons = mission_run.forecast && mission().dead_reckoning &&
-                       step.tick >= mission_run.active_from && !step.held;
-  if (reckons && !mission_run.state_parts.complete(step.tick)) {
+  const bool dead_reckons = mission_run.forecast && mission().dead_reckoning &&
+                            step.tick >= mission_run.active_from && !step.held;
+  if (dead_reckons && !mission_run.state_parts.complete(step.tick)) {
     step.waiting_for = kWorld;
     return false;
   }

@@ -144,7 +144,7 @@ int write_modes(const DeployMission& mission, const Basis& basis, const fs::path
 /// Where each robot has a driver of its own, it is the user's to start.
 void note_drivers(const Mission& mission, const std::vector<DeployHost>& hosts, const LcmUrl& url) {
   const bool driven = std::ranges::any_of(hosts, &DeployHost::driver);
-  if (!driven || !tells_places(mission)) return;
+  if (!driven || !uses_beacons(mission)) return;
   std::fprintf(stderr,
                "note: robots are driven by a program each, which is yours and which nothing here "
                "starts: beside agent N start it as ergocast-example-driver --id N --lcm-url '%s'\n",

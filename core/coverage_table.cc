@@ -117,7 +117,7 @@ CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
   const auto blocks = static_cast<std::size_t>(block_count_);
   counted_.resize(rows_.size() + 1);
   qualities_.resize(rows_.size() + 1);
-  return &*rows_.insert(at, Row{author, true, 0, kNeverSaid, std::vector<Block>(blocks), {}, 1});
+  return &*rows_.insert(at, Row{author, true, 0, kNeverSent, std::vector<Block>(blocks), {}, 1});
 }
 
 void CoverageTable::add_row(const Author& author) {
@@ -244,13 +244,13 @@ bool CoverageTable::Block::looks_like(const Block& other) const {
          next_broadcast_tick == other.next_broadcast_tick;
 }
 
-bool CoverageTable::blocks_alike(std::size_t row) const {
+bool CoverageTable::uniform_blocks(std::size_t row) const {
   const auto& blocks = rows_[row].blocks;
   return std::all_of(blocks.begin() + 1, blocks.end(),
                      [&](const Block& block) { return block.looks_like(blocks.front()); });
 }
 
-bool CoverageTable::gains_alike(std::size_t row) const {
+bool CoverageTable::uniform_gains(std::size_t row) const {
   const auto& blocks = rows_[row].blocks;
   return std::all_of(blocks.begin() + 1, blocks.end(), [&](const Block& block) {
     return gained_steps(block) == gained_steps(blocks.front());
@@ -327,7 +327,7 @@ void CoverageTable::Row::sum_up() {
   due_tick = std::numeric_limits<Tick>::max();
   for (const Block& block : blocks) {
     fewest_steps = std::min(fewest_steps, block.steps);
-    due_tick = std::min(due_tick, block.steps > 0 ? block.next_broadcast_tick : kNeverSaid);
+    due_tick = std::min(due_tick, block.steps > 0 ? block.next_broadcast_tick : kNeverSent);
   }
 }
 
@@ -364,15 +364,17 @@ std::uint64_t CoverageTable::Row::state_hash() const {
   return state_hash;
 }
 
-CoverageTable::RowSummary CoverageTable::Row::holding() const {
+CoverageTable::RowSummary CoverageTable::Row::summary_of() const {
   return {author, fewest_steps, max_steps(), announced_period(), state_hash()};
 }
 
-CoverageTable::RowSummary CoverageTable::holding(std::size_t i) const { return rows_[i].holding(); }
+CoverageTable::RowSummary CoverageTable::summary_of(std::size_t i) const {
+  return rows_[i].summary_of();
+}
 
-CoverageTable::RowSummary CoverageTable::holding(const Author& author) const {
+CoverageTable::RowSummary CoverageTable::summary_of(const Author& author) const {
   const Row* row = find(author);
-  return row == nullptr ? RowSummary{author, 0, 0, 0, 0} : row->holding();
+  return row == nullptr ? RowSummary{author, 0, 0, 0, 0} : row->summary_of();
 }
 
 const double* CoverageTable::sums_of(const Author& author) const {

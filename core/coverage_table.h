@@ -88,13 +88,13 @@ class CoverageTable {
     std::uint64_t state_hash;  ///< equal for equal steps of every block
   };
   /// Row `i` of row_count(), in ascending order of authors.
-  RowSummary holding(std::size_t i) const;
+  RowSummary summary_of(std::size_t i) const;
   const Author& author(std::size_t i) const { return rows_[i].author; }
   bool counts(std::size_t i) const { return rows_[i].counts; }
   double quality(std::size_t i) const { return rows_[i].quality; }
   std::int64_t min_steps(std::size_t i) const { return rows_[i].fewest_steps; }
   /// The row of `author`; all 0 if it is unknown.
-  RowSummary holding(const Author& author) const;
+  RowSummary summary_of(const Author& author) const;
 
   /// One block of a row.
   struct BlockView {
@@ -106,16 +106,16 @@ class CoverageTable {
   BlockView view(std::size_t row, int block) const;
   /// What a block has gained on the one held before.
   struct Gains {
-    const double* before;  ///< the sums of the one held before [s]; null if `told` is set
-    const double* told;    ///< the gains as the author has told them [s], or null
-    std::int64_t steps;    ///< less its steps; 0 if the gains are impossible, |gain| > their time,
-                           ///< or not noted
+    const double* before;     ///< the sums of the one held before [s]; null if `announced` is set
+    const double* announced;  ///< the gains as the author has told them [s], or null
+    std::int64_t steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their time,
+                         ///< or not noted
   };
   Gains gains(std::size_t row, int block) const;
   /// Whether the views of all blocks of a row differ only in their sums.
-  bool blocks_alike(std::size_t row) const;
+  bool uniform_blocks(std::size_t row) const;
   /// Whether all blocks have gained in as many steps.
-  bool gains_alike(std::size_t row) const;
+  bool uniform_gains(std::size_t row) const;
 
   /// The sums of a row that only add_sample() fills [s]: those of all slots and then zeros.
   /// @pre `author` has samples
@@ -132,7 +132,7 @@ class CoverageTable {
 
  private:
   static constexpr std::int64_t kNotCompared = -1;
-  static constexpr Tick kNeverSaid = std::numeric_limits<Tick>::min();
+  static constexpr Tick kNeverSent = std::numeric_limits<Tick>::min();
   struct Block {
     std::int64_t steps = 0;
     Tick next_broadcast_tick = 0;
@@ -147,7 +147,7 @@ class CoverageTable {
     Author author;
     bool counts = true;
     std::int64_t fewest_steps = 0;  // among the blocks
-    Tick due_tick = kNeverSaid;     // of the block that is due first
+    Tick due_tick = kNeverSent;     // of the block that is due first
     std::vector<Block> blocks;
     AlignedDoubles samples;  // instead of the blocks' sums, once there are samples
     double quality = 1;
@@ -156,7 +156,7 @@ class CoverageTable {
     void sum_up();
     std::int64_t max_steps() const;
     std::uint64_t state_hash() const;
-    RowSummary holding() const;
+    RowSummary summary_of() const;
     Tick announced_period() const;
   };
 

@@ -41,9 +41,9 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       layout_(mission),
       block_size_(layout_.block_size()),
       look_ahead_(mission),
-      reckons_(mission.dead_reckoning),
+      dead_reckons_(mission.dead_reckoning),
       sensors_(mission),
-      alike_(sensors_.alike()),
+      uniform_(sensors_.uniform()),
       by_tables_(!layout_.in_basis_order()),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
       nothing_(static_cast<std::size_t>(layout_.slot_count())),
@@ -62,7 +62,7 @@ Tick Forecast::rest_from(AgentId id) const {
 }
 
 void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
-  if (!reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
+  if (!dead_reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
   if (!domain_.contains(x_m)) return;
   auto& places = tracks_[agent].places;
   if (!places.empty() && places.back().tick >= tick) return;
@@ -77,8 +77,8 @@ void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
 // ---- dead reckoning ----
 
 /// Brings the track of a row's vehicle up to what is known; null if that is no more than the row.
-Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
-                                  const RosterEntry& entry) {
+Forecast::Track* Forecast::dead_reckon(const CoverageTable& table, std::size_t row,
+                                       const RosterEntry& entry) {
   const auto found = tracks_.find(entry.author.agent);
   if (found == tracks_.end()) return nullptr;
   Track& track = found->second;
@@ -86,13 +86,13 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
   // What was added before a pause, or before a successor of the coordinator admitted the author
   // anew, would make the forecast depend on when it was looked at.
   const bool goes_on = track.author == entry.author && track.active_from == entry.active_from &&
-                       track.look + 1 == looks_ && track.said_steps.size() == blocks;
+                       track.look + 1 == looks_ && track.sent_steps.size() == blocks;
   track.look = looks_;
   if (!goes_on) {
     track.author = entry.author;
     track.active_from = entry.active_from;
     track.kind = entry.kind;
-    track.said_steps.assign(blocks, -1);
+    track.sent_steps.assign(blocks, -1);
     track.steps.assign(blocks, 0);
     track.until.assign(blocks, 0);
     track.due.assign(blocks, 0);
@@ -101,10 +101,10 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
     track.newest_tick = -1;
   }
   for (std::size_t b = 0; b < blocks; ++b) {
-    const CoverageTable::BlockView said = table.view(row, static_cast<int>(b));
-    if (track.said_steps[b] == said.steps) continue;
-    track.said_steps[b] = track.steps[b] = said.steps;
-    track.until[b] = said.tick;
+    const CoverageTable::BlockView sent = table.view(row, static_cast<int>(b));
+    if (track.sent_steps[b] == sent.steps) continue;
+    track.sent_steps[b] = track.steps[b] = sent.steps;
+    track.until[b] = sent.tick;
     track.due[b] = 0;
   }
   const Tick oldest = *std::min_element(track.until.begin(), track.until.end());
@@ -124,14 +124,14 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
 void Forecast::add_place(const Place& place, const CoverageTable& table, std::size_t row,
                          Track& track) {
   if (place.tick != track.newest_tick) {
-    add_what_is_due(track);
+    add_due_step(track);
     track.newest.emplace(place.x_m, domain_, basis_);
     track.newest_tick = place.tick;
     if (by_tables_) set_gains_in_slots(track);
   }
   for (std::size_t b = 0; b < track.until.size(); ++b) {
-    if (track.said_steps[b] == 0 || place.tick <= track.until[b]) continue;
-    if (track.steps[b] == track.said_steps[b]) {
+    if (track.sent_steps[b] == 0 || place.tick <= track.until[b]) continue;
+    if (track.steps[b] == track.sent_steps[b]) {
       std::copy_n(table.view(row, static_cast<int>(b)).sums,
                   layout_.slots_of(static_cast<int>(b)).count,
                   track.sums.data() + b * static_cast<std::size_t>(block_size_));
@@ -142,7 +142,7 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
   }
 }
 
-void Forecast::add_what_is_due(Track& track) const {
+void Forecast::add_due_step(Track& track) const {
   for (std::size_t b = 0; b < track.due.size(); ++b) {
     if (!track.due[b]) continue;
     track.due[b] = 0;
@@ -169,7 +169,7 @@ void Forecast::set_gains_in_slots(Track& track) {
 void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                       Tick tick) {
   has_forecast_.assign(table.row_count(), 0);
-  reckoned_.assign(table.row_count(), nullptr);
+  dead_reckoned_.assign(table.row_count(), nullptr);
   std::size_t entry = 0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const Author& author = table.author(row);
@@ -178,18 +178,18 @@ void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>
     if (!table.counts(row) || !is_newest(roster, entry, tick)) continue;
     if (tick >= rest_from(author.agent)) continue;
     has_forecast_[row] = 1;
-    if (reckons_) reckoned_[row] = reckon(table, row, roster[entry]);
+    if (dead_reckons_) dead_reckoned_[row] = dead_reckon(table, row, roster[entry]);
   }
 }
 
 /// Whether all blocks of each row that counts are as old, as most often they are.
-bool Forecast::blocks_alike(const CoverageTable& table) const {
+bool Forecast::uniform_blocks(const CoverageTable& table) const {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row)) continue;
-    if (!table.blocks_alike(row)) return false;
-    const Track* track = reckoned_[row];
+    if (!table.uniform_blocks(row)) return false;
+    const Track* track = dead_reckoned_[row];
     const bool by_blocks = track == nullptr || track->newest_tick < table.view(row, 0).tick;
-    if (by_blocks && has_forecast_[row] && !table.gains_alike(row)) return false;
+    if (by_blocks && has_forecast_[row] && !table.uniform_gains(row)) return false;
     if (track == nullptr) continue;
     const auto& [steps, due] = std::tie(track->steps, track->due);
     if (!std::equal(steps.begin() + 1, steps.end(), steps.begin())) return false;
@@ -199,21 +199,21 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
 }
 
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
-  const CoverageTable::BlockView said = table.view(row, block);
+  const CoverageTable::BlockView sent = table.view(row, block);
   Term term{nullptr,
             nullptr,
             nullptr,
             nullptr,
-            said.steps,
+            sent.steps,
             0,
-            said.tick,
-            said.period,
+            sent.tick,
+            sent.period,
             0,
             table.quality(row),
             rest_from(table.author(row).agent)};
-  if (!has_forecast_[row] || said.steps == 0) return term;
-  Track* track = reckoned_[row];
-  if (track == nullptr || track->newest_tick < said.tick) {
+  if (!has_forecast_[row] || sent.steps == 0) return term;
+  Track* track = dead_reckoned_[row];
+  if (track == nullptr || track->newest_tick < sent.tick) {
     term.gained_steps = table.gains(row, block).steps;
     return term;
   }
@@ -231,18 +231,18 @@ void Forecast::point_terms(const CoverageTable& table, int block) {
   auto term = terms_.begin();
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row)) continue;
-    const CoverageTable::BlockView said = table.view(row, block);
+    const CoverageTable::BlockView sent = table.view(row, block);
     if (table.author(row) == self_) {
-      own_sums_ = said.sums - first;
+      own_sums_ = sent.sums - first;
       continue;
     }
     const bool further =
-        term->track != nullptr && term->track->steps[static_cast<std::size_t>(block)] > said.steps;
-    term->sums = further ? term->track->sums.data() : said.sums - first;
+        term->track != nullptr && term->track->steps[static_cast<std::size_t>(block)] > sent.steps;
+    term->sums = further ? term->track->sums.data() : sent.sums - first;
     if (term->track == nullptr && term->gained_steps > 0) {
       const CoverageTable::Gains gains = table.gains(row, block);
-      term->sums_before = gains.told == nullptr ? gains.before - first : nullptr;
-      term->told_gains = gains.told != nullptr ? gains.told - first : nullptr;
+      term->sums_before = gains.announced == nullptr ? gains.before - first : nullptr;
+      term->announced_gains = gains.announced != nullptr ? gains.announced - first : nullptr;
     }
     ++term;
   }
@@ -290,7 +290,7 @@ const double* Forecast::gains_of(const Track& track, Modes modes) {
 
 /// Adds the same of any row: one whose quality or footprint is not that of others, or all of them
 /// where slots are not modes.
-void Forecast::add_unlike(const Term& term, Modes modes, const double* before, double* sum) {
+void Forecast::add_weighted(const Term& term, Modes modes, const double* before, double* sum) {
   Track* const track = term.track;
   const auto block = static_cast<std::size_t>(modes.first / block_size_);
   const double* gains = gains_.data();
@@ -298,8 +298,8 @@ void Forecast::add_unlike(const Term& term, Modes modes, const double* before, d
     gains = gains_of(*track, modes);
     if (track->due[block]) sums::add_sums(gains, modes, track->sums.data(), track->sums.data());
     track->due[block] = 0;
-  } else if (term.told_gains != nullptr) {
-    gains = term.told_gains;
+  } else if (term.announced_gains != nullptr) {
+    gains = term.announced_gains;
   } else if (term.sums_before != nullptr) {
     for (int k = modes.first; k < modes.first + modes.count; ++k)
       gains_[static_cast<std::size_t>(k)] = term.sums[k] - term.sums_before[k];
@@ -312,9 +312,9 @@ void Forecast::add_unlike(const Term& term, Modes modes, const double* before, d
 /// Adds what a row will have covered to `before`.
 void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) {
   Track* track = term.track;
-  const bool unlike =
-      !alike_ && (term.quality != 1 || (track != nullptr && footprint(*track) != nullptr));
-  if (unlike || by_tables_) return add_unlike(term, modes, before, sum);
+  const bool weighted =
+      !uniform_ && (term.quality != 1 || (track != nullptr && footprint(*track) != nullptr));
+  if (weighted || by_tables_) return add_weighted(term, modes, before, sum);
   const auto block = modes.first / block_size_;
   if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
     sums::add_arriving(*track->newest, basis_, dt_s_, track->sums.data(), term.share, modes, before,
@@ -324,8 +324,8 @@ void Forecast::add(const Term& term, Modes modes, const double* before, double* 
     sums::add_sums(term.sums, modes, before, sum);
   } else if (track != nullptr) {
     sums::add_staying(*track->newest, basis_, dt_s_, term.sums, term.share, modes, before, sum);
-  } else if (term.told_gains != nullptr) {
-    sums::add_told(term.sums, term.told_gains, term.share, modes, before, sum);
+  } else if (term.announced_gains != nullptr) {
+    sums::add_announced(term.sums, term.announced_gains, term.share, modes, before, sum);
   } else {
     sums::add_gaining(term.sums, term.sums_before, term.share, modes, before, sum);
   }
@@ -353,11 +353,11 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
                           Tick tick, Coefficients& coverage) {
   ++looks_;
   gather(table, roster, tick);
-  const bool alike = blocks_alike(table);
+  const bool uniform = uniform_blocks(table);
   double* const out = by_tables_ ? by_slot_.data() : coverage.data();
   double per_second = 0;
   for (int b = 0; b < table.block_count(); ++b) {
-    if (b == 0 || !alike) per_second = weigh_terms(table, b, tick);
+    if (b == 0 || !uniform) per_second = weigh_terms(table, b, tick);
     point_terms(table, b);
     add_up(layout_.slots_of(b), per_second, out);
   }

@@ -73,7 +73,7 @@ class Forecast {
     Tick active_from = 0;                  // of that author, as the roster said, …
     int kind = 0;                          // … and its kind
     std::uint64_t look = 0;                // of looks_, when it was last extended
-    std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
+    std::vector<std::int64_t> sent_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step
     std::vector<char> due;                 // whether that one counts, but is not in the sums yet
@@ -85,7 +85,7 @@ class Forecast {
   /// One row's part in one block.
   struct Term {
     // Where the first mode would be. One that gains has the sums before, or the gains as told.
-    const double *sums, *sums_before, *told_gains;
+    const double *sums, *sums_before, *announced_gains;
     Track* track;                      // null: by its blocks
     std::int64_t steps, gained_steps;  // 0: no forecast
     Tick tick, period;
@@ -94,22 +94,22 @@ class Forecast {
     Tick rest_from;  // of its author, core/station.h
   };
 
-  Track* reckon(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
+  Track* dead_reckon(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
   void add_place(const Place& place, const CoverageTable& table, std::size_t row, Track& track);
-  void add_what_is_due(Track& track) const;
+  void add_due_step(Track& track) const;
   void set_gains_in_slots(Track& track);
   const double* gains_of(const Track& track, Modes modes);
   void gather(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
-  bool blocks_alike(const CoverageTable& table) const;
+  bool uniform_blocks(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   Tick rest_from(AgentId id) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
   void point_terms(const CoverageTable& table, int block);
   void add_up(Modes modes, double per_second, double* coverage);
   void add(const Term& term, Modes modes, const double* before, double* sum);
-  void add_unlike(const Term& term, Modes modes, const double* before, double* sum);
+  void add_weighted(const Term& term, Modes modes, const double* before, double* sum);
   const double* footprint(const Track& track) const {
-    return alike_ ? nullptr : sensors_.of(track.kind).footprint();
+    return uniform_ ? nullptr : sensors_.of(track.kind).footprint();
   }
 
   Author self_;
@@ -119,18 +119,18 @@ class Forecast {
   BlockLayout layout_;
   int block_size_;
   LookAhead look_ahead_;
-  bool reckons_;
+  bool dead_reckons_;
   Sensors sensors_;
-  bool alike_;      // all of them, as most often they are
+  bool uniform_;    // all of them, as most often they are
   bool by_tables_;  // slots are not modes: f is computed as a whole, not mode by mode
   std::size_t most_places_;
   std::vector<Tick> rest_from_;  // by number, where any agent has a station
   std::map<AgentId, Track> tracks_;
-  std::uint64_t looks_ = 0;         // calls of look_ahead()
-  std::vector<Track*> reckoned_;    // per row of the table; null: by its blocks
-  std::vector<char> has_forecast_;  // per row: whether it has a forecast
-  std::vector<Term> terms_;         // of the other rows that count, ascending by author
-  std::ptrdiff_t before_own_ = 0;   // so many of them come before the own row
+  std::uint64_t looks_ = 0;            // calls of look_ahead()
+  std::vector<Track*> dead_reckoned_;  // per row of the table; null: by its blocks
+  std::vector<char> has_forecast_;     // per row: whether it has a forecast
+  std::vector<Term> terms_;            // of the other rows that count, ascending by author
+  std::ptrdiff_t before_own_ = 0;      // so many of them come before the own row
   const double* own_sums_ = nullptr;
   double own_quality_ = 1;
   AlignedDoubles nothing_;  // zeros

@@ -81,8 +81,8 @@ void add_gaining(const double* sums, const double* sums_before, double share, Mo
 }
 
 ERGOCAST_VECTORIZED
-void add_told(const double* sums, const double* gains, double share, Modes modes,
-              const double* before, double* sum) {
+void add_announced(const double* sums, const double* gains, double share, Modes modes,
+                   const double* before, double* sum) {
   ERGOCAST_INDEPENDENT
   for (int k = modes.first; k < modes.first + modes.count; ++k) {
     sum[k] = before[k] + (sums[k] + share * gains[k]);

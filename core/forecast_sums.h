@@ -36,8 +36,8 @@ void add_gaining(const double* sums, const double* sums_before, double share, Mo
                  const double* before, double* sum);
 
 /// sum = before + S + share · gains.
-void add_told(const double* sums, const double* gains, double share, Modes modes,
-              const double* before, double* sum);
+void add_announced(const double* sums, const double* gains, double share, Modes modes,
+                   const double* before, double* sum);
 
 /// sum = before + S + share · f dt.
 void add_staying(const CosinesAt& at, const Basis& basis, double dt_s, const double* sums,

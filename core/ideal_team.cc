@@ -50,11 +50,11 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
 
 bool IdealTeam::stands_for(const Mission& mission) {
   const Timing& timing = mission.timing;
-  const bool all_is_told = longest_period_ticks(timing) == 1;
+  const bool all_is_sent = longest_period_ticks(timing) == 1;
   const bool all_is_known = mission.law.anticipation > 0 && mission.dead_reckoning;
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
-         (all_is_told || all_is_known) && !any_station(mission);
+         (all_is_sent || all_is_known) && !any_station(mission);
 }
 
 void IdealTeam::step() {
@@ -121,8 +121,8 @@ void IdealTeam::sample() {
     }
     const double* sums = table_.sums_of(agent.author);
     for (std::size_t k = 0; k < agent.gain.size(); ++k) {
-      agent.gain[k] = sums[k] - agent.said[k];
-      agent.said[k] = sums[k];
+      agent.gain[k] = sums[k] - agent.sent[k];
+      agent.sent[k] = sums[k];
     }
   }
 }
@@ -167,7 +167,7 @@ void IdealTeam::foresee(const Agent& agent) {
   double* earlier = earlier_.data();
   double* foreseen = coverage_.data();
   const double q = quality(agent);
-  if (!sensors_.alike()) weigh(agent);
+  if (!sensors_.uniform()) weigh(agent);
   for (std::size_t k = 0; k < earlier_.size(); ++k) {
     foreseen[k] = (earlier[k] + (later[k] + q * own[k])) * per_second_;
     earlier[k] += q * (own[k] + share_ * gain[k]);

@@ -70,7 +70,7 @@ class IdealTeam {
     bool filtered = false;  // its commands
     Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
     std::optional<BasisAt> at;                            // x_m
-    std::vector<double> said;                             // its sums a tick ago
+    std::vector<double> sent;                             // its sums a tick ago
     std::vector<double> gain;                             // since then
     std::vector<double> later;                            // what all later agents will have covered
     std::int64_t blocked_ticks = 0;                       // without a break

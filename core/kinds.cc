@@ -67,7 +67,7 @@ Sensors::Sensors(const Mission& mission) {
         {footprint_of(mission.basis, mission.domain, kind.footprint_sigma_m), kind.quality});
   }
   if (sensors_.empty()) sensors_.emplace_back();
-  alike_ = std::all_of(sensors_.begin(), sensors_.end(), [](const Sensor& sensor) {
+  uniform_ = std::all_of(sensors_.begin(), sensors_.end(), [](const Sensor& sensor) {
     return sensor.g.size() == 0 && sensor.quality == 1;
   });
 }

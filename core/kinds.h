@@ -44,13 +44,13 @@ class Sensors {
   explicit Sensors(const Mission& mission);
 
   /// Whether a row's sums depend on its kind at all.
-  bool alike() const { return alike_; }
+  bool uniform() const { return uniform_; }
   /// Of kind 0, if the mission has no kind `kind`.
   const Sensor& of(int kind) const;
 
  private:
   std::vector<Sensor> sensors_;
-  bool alike_;
+  bool uniform_;
 };
 
 /// The kind that the plan gives to agent `id`; beyond the plan the first kind, 0.

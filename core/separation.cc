@@ -324,10 +324,10 @@ bool sure_of_bodies(const Mission& mission) {
 
 Tick unguarded_hold_ticks(const Mission& mission) {
   const bool held = mission.timing.pace == Pace::kRealtime && !world_guards(mission);
-  return held ? command_hold_ticks(mission.timing) + (tells_places(mission) ? 1 : 0) : 0;
+  return held ? command_hold_ticks(mission.timing) + (uses_beacons(mission) ? 1 : 0) : 0;
 }
 
-bool tells_places(const Mission& mission) {
+bool uses_beacons(const Mission& mission) {
   return mission.separation.distance_m > 0 && mission.separation.lease_s > 0 &&
          mission.timing.pace == Pace::kRealtime;
 }

@@ -91,7 +91,7 @@ class SeparationFilter {
 
  private:
   /// What stays of a body under commands of 0: the places [from, from + along].
-  struct Stay {
+  struct HoldingSet {
     Eigen::Vector3d from_m, along_m;
   };
 
@@ -109,8 +109,8 @@ class SeparationFilter {
   double uncertainty_m(const Mover& self, const Neighbour& other) const;
   void begin(const Mover& self, double reach_m);
   void take(AgentId whose, const StepConstraints::Set& set);
-  void keep_from_walls(const Mover& self, const Stay& own);
-  void keep_from_wall(const Mover& self, const Stay& own, const Segment& edge);
+  void keep_from_walls(const Mover& self, const HoldingSet& own);
+  void keep_from_wall(const Mover& self, const HoldingSet& own, const Segment& edge);
   SafeVelocity blocked_by(const Eigen::Vector3d& wanted_m) const;
   double side(const Mover& self) const;
   SafeVelocity stopped(const Mover& self, const Neighbour& other) const;
@@ -126,12 +126,12 @@ class SeparationFilter {
   Eigen::Vector3d center_step_m(const Mover& self, const Eigen::Vector3d& v_mps) const;
   bool allows(const Mover& self, const Eigen::Vector3d& v_mps) const;
   const Neighbour* keep_from_all(const Mover& self, std::span<const Neighbour> others);
-  bool keep_from(const Mover& self, const Stay& own, const Neighbour& other);
-  static Stay stay_of(const Motion& motion, const Eigen::Vector3d& x_m,
-                      const Eigen::Vector3d& v_mps);
+  bool keep_from(const Mover& self, const HoldingSet& own, const Neighbour& other);
+  static HoldingSet holding_set_of(const Motion& motion, const Eigen::Vector3d& x_m,
+                                   const Eigen::Vector3d& v_mps);
   bool keep_places_apart(const Mover& self, const Neighbour& other, const Eigen::Vector3d& y_m);
-  bool keep_ways_apart(const Mover& self, const Neighbour& other, const Stay& own,
-                       const Stay& theirs);
+  bool keep_ways_apart(const Mover& self, const Neighbour& other, const HoldingSet& own,
+                       const HoldingSet& theirs);
 
   Mission mission_;
   std::vector<Motion> motions_;  // of each kind of agents; at least one
@@ -199,7 +199,7 @@ Tick unguarded_hold_ticks(const Mission& mission);
 bool world_guards(const Mission& mission);
 
 /// Whether agents know the places of the others from these alone, team/beacon_book.h.
-bool tells_places(const Mission& mission);
+bool uses_beacons(const Mission& mission);
 /// Of separation.lease_s, rounded down.
 Tick lease_ticks(const Mission& mission);
 inline constexpr Tick kLeastLeaseTicks = 5, kMostLeaseTicks = 10000;

@@ -44,8 +44,9 @@ Eigen::Vector3d shortest_between_m(const auto& a, const auto& b) {
 
 }  // namespace
 
-SeparationFilter::Stay SeparationFilter::stay_of(const Motion& motion, const Eigen::Vector3d& x_m,
-                                                 const Eigen::Vector3d& v_mps) {
+SeparationFilter::HoldingSet SeparationFilter::holding_set_of(const Motion& motion,
+                                                              const Eigen::Vector3d& x_m,
+                                                              const Eigen::Vector3d& v_mps) {
   return {anchor_m(motion, x_m, v_mps), braking_path_m(motion, v_mps)};
 }
 
@@ -53,7 +54,7 @@ SeparationFilter::Stay SeparationFilter::stay_of(const Motion& motion, const Eig
 /// all are set.
 const Neighbour* SeparationFilter::keep_from_all(const Mover& self,
                                                  std::span<const Neighbour> others) {
-  const Stay own = stay_of(motion_of(self.id), self.position_m, self.velocity_mps);
+  const HoldingSet own = holding_set_of(motion_of(self.id), self.position_m, self.velocity_mps);
   keep_from_walls(self, own);
   for (const Neighbour& other : others) {
     if (other.id != self.id && !keep_from(self, own, other)) return &other;
@@ -62,7 +63,7 @@ const Neighbour* SeparationFilter::keep_from_all(const Mover& self,
 }
 
 /// False if the neighbour may be anywhere around.
-bool SeparationFilter::keep_from(const Mover& self, const Stay& own, const Neighbour& other) {
+bool SeparationFilter::keep_from(const Mover& self, const HoldingSet& own, const Neighbour& other) {
   const Pair& pair = pair_of(self.id, other.id);
   const double share = share_of(self, other);
   const double far_m =
@@ -72,7 +73,7 @@ bool SeparationFilter::keep_from(const Mover& self, const Stay& own, const Neigh
   if (y_m.squaredNorm() >= far_m * far_m) return true;
   const Motion &mine = motion_of(self.id), &its = motion_of(other.id);
   if (mine.is_point() && its.is_point()) return keep_places_apart(self, other, y_m);
-  const Stay theirs = stay_of(its, other.position_m, other.velocity_mps);
+  const HoldingSet theirs = holding_set_of(its, other.position_m, other.velocity_mps);
   if (mine.has_inertia() || its.has_inertia()) return keep_ways_apart(self, other, own, theirs);
   return keep_places_apart(self, other, theirs.from_m - own.from_m);
 }
@@ -90,8 +91,8 @@ bool SeparationFilter::keep_places_apart(const Mover& self, const Neighbour& oth
 }
 
 /// Of two bodies one of which has to brake. All is known of both: sure_of_bodies().
-bool SeparationFilter::keep_ways_apart(const Mover& self, const Neighbour& other, const Stay& own,
-                                       const Stay& theirs) {
+bool SeparationFilter::keep_ways_apart(const Mover& self, const Neighbour& other,
+                                       const HoldingSet& own, const HoldingSet& theirs) {
   const bool first = self.id < other.id;
   Eigen::Vector3d n = first ? shortest_between_m(own, theirs) : shortest_between_m(theirs, own);
   const double length_m = length_of(n);

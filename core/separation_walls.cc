@@ -33,12 +33,13 @@ Eigen::Vector2d shortest_to_m(const Segment& way, const Segment& edge) {
 
 }  // namespace
 
-void SeparationFilter::keep_from_walls(const Mover& self, const Stay& own) {
+void SeparationFilter::keep_from_walls(const Mover& self, const HoldingSet& own) {
   for_segments(mission_.walls, [&](const Segment& edge) { keep_from_wall(self, own, edge); });
 }
 
 /// The edges that no step reaches need no set.
-void SeparationFilter::keep_from_wall(const Mover& self, const Stay& own, const Segment& edge) {
+void SeparationFilter::keep_from_wall(const Mover& self, const HoldingSet& own,
+                                      const Segment& edge) {
   const Separation& rule = mission_.separation;
   const auto kind = static_cast<std::size_t>(planned_kind(mission_, self.id));
   // V T and e more, if it follows late; of 2 e, one is in what is not known.

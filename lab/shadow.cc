@@ -222,14 +222,14 @@ void Shadow::take(const TableView& agent, const Contribution& theirs) {
 }
 
 void Shadow::note_places(const Mission& mission, const TableView& agent, const WorldState& world) {
-  const Tick said = world.header.tick;
-  for (int i = 0; i < world.vehicle_count && said >= positions_tick_; ++i) {
+  const Tick state_tick = world.header.tick;
+  for (int i = 0; i < world.vehicle_count && state_tick >= positions_tick_; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     positions_m_[vehicle.id] = vehicle.position_m;
   }
-  positions_tick_ = std::max(positions_tick_, said);
-  const Tick tick = counted_ticks(agent.holds, said);
-  if (tick < active_from_ || is_held(agent.holds, said)) return;
+  positions_tick_ = std::max(positions_tick_, state_tick);
+  const Tick tick = counted_ticks(agent.holds, state_tick);
+  if (tick < active_from_ || is_held(agent.holds, state_tick)) return;
   const Timing& timing = mission.timing;
   const auto hold =
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
@@ -238,7 +238,8 @@ void Shadow::note_places(const Mission& mission, const TableView& agent, const W
                                Forecast::kPlacesBeyondPeriod);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    const bool driven = timing.pace == Pace::kLockstep || vehicle.answered_tick >= said - hold;
+    const bool driven =
+        timing.pace == Pace::kLockstep || vehicle.answered_tick >= state_tick - hold;
     if (!driven || vehicle.id == agent.self.agent) continue;
     if (!in_range(mission, agent.self.agent, vehicle.id)) continue;
     std::deque<Place>& places = places_[vehicle.id];
@@ -261,27 +262,27 @@ void Shadow::answer(const Mission& mission, const TableView& agent) {
   if (!mission.dead_reckoning) return;
   for (auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
-    const bool reckoned = entry != nullptr && has_forecast(mission, agent, *entry);
+    const bool dead_reckoned = entry != nullptr && has_forecast(mission, agent, *entry);
     // Of the roster as it is now: an admission may be lost with its coordinator, and come anew.
-    if (!reckoned || row.active_from != entry->active_from) {
+    if (!dead_reckoned || row.active_from != entry->active_from) {
       for (Block& block : row.blocks) block.since.clear();
       row.newest.reset();
       row.active_from.reset();
     }
-    if (!reckoned) continue;
+    if (!dead_reckoned) continue;
     row.active_from = entry->active_from;
-    reckon(*entry, row);
+    dead_reckon(*entry, row);
   }
 }
 
 /// Each block gets the places after it that are of its author's life; the next block replaces them.
-void Shadow::reckon(const RosterEntry& entry, Row& row) const {
+void Shadow::dead_reckon(const RosterEntry& entry, Row& row) const {
   const auto found = places_.find(entry.author.agent);
   if (found == places_.end()) return;
   const std::deque<Place>& places = found->second;
   for (Block& block : row.blocks) {
-    if (block.reckoned_steps != block.held.steps) block.since.clear();
-    block.reckoned_steps = block.held.steps;
+    if (block.dead_reckoned_steps != block.held.steps) block.since.clear();
+    block.dead_reckoned_steps = block.held.steps;
     if (block.held.steps == 0) continue;
     const Tick until = block.since.empty() ? block.held.tick : block.since.back().tick;
     const auto later =
@@ -296,10 +297,10 @@ void Shadow::reckon(const RosterEntry& entry, Row& row) const {
 // ---- the equation ----
 
 /// By its blocks alone.
-Shadow::Part Shadow::said(const Mission& mission, const Block& block) const {
-  const Said& held = block.held;
+Shadow::Part Shadow::part_of(const Mission& mission, const Block& block) const {
+  const Snapshot& held = block.held;
   // What was said before an agent's own time may be this or that, whichever way it came to know it.
-  const Said before = block.before.tick >= active_from_ ? block.before : Said{};
+  const Snapshot before = block.before.tick >= active_from_ ? block.before : Snapshot{};
   const int size = block_size(mission);
   Part part{vector_of(held.sums, size),
             vector_of(held.gains, size),
@@ -330,7 +331,7 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
   std::vector<Part> parts;
   for (int b = 0; b < static_cast<int>(row.blocks.size()); ++b) {
     const Block& block = row.blocks[static_cast<std::size_t>(b)];
-    Part& part = parts.emplace_back(said(mission, block));
+    Part& part = parts.emplace_back(part_of(mission, block));
     part.quality = quality_of(mission, entry);
     if (entry != nullptr) part.until = covers_until(mission, entry->author.agent);
     if (!has_forecast) part.gained_steps = 0;

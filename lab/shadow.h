@@ -44,16 +44,16 @@ class Shadow {
     Tick tick;
     Eigen::Vector3d x_m;
   };
-  struct Said {
+  struct Snapshot {
     std::int64_t steps = 0;
     Tick tick = 0, next_tick = 0;
     BlockSums sums, gains;  ///< the latter, and its steps, as told by its author
     std::int64_t gained_steps = 0;
   };
   struct Block {
-    Said held, before;                ///< the latter by steps, whenever older ones came
-    std::vector<Place> since;         ///< where its author was after `held`, as it was known
-    std::int64_t reckoned_steps = 0;  ///< of the block that `since` goes on from
+    Snapshot held, before;                 ///< the latter by steps, whenever older ones came
+    std::vector<Place> since;              ///< where its author was after `held`, as it was known
+    std::int64_t dead_reckoned_steps = 0;  ///< of the block that `since` goes on from
   };
   struct Row {
     std::vector<Block> blocks;
@@ -72,8 +72,8 @@ class Shadow {
   void take(const TableView& agent, const Contribution& theirs);
   void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
-  void reckon(const RosterEntry& entry, Row& row) const;
-  Part said(const Mission& mission, const Block& block) const;
+  void dead_reckon(const RosterEntry& entry, Row& row) const;
+  Part part_of(const Mission& mission, const Block& block) const;
   std::vector<Part> parts_of(const Mission& mission, const Row& row, const RosterEntry* entry,
                              bool has_forecast) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;

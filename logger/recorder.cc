@@ -295,7 +295,7 @@ bool Recorder::holds(Tick tick) const {
 
 /// Whether several drivers may say a tick, each its own robot's part: then a row is also written
 /// without a robot whose driver is not heard.
-bool Recorder::has_drivers() const { return me_.knows_mission() && tells_places(mission()); }
+bool Recorder::has_drivers() const { return me_.knows_mission() && uses_beacons(mission()); }
 
 bool Recorder::write_next_row() {
   if (!writing() || all_rows_written()) return false;

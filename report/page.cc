@@ -109,7 +109,7 @@ Json conventions(const Mission& mission, bool free_domain) {
   add("hₖ", basis.normalized ? "√(Π Lᵢ · (½)^[kᵢ > 0])" : "not used: f is not normalised");
   add("control", law_text(mission.law));
   for (const AgentKind& kind : mission.kinds) add("kind", kind_text(kind));
-  if (!Sensors(mission).alike())
+  if (!Sensors(mission).uniform())
     add("seen", "coverage and φ² are of what the agents’ sensors have seen, weighted by quality");
   if (mission.speed_limit_mps > 0) {
     add("speed limit", readable(mission.speed_limit_mps) + " m/s; faster commands are cut to it");
@@ -258,7 +258,7 @@ Json page_mission(const Mission& flown, const Field& density) {
                {"free_domain", flown.basis.free_domain},
                {"conventions", conventions(mission, flown.basis.free_domain)},
                {"density", encoded_density(density)}};
-  if (const Sensors sensors(mission); !sensors.alike()) page["seen"] = seen(mission, sensors);
+  if (const Sensors sensors(mission); !sensors.uniform()) page["seen"] = seen(mission, sensors);
   if (!mission.walls.empty()) page["walls"] = rings_of(mission);
   if (mission.separation.distance_m > 0) page["body_radius_m"] = mission.separation.distance_m / 2;
   if (any_station(mission)) page["stations"] = stations_of(mission);

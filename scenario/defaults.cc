@@ -131,8 +131,8 @@ void fill_foresight(proto::Scenario& scenario) {
   if (!law.has_paired_pushes()) law.set_paired_pushes(looks_ahead);
   if (!scenario.agents().has_dead_reckoning()) scenario.mutable_agents()->set_dead_reckoning(true);
   if (scenario.time().has_broadcast_period_ticks()) return;
-  const bool reckons = law.anticipation() > 0 && scenario.agents().dead_reckoning();
-  scenario.mutable_time()->set_broadcast_period_ticks(reckons ? kReckonedPeriodTicks : 1);
+  const bool dead_reckons = law.anticipation() > 0 && scenario.agents().dead_reckoning();
+  scenario.mutable_time()->set_broadcast_period_ticks(dead_reckons ? kReckonedPeriodTicks : 1);
 }
 
 /// Defaults that follow from speed and domain, so that a law scales with them. What is itself

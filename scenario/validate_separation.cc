@@ -51,7 +51,7 @@ class SeparationRules {
   void hold() {
     const double held_s =
         static_cast<double>(unguarded_hold_ticks(mission_)) * mission_.timing.dt_s;
-    const double step_s = tells_places(mission_) ? mission_.timing.dt_s : 0;
+    const double step_s = uses_beacons(mission_) ? mission_.timing.dt_s : 0;
     const double whole_s = mission_.separation.distance_m / (4 * fastest_mps(mission_));
     if (held_s <= whole_s * (1 + 1e-9)) return;
     const double most_s = whole_s - step_s;

@@ -33,7 +33,7 @@ BeaconBook::BeaconBook(const Mission& mission, const Author& self, std::int64_t 
                                                   static_cast<double>(4 * rare_ticks_ + 8)),
       mission_(mission),
       sent_(static_cast<std::size_t>(lease_ticks_) + 1) {
-  ERGOCAST_REQUIRE(tells_places(mission) && lease_ticks_ < kNumbers / 2);
+  ERGOCAST_REQUIRE(uses_beacons(mission) && lease_ticks_ < kNumbers / 2);
 }
 
 void BeaconBook::note_roster(const std::vector<RosterEntry>& roster) {

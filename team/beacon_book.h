@@ -46,7 +46,7 @@ class BeaconBook {
  public:
   /// @param self  the agent whose book it is
   /// @param revision  of the roster in which it found itself; see note_roster()
-  /// @pre tells_places(mission)
+  /// @pre uses_beacons(mission)
   BeaconBook(const Mission& mission, const Author& self, std::int64_t revision);
 
   /// Who takes part. Another incarnation under a number has heard nothing of us.

@@ -62,7 +62,7 @@ std::optional<std::string> Driver::why_not() const {
   if (!has_vehicles_for(mission))
     return "the mission is for other vehicles: give it vehicle { kind: POINT }, or UNICYCLE and at "
            "most the robots' 2 rad/s";
-  if (only_ && mission.separation.distance_m > 0 && !tells_places(mission))
+  if (only_ && mission.separation.distance_m > 0 && !uses_beacons(mission))
     return "a driver of one robot does not know where the others are: give the mission separation "
            "{ lease_s }, so that agents tell each other, or drive all robots without --id";
   return std::nullopt;

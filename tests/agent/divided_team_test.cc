@@ -144,14 +144,14 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
 
 TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
   const Mission mission = realtime(2);
-  const Author former = author_of(0), reborn{0, 99};
+  const Author former = author_of(0), restarted{0, 99};
   LiveTeam team(mission);
   run_ticks(team, 2, 0, 20);
   team.kill(0);
-  const MissionPart news = mission_part(1, MissionState::kRunning,
-                                        {{former, 0, 20}, {reborn, 20, -1}, {author_of(1), 0, -1}});
+  const MissionPart news = mission_part(
+      1, MissionState::kRunning, {{former, 0, 20}, {restarted, 20, -1}, {author_of(1), 0, -1}});
   AgentIdentity identity = identity_of(0);
-  identity.incarnation = reborn.incarnation;
+  identity.incarnation = restarted.incarnation;
   team.revive(0, Agent(identity));
   team.tell(news, at(2s));
   EXPECT_EQ(team[0].coverage()->steps_held(former), std::nullopt);
@@ -159,9 +159,9 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
   team.wait(at(2500ms), 3s);
 
   EXPECT_EQ(team[0].coverage()->steps_held(former), 20);
-  EXPECT_EQ(team[0].coverage()->steps_held(reborn), 5) << "never added into its new sum";
+  EXPECT_EQ(team[0].coverage()->steps_held(restarted), 5) << "never added into its new sum";
   const Coefficients everything = average_of(mission, {{former, path_of(0, 0, 20)},
-                                                       {reborn, path_of(0, 20, 25)},
+                                                       {restarted, path_of(0, 20, 25)},
                                                        {author_of(1), path_of(1, 0, 25)}});
   for (const AgentId id : {0, 1}) {
     EXPECT_EQ(average_of(mission, *team[id].coverage()), everything) << "agent " << id;

@@ -200,16 +200,16 @@ TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
   // 1 was restarted at tick 5. Its blocks from tick 5 on are of the new incarnation, those before
   // of the former one.
   const Mission mission = looking_ahead(3, true);
-  const Author reborn{1, life_of(1) + 7};
+  const Author restarted{1, life_of(1) + 7};
   const std::vector<RosterEntry> roster{
-      {author_of(0), 0, -1}, {author_of(1), 0, 5}, {reborn, 5, -1}};
+      {author_of(0), 0, -1}, {author_of(1), 0, 5}, {restarted, 5, -1}};
   const auto foreseen = [&](const Eigen::Vector3d& before_m) {
     announce(mission);
     Agent agent(identity_of(0));
     give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
     hear(agent, words_of(mission, 1, 2));
     for (Tick tick = 3; tick < 5; ++tick) tell(agent, with_vehicle_1(tick, before_m));
-    auto words = blocks_of(mission, reborn, {{700, 300, 0}}, 15);
+    auto words = blocks_of(mission, restarted, {{700, 300, 0}}, 15);
     for (Contribution& block : words) block.header.tick = 5;
     hear(agent, words);
     for (Tick tick = 5; tick < 8; ++tick) tell(agent, with_vehicle_1(tick, {700, 300, 0}));

@@ -17,7 +17,7 @@ using Path = std::vector<Eigen::Vector3d>;
 
 constexpr Tick kPeriod = 40;
 
-Mission reckoning_mission(Pace pace = Pace::kLockstep) {
+Mission dead_reckoning_mission(Pace pace = Pace::kLockstep) {
   Mission mission = small_mission(2);
   mission.law.anticipation = 2;
   mission.dead_reckoning = true;
@@ -94,14 +94,14 @@ class Reckoning : public ::testing::Test {
 };
 
 TEST_F(Reckoning, PlacesSinceATeammatesLastBlockCountAsIfItHadSaidThem) {
-  begin(reckoning_mission());
+  begin(dead_reckoning_mission());
   hear_block(their_path(0, 1));
   run_ticks(0, 6);
   expect_foreseen(foreseen(mission_, 0, 5, their_path(0, 6), 1, 0));
 }
 
 TEST_F(Reckoning, WithoutItTheLastBlockIsAllThatIsKnown) {
-  Mission mission = reckoning_mission();
+  Mission mission = dead_reckoning_mission();
   mission.dead_reckoning = false;
   begin(mission);
   hear_block(their_path(0, 1));
@@ -110,7 +110,7 @@ TEST_F(Reckoning, WithoutItTheLastBlockIsAllThatIsKnown) {
 }
 
 TEST_F(Reckoning, TheNextBlockReplacesWhatWasReckoned) {
-  begin(reckoning_mission());
+  begin(dead_reckoning_mission());
   hear_block(their_path(0, 1));
   run_ticks(0, 6);
   Path truth{
@@ -122,7 +122,7 @@ TEST_F(Reckoning, TheNextBlockReplacesWhatWasReckoned) {
 }
 
 TEST_F(Reckoning, NothingOfItIsHeldOrPassedOn) {
-  begin(reckoning_mission());
+  begin(dead_reckoning_mission());
   const Contribution said = block_of(mission_, 1, their_path(0, 1), kPeriod);
   give(*agent_, said, at(0s));
   run_ticks(0, 20);
@@ -130,14 +130,14 @@ TEST_F(Reckoning, NothingOfItIsHeldOrPassedOn) {
   EXPECT_EQ(agent_->coverage()->block(author_of(1), 0).sums, said.sums);
   const Coefficients known =
       (sums_of(mission_, {own_place(0)}) + sums_of(mission_, their_path(0, 1))) / 0.2;
-  begin(reckoning_mission());
+  begin(dead_reckoning_mission());
   hear_block(their_path(0, 1));
   run_ticks(0, 1);
   EXPECT_LT((agent_->team_coverage() - known).cwiseAbs().maxCoeff(), 1e-15) << "nor in c";
 }
 
 TEST_F(Reckoning, APlaceFromBeforeItTookPartIsNone) {
-  begin(reckoning_mission(), 3);
+  begin(dead_reckoning_mission(), 3);
   hear_block(their_path(0, 1));
   run_ticks(0, 5);
   Path known = their_path(0, 1);
@@ -146,7 +146,7 @@ TEST_F(Reckoning, APlaceFromBeforeItTookPartIsNone) {
 }
 
 TEST_F(Reckoning, APlaceBeyondTheRadiosRangeIsNone) {
-  Mission mission = reckoning_mission();
+  Mission mission = dead_reckoning_mission();
   mission.radio_range_m = 830;  // they are 806 m apart at first, and come nearer
   begin(mission);
   hear_block(their_path(0, 1));
@@ -166,7 +166,7 @@ TEST_F(Reckoning, APlaceBeyondTheRadiosRangeIsNone) {
 }
 
 TEST_F(Reckoning, InRealTimeAVehicleThatNobodyDrivesAnyMoreIsNotItsDriver) {
-  begin(reckoning_mission(Pace::kRealtime));  // an old command is held for 5 ticks
+  begin(dead_reckoning_mission(Pace::kRealtime));  // an old command is held for 5 ticks
   hear_block(their_path(0, 1));
   for (Tick tick = 0; tick < 12; ++tick)
     tell(*agent_, world_answered(tick, std::min<Tick>(tick - 1, 3)));
@@ -174,7 +174,7 @@ TEST_F(Reckoning, InRealTimeAVehicleThatNobodyDrivesAnyMoreIsNotItsDriver) {
 }
 
 TEST_F(Reckoning, InLockstepNobodyAnswersBeforeAllPartsOfTheWorldsStateAreThere) {
-  begin(reckoning_mission());
+  begin(dead_reckoning_mission());
   hear_block(their_path(0, 1));
   WorldState first = world_answered(0, -1), second = first;
   first.parts = second.parts = 2;
@@ -188,7 +188,7 @@ TEST_F(Reckoning, InLockstepNobodyAnswersBeforeAllPartsOfTheWorldsStateAreThere)
 }
 
 TEST_F(Reckoning, InRealTimeAMissingPartHoldsUpNobody) {
-  begin(reckoning_mission(Pace::kRealtime));
+  begin(dead_reckoning_mission(Pace::kRealtime));
   WorldState first = world_answered(0, -1);
   first.parts = 2;
   EXPECT_EQ(only<Command>(tell(*agent_, first)).size(), 1u);

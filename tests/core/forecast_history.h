@@ -155,8 +155,8 @@ inline bool has_forecast(const Author& author, const Known& known) {
 }
 
 /// Adds where the author's vehicle has been since it spoke.
-inline void reckon(const Author& author, int block, const Known& known, const Mission& mission,
-                   Row& row) {
+inline void dead_reckon(const Author& author, int block, const Known& known, const Mission& mission,
+                        Row& row) {
   const auto seen = known.seen.find(author.agent);
   if (seen == known.seen.end() || author.agent == kSelf.agent || row.steps == 0) return;
   const auto entry = std::find_if(known.roster.begin(), known.roster.end(),
@@ -201,7 +201,7 @@ inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
       if (block != b || forgotten) continue;
       counting.push_back(&row);
       if (!has_forecast(author, known)) continue;
-      if (mission.dead_reckoning) reckon(author, b, known, mission, row);
+      if (mission.dead_reckoning) dead_reckon(author, b, known, mission, row);
       if (row.gained_steps == 0) continue;
       with_forecast.push_back(&row);
       ++n;

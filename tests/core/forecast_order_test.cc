@@ -48,7 +48,7 @@ TEST(DeadReckoning, RowsAreAsGoodAsIfTheyWereToldEachTickBitForBit) {
   const Mission mission = mission_of(true);
   const Known often = team_of(4, mission), seldom = team_of(4, mission, 10);
   Forecast by_words(mission, kSelf), by_places(mission, kSelf);
-  CoverageTable told(mission.basis, kDt), reckoned(mission.basis, kDt);
+  CoverageTable told(mission.basis, kDt), dead_reckoned(mission.basis, kDt);
   const auto hear = [](CoverageTable& table, const Known& team, Tick tick, bool all) {
     for (const Contribution& block : team.heard) {
       if (block.header.tick == tick && (all || block.header.sender == 0))
@@ -57,13 +57,13 @@ TEST(DeadReckoning, RowsAreAsGoodAsIfTheyWereToldEachTickBitForBit) {
   };
   for (Tick tick = 0; tick < kEnd; ++tick) {
     hear(told, often, tick, true);
-    hear(reckoned, often, tick, false);
-    hear(reckoned, seldom, tick, true);
+    hear(dead_reckoned, often, tick, false);
+    hear(dead_reckoned, seldom, tick, true);
     see_all(by_words, 4, tick, mission);
     see_all(by_places, 4, tick, mission);
     Coefficients words(144), places(144);
     by_words.look_ahead(told, often.roster, tick, words);
-    by_places.look_ahead(reckoned, seldom.roster, tick, places);
+    by_places.look_ahead(dead_reckoned, seldom.roster, tick, places);
     ASSERT_EQ(words, places) << tick;
   }
 }
@@ -172,9 +172,9 @@ TEST(DeadReckoning, UsesNoPlaceOfAFormerAuthorsTime) {
   Known told = told_until(20, mission);
   told.roster[1].active_until = 22;
   told.roster.insert(told.roster.begin() + 2, entry_of({1, 5}, 22));
-  Life reborn({1, 5}, mission);
-  for (Tick tick = 22; tick < 24; ++tick) reborn.cover(tick);
-  for (const Contribution& block : reborn.speak(23)) told.heard.push_back(block);
+  Life restarted({1, 5}, mission);
+  for (Tick tick = 22; tick < 24; ++tick) restarted.cover(tick);
+  for (const Contribution& block : restarted.speak(23)) told.heard.push_back(block);
   const auto see_from = [&](Tick first) {
     return with_a_place(mission, told, [&](Forecast& forecast) {
       Coefficients looked(144);

@@ -26,11 +26,11 @@ void forge(Contribution& block, Dice& dice) {
 
 /// Agent 2 and we were restarted; one agent has left, one is to come, one is not in the roster.
 std::vector<RosterEntry> drawn_roster(Dice& dice) {
-  const Tick reborn = dice.tick(1, kEnd), ours = dice.tick(0, kEnd);
+  const Tick restarted = dice.tick(1, kEnd), ours = dice.tick(0, kEnd);
   std::vector<RosterEntry> roster{entry_of({0, 7}, 0, ours), entry_of(kSelf, ours)};
   roster.push_back(entry_of({1, 5}, 0));
-  roster.push_back(entry_of({2, 1}, reborn));
-  roster.push_back(entry_of({2, 0xffffffffffffffff}, 0, dice.one_in(2) ? reborn : -1));
+  roster.push_back(entry_of({2, 1}, restarted));
+  roster.push_back(entry_of({2, 0xffffffffffffffff}, 0, dice.one_in(2) ? restarted : -1));
   roster.push_back(entry_of({3, 4}, 0, dice.one_in(2) ? dice.tick(1, 2 * kEnd) : -1));
   roster.push_back(entry_of({4, 2}, dice.one_in(2) ? dice.tick(0, 2 * kEnd) : 0));
   if (dice.one_in(2)) roster.push_back(entry_of({5, 8}, dice.tick(0, kEnd)));
@@ -174,8 +174,8 @@ TEST(ForecastCounts, OfOneNumberTheNewestLifeOnly) {
   // Whatever the order of the incarnations' numbers, which are random.
   for (const Incarnation newer : {Incarnation{0}, Incarnation{2}}) {
     Known known = team;
-    const RosterEntry reborn = entry_of({1, newer}, 7);
-    known.roster.insert(known.roster.begin() + (newer == 0 ? 1 : 2), reborn);
+    const RosterEntry restarted = entry_of({1, newer}, 7);
+    known.roster.insert(known.roster.begin() + (newer == 0 ? 1 : 2), restarted);
     EXPECT_EQ(foreseen(known, mission), foreseen(without_hope_for_1(team), mission)) << newer;
     // Until the newer one's first tick has come, the elder counts.
     known.roster[newer == 0 ? 1 : 2].active_from = kEnd;

@@ -278,13 +278,14 @@ TEST_F(InvariantsTest, TheAverageIsWeightedByTime) {
 
 TEST_F(InvariantsTest, WhatIsForeseenFollowsFromWhatIsKnown) {
   mission_.target_coefficients[0] = 1;
-  for (const bool reckons : {false, true}) {
-    mission_.dead_reckoning = reckons;
+  for (const bool dead_reckons : {false, true}) {
+    mission_.dead_reckoning = dead_reckons;
     mission_.law.anticipation = 2;
-    EXPECT_EQ(violated_by_forecast(0, roster_), "") << reckons;
-    EXPECT_EQ(violated_by_forecast(1e-9, roster_), "forecast of what is known") << reckons;
+    EXPECT_EQ(violated_by_forecast(0, roster_), "") << dead_reckons;
+    EXPECT_EQ(violated_by_forecast(1e-9, roster_), "forecast of what is known") << dead_reckons;
     mission_.law.anticipation = 0;
-    EXPECT_EQ(violated_by_forecast(1e-9, roster_), "") << reckons << ": this law foresees nothing";
+    EXPECT_EQ(violated_by_forecast(1e-9, roster_), "")
+        << dead_reckons << ": this law foresees nothing";
   }
 }
 
@@ -294,12 +295,12 @@ TEST_F(InvariantsTest, WhatIsForeseenIsTheSameWhenAnAdmissionIsLostWithItsCoordi
   const std::vector<RosterEntry> lost(roster_.begin() + 1, roster_.end());
   std::vector<RosterEntry> anew = roster_;
   anew.front().active_from = 89;
-  for (const bool reckons : {false, true}) {
-    mission_.dead_reckoning = reckons;
+  for (const bool dead_reckons : {false, true}) {
+    mission_.dead_reckoning = dead_reckons;
     for (const auto& later : {lost, anew}) {
-      EXPECT_EQ(violated_by_forecast(0, later), "") << reckons << ", " << later.size();
+      EXPECT_EQ(violated_by_forecast(0, later), "") << dead_reckons << ", " << later.size();
       EXPECT_EQ(violated_by_forecast(1e-9, later), "forecast of what is known")
-          << reckons << ", " << later.size();
+          << dead_reckons << ", " << later.size();
     }
   }
 }

@@ -118,7 +118,7 @@ void expect_same(const CoverageTable& a, const CoverageTable& b) {
   EXPECT_EQ(ours, theirs);
   ASSERT_EQ(a.row_count(), b.row_count());
   for (std::size_t row = 0; row < a.row_count(); ++row) {
-    EXPECT_EQ(a.holding(row).state_hash, b.holding(row).state_hash);
+    EXPECT_EQ(a.summary_of(row).state_hash, b.summary_of(row).state_hash);
     for (int block = 0; block < a.block_count(); ++block) {
       const Contribution one = a.block(a.author(row), block), other = b.block(a.author(row), block);
       EXPECT_EQ(one.sums, other.sums);

@@ -82,9 +82,9 @@ TEST(WorldRefuses, TheFormerLifeOfARestartedAgentWhichGoesOnFromItsPlace) {
   give(world, command_of(0, 1, {-9, 0, 0}), at(0s));
   EXPECT_TRUE(advance(world, at(0s)).empty());
   EXPECT_EQ(world.tick(), 1);
-  Command reborn = command_of(0, 1, {0, 10, 0});
-  reborn.header.incarnation = 2000;
-  give(world, reborn, at(0s));
+  Command restarted = command_of(0, 1, {0, 10, 0});
+  restarted.header.incarnation = 2000;
+  give(world, restarted, at(0s));
   const WorldState state = state_after(world, at(0s));
   EXPECT_EQ(state.header.tick, 2);
   EXPECT_EQ(place(state), Eigen::Vector3d(101, 501, 0));

@@ -14,13 +14,13 @@ namespace ergocast {
 namespace {
 
 Mission mission_of(const std::string& file, const char* factor, const char* period_ticks,
-                   const char* reckons, std::uint64_t seed) {
+                   const char* dead_reckons, std::uint64_t seed) {
   Overrides overrides;
   overrides.seed = seed;
   overrides.duration_s = 30;
   overrides.fields = {{"time.high_mode_period_factor", factor, ""},
                       {"time.broadcast_period_ticks", period_ticks, ""},
-                      {"agents.dead_reckoning", reckons, ""}};
+                      {"agents.dead_reckoning", dead_reckons, ""}};
   const auto loaded =
       Scenario::load(std::string(ERGOCAST_SCENARIO_DIR) + '/' + file + ".textproto", overrides);
   return std::get<Scenario>(loaded).mission();
