@@ -26,7 +26,7 @@ constexpr double kLead_s = 60;
 constexpr Tick kLeadTicks = 64;
 /// How long another process speaks under our id before we believe that it lives: the coordinator,
 /// who is not deceived by repeats of what a dead one said, would have admitted us by then.
-constexpr auto kRivalPatience = 5s;
+constexpr auto kDuplicateIdPatience = 5s;
 
 const Coefficients kNoCoverage;
 
@@ -131,17 +131,17 @@ void Agent::on(const Hello& hello, const Arrival& arrival) {
   if (!me_.knows_mission() || !arrival.fresh) return;
   InMission* const mission_run = in_mission();
   if (hello.header.sender == kWorld && mission_run)
-    mission_run->world_asks = hello.header.incarnation;
+    mission_run->asking_world = hello.header.incarnation;
   if (asks_for_mission(hello)) mission_repeat_.asked(arrival.now, me_.received());
 }
 
 void Agent::on(const AgentStatus& status, const Arrival& arrival) {
   auto* const joining = std::get_if<Joining>(&state_);
-  const bool rivals = joining != nullptr && requested_id_ != kUnassigned && arrival.fresh &&
-                      status.header.sender == requested_id_;
-  if (!rivals) return;
-  if (!joining->rival_since) joining->rival_since = arrival.now;
-  if (arrival.now - *joining->rival_since < kRivalPatience) return;
+  const bool duplicate_id = joining != nullptr && requested_id_ != kUnassigned && arrival.fresh &&
+                            status.header.sender == requested_id_;
+  if (!duplicate_id) return;
+  if (!joining->duplicate_id_since) joining->duplicate_id_since = arrival.now;
+  if (arrival.now - *joining->duplicate_id_since < kDuplicateIdPatience) return;
   finish(true, "agent " + std::to_string(requested_id_) + " is already running on " + status.host +
                    ": choose another id, or none");
 }
@@ -193,7 +193,7 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
       return count_refused(Refusal::kEncoding);
     case Merge::kNewer:
       mission_run->table.set_quality(theirs.author(), mission_run->sensors.of(entry->kind).quality);
-      mission_run->news[theirs.author()] = mission_run->step.counted;
+      mission_run->last_update[theirs.author()] = mission_run->step.counted;
       return;
     case Merge::kStale:
       return;
@@ -349,13 +349,13 @@ std::int64_t Agent::lost() const {
 }
 
 /// Ticks that count since the last news of the teammate that we know least of.
-Tick Agent::oldest_news(const InMission& mission_run) const {
+Tick Agent::oldest_update_age(const InMission& mission_run) const {
   Tick oldest = 0;
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(mission_run.step.tick)) continue;
     if (rests(mission(), entry.author.agent, mission_run.step.counted)) continue;
-    const Tick* const news = mission_run.news.find(entry.author);
-    const Tick last = news == nullptr ? -1 : *news;
+    const Tick* const last_update = mission_run.last_update.find(entry.author);
+    const Tick last = last_update == nullptr ? -1 : *last_update;
     const Tick joined = me_.counted(entry.active_from);
     oldest = std::max(oldest, mission_run.step.counted - std::max(last, joined - 1));
   }
@@ -368,7 +368,8 @@ AgentStatus Agent::status_of(const InMission& mission_run, AgentPhase phase) {
   status.phase = phase;
   if (mission_run.step.tick >= 0) {
     status.ergodic_metric = mission_run.controller.metric(team_coverage());
-    status.max_staleness_s = static_cast<double>(oldest_news(mission_run)) * mission().timing.dt_s;
+    status.max_staleness_s =
+        static_cast<double>(oldest_update_age(mission_run)) * mission().timing.dt_s;
   }
   status.waiting_for = mission_run.step.waiting_for;
   status.answered_tick = mission_run.step.answered;

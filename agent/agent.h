@@ -118,7 +118,7 @@ class Agent {
   };
   /// Until the roster names it.
   struct Joining {
-    std::optional<Instant> rival_since;  // a teammate already speaks under the id we ask for
+    std::optional<Instant> duplicate_id_since;  // a teammate already speaks under the id we ask for
   };
   /// A tick of the world.
   struct Step {
@@ -162,13 +162,13 @@ class Agent {
     Coefficients foreseen;
     mutable Coefficients team_coverage;   // of when it was asked for last
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
-    AuthorMap<Tick> news;  // when a member's coverage last grew for us, in ticks that count
+    AuthorMap<Tick> last_update;  // when a member's coverage last grew for us, in ticks that count
     std::optional<Instant> running_since;
     Instant stalled_said{};
     std::optional<WorldView> pending;
     Step step;
-    Command last_command, command_before;   // header.tick −1: none yet
-    std::optional<Incarnation> world_asks;  // where we were: it has just started
+    Command last_command, command_before;     // header.tick −1: none yet
+    std::optional<Incarnation> asking_world;  // where we were: it has just started
     Deadline next_status, next_digest;
   };
   struct Finished {
@@ -202,7 +202,7 @@ class Agent {
   std::int64_t max_steps(const InMission& mission_run, const RosterEntry& author,
                          Instant now) const;
   std::int64_t lost() const;
-  Tick oldest_news(const InMission& mission_run) const;
+  Tick oldest_update_age(const InMission& mission_run) const;
   AgentPhase phase_in(const InMission& mission_run) const;
   AgentStatus status_of(const InMission& mission_run, AgentPhase phase);
   void publish_status(InMission& mission_run, Instant now, Outbox& out);

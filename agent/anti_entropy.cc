@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 /// An answer waits a random share of this, so that one of many answers first.
 constexpr double kLongestDelay_s = 0.25;
-constexpr std::size_t kMaxComplaints = 8192;
+constexpr std::size_t kMaxRequests = 8192;
 constexpr int kToleratedPeriods = 2;
 
 /// Whether who holds `steps` and `state_hash` of a row of ours is worth an answer.
@@ -96,15 +96,15 @@ Digest AntiEntropy::digest(const CoverageTable& table, const std::vector<RosterE
 
 /// Two complaints further apart are not in a row: a teammate that was cut off starts anew. A lost
 /// digest in between is no such break.
-PacingClock::duration AntiEntropy::complaint_life() const { return seconds(3 + 2 * round_s_); }
+PacingClock::duration AntiEntropy::request_lifetime() const { return seconds(3 + 2 * round_s_); }
 
 void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
                      const std::vector<RosterEntry>& roster, Instant now, Tick tick) {
   settled_differs_ = settled_differs_ || theirs.settled_hash != settled_hash_;
   const Author requester{theirs.header.sender, theirs.header.incarnation};
-  if (complaints_.size() >= kMaxComplaints) {
-    std::erase_if(complaints_, [&](const auto& complaint) {
-      return now - complaint.second.at > complaint_life();
+  if (requests_.size() >= kMaxRequests) {
+    std::erase_if(requests_, [&](const auto& request) {
+      return now - request.second.at > request_lifetime();
     });
   }
   // Digest, roster and table all ascend by author: one walk along all three.
@@ -125,19 +125,19 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
 
 void AntiEntropy::consider(const Author& requester, const Author& author, bool lacks,
                            std::int64_t sequence, Instant now, Tick tick) {
-  if (!lacks && complaints_.empty()) return;
+  if (!lacks && requests_.empty()) return;
   const auto key = std::pair(requester, author);
   if (!lacks) {
-    complaints_.erase(key);
+    requests_.erase(key);
     return;
   }
-  const auto former = complaints_.find(key);
-  if (former == complaints_.end()) {
-    if (complaints_.size() < kMaxComplaints) complaints_.emplace(key, RowRequest{sequence, now});
+  const auto former = requests_.find(key);
+  if (former == requests_.end()) {
+    if (requests_.size() < kMaxRequests) requests_.emplace(key, RowRequest{sequence, now});
     return;
   }
   if (sequence <= former->second.sequence) return;
-  const bool in_a_row = now - former->second.at <= complaint_life();
+  const bool in_a_row = now - former->second.at <= request_lifetime();
   former->second = {sequence, now};
   if (!in_a_row || answers_.count(author) != 0 || !may_answer(now, tick)) return;
   const double delay_s =

@@ -72,13 +72,13 @@ class AntiEntropy {
                                   const std::vector<RosterEntry>& roster, Tick tick);
   void consider(const Author& requester, const Author& author, bool lacks, std::int64_t sequence,
                 Instant now, Tick tick);
-  PacingClock::duration complaint_life() const;
+  PacingClock::duration request_lifetime() const;
   bool may_answer(Instant now, Tick tick);
 
   Author self_;
   std::uint64_t seed_;
   double dt_s_;
-  std::map<std::pair<Author, Author>, RowRequest> complaints_;  // (who lacks, whose coverage)
+  std::map<std::pair<Author, Author>, RowRequest> requests_;  // (who lacks, whose coverage)
   std::map<Author, Deadline> answers_;
   Author last_, last_lacking_;      // the last that were named in turn
   std::uint64_t settled_hash_ = 0;  // as our last digest said

@@ -19,11 +19,11 @@ namespace {
 class WaitingLog {
  public:
   void look(const Agent& agent, Instant now) {
-    const std::string obstacle = agent.blocked_reason();
-    if (obstacle.empty() || next_ == Instant{}) next_ = now + kFirst;
-    if (obstacle.empty() || now < next_) return;
+    const std::string reason = agent.blocked_reason();
+    if (reason.empty() || next_ == Instant{}) next_ = now + kFirst;
+    if (reason.empty() || now < next_) return;
     next_ = now + kPeriod;
-    spdlog::warn("{}", obstacle);
+    spdlog::warn("{}", reason);
   }
 
  private:
@@ -87,7 +87,7 @@ int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) 
         agent.note_loop_lag(lag.take_s());
         if (const auto& mission = agent.follower().mission()) {
           const std::size_t members = agent.follower().roster().size();
-          transport.limit_agents(allowance_of(*mission, members), agent.tick());
+          transport.limit_agents(rate_budget_of(*mission, members), agent.tick());
           transport.let_gather(gathering_of(*mission, members));
         }
         if (watch.look(now(), agent.refused()[static_cast<std::size_t>(Refusal::kLate)])) {

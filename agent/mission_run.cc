@@ -261,7 +261,7 @@ SafeVelocity Agent::safe_velocity(InMission& mission_run, const Eigen::Vector3d&
 
 void Agent::answer_digests(InMission& mission_run, Instant now, Outbox& out) {
   const Tick tick = mission_run.step.counted;
-  if (mission_run.world_asks) report_position(mission_run, out);
+  if (mission_run.asking_world) report_position(mission_run, out);
   for (const Contribution& block :
        mission_run.anti_entropy.answers_due(mission_run.table, now, tick)) {
     me_.relay(Bus::kSwarm, block, out);
@@ -277,10 +277,10 @@ void Agent::report_position(InMission& mission_run, Outbox& out) {
   // Only we still know where those stand whose agents have left.
   for (const WorldState& state : mission_run.bodies.states()) out.push_back({Bus::kCommand, state});
   for (Command command : {mission_run.command_before, mission_run.last_command}) {
-    command.asked_by = *mission_run.world_asks;
+    command.asked_by = *mission_run.asking_world;
     me_.publish(Bus::kCommand, command, command.header.tick, out);
   }
-  mission_run.world_asks.reset();
+  mission_run.asking_world.reset();
 }
 
 }  // namespace ergocast

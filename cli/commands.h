@@ -31,8 +31,8 @@ struct MissionOptions {
   std::filesystem::path out;  ///< empty: runs/<scenario>-<time>
   Overrides overrides;
   std::optional<LcmUrl> url;  ///< nothing: this host only, on ports that the run reserves
-  MessageAuthenticator seal;
-  std::string key_file;                       ///< the file of the key in `seal`; empty: none
+  MessageAuthenticator authenticator;
+  std::string key_file;  ///< the file of the key in `authenticator`; empty: none
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
   bool event_log = false;                     ///< `simulate` only; `run` always writes one
   bool event_log_zstd = false;                ///< `run` only

@@ -14,7 +14,7 @@ std::string key_problem(const BusOptions& options, const RefusalCounts& refused)
     return "the team on " + url + " has no mission key: ask without --key-file";
   }
   if (count(Refusal::kTag) == 0) return "";
-  return options.seal.keyed()
+  return options.authenticator.keyed()
              ? "the team on " + url + " has another mission key than " + options.key_file
              : "the team on " + url + " has a mission key: give it with --key-file";
 }

@@ -24,7 +24,7 @@ using doctor::Level;
 
 struct DoctorOptions {
   LcmUrl url;
-  MessageAuthenticator seal;
+  MessageAuthenticator authenticator;
   std::optional<int> peer_seconds;
   bool json = false;
 };
@@ -51,23 +51,26 @@ Finding not_tried(const doctor::Examination& host, int seconds) {
               "'   # on every host"};
 }
 
-doctor::PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal, int seconds) {
+doctor::PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& authenticator,
+                           int seconds) {
   if (isatty(STDERR_FILENO) == 1) {
     std::fprintf(stderr,
                  "Listening for other hosts for %d s. Start the same there now:\n"
                  "    ergocast doctor --peer %d --lcm-url '%s'\n",
                  seconds, seconds, url.base().c_str());
   }
-  return doctor::try_peers(url, seal, std::chrono::seconds(seconds));
+  return doctor::try_peers(url, authenticator, std::chrono::seconds(seconds));
 }
 
 int diagnose(const DoctorOptions& options) {
   const LcmUrl& url = options.url;
-  doctor::Examination host = doctor::examine(url, options.seal, options.peer_seconds.has_value());
+  doctor::Examination host =
+      doctor::examine(url, options.authenticator, options.peer_seconds.has_value());
   doctor::PeerTest test;
   if (options.peer_seconds && host.lcm_usable && host.port_taken.empty()) {
-    test = try_peers(url, options.seal, *options.peer_seconds);
-    const Findings more = doctor::peer_findings(url, test, version(), options.seal.fingerprint());
+    test = try_peers(url, options.authenticator, *options.peer_seconds);
+    const Findings more =
+        doctor::peer_findings(url, test, version(), options.authenticator.fingerprint());
     host.findings.insert(host.findings.end(), more.begin(), more.end());
   } else if (options.peer_seconds) {
     host.findings.push_back(not_tried(host, *options.peer_seconds));
@@ -90,7 +93,7 @@ void add_doctor(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "doctor", "Look for what keeps hosts from hearing each other, and say what mends it");
   add_url_option(*command, options->url);
-  add_key_option(*command, options->seal);
+  add_key_option(*command, options->authenticator);
   command
       ->add_option_function<int>(
           "--peer", [options](int seconds) { options->peer_seconds = seconds; },

@@ -27,7 +27,7 @@ std::optional<int> take_key(const CLI::App& command, const LiveRun& run, BusOpti
     return report_error(kExitBadInput, "run " + to_hex(run.run) + " of " + run.scenario +
                                            " has a mission key: " + *problem);
   }
-  options.seal = MessageAuthenticator(std::get<MissionKey>(key));
+  options.authenticator = MessageAuthenticator(std::get<MissionKey>(key));
   options.key_file = run.key_file;
   return std::nullopt;
 }

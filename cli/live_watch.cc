@@ -90,7 +90,7 @@ class Watch final : public LiveWatch {
  private:
   void adopt(RunId run, bool replay) {
     replay_ = replay;
-    team_.emplace(run, now(), source_.bus.seal.keyed(), replay);
+    team_.emplace(run, now(), source_.bus.authenticator.keyed(), replay);
     if (source_.mission) team_->begin(*source_.mission, source_.density);
   }
 

@@ -187,7 +187,7 @@ int parse_and_do(int argc, char** argv) {
   auto* run_command = app.add_subcommand("run", "Run a mission as processes over LCM on this host");
   add_mission_options(*run_command, mission);
   add_url_option(*run_command, mission);
-  add_key_option(*run_command, mission.seal, &mission.key_file);
+  add_key_option(*run_command, mission.authenticator, &mission.key_file);
   add_event_log_options(*run_command, mission.event_log_mib, mission.event_log_zstd);
   run_command
       ->add_option("--world", mission.world,

@@ -36,7 +36,7 @@ constexpr double kSlowest = 0.01, kFastest = 1000;
 struct ReplayOptions {
   std::filesystem::path run_dir;
   std::optional<LcmUrl> url;
-  MessageAuthenticator seal;
+  MessageAuthenticator authenticator;
   double rate = 1, from_s = 0;
 };
 
@@ -145,7 +145,7 @@ void announce(const LcmUrl& url, const Mission& mission, const ReplayOptions& op
 
 int play(const ReplayOptions& options, const LcmUrl& url, const Mission& mission,
          StopSignals& signals) {
-  auto source = ReplaySource::open(options.run_dir, mission, options.seal);
+  auto source = ReplaySource::open(options.run_dir, mission, options.authenticator);
   if (const auto* problem = std::get_if<std::string>(&source))
     return report_error(kExitBadInput, *problem);
   auto writer = BusWriter::open(url);
@@ -217,7 +217,7 @@ void add_replay(CLI::App& app, Action& action) {
           "--lcm-url", [options](const std::string& text) { options->url = replay_url(text); },
           "Base URL of the three buses (default: a group and ports of its own)")
       ->type_name("URL");
-  add_key_option(*command, options->seal);
+  add_key_option(*command, options->authenticator);
   command->footer(
       "Only displays hear a replay: no agent joins it, and `ergocast stop` refuses it.\n"
       "Exit codes: 0 done, or ended by Ctrl-C; 2 no record, or it is damaged, or somebody sends "

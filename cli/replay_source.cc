@@ -24,20 +24,20 @@ std::vector<Bus> buses_of(const Message& message) {
 
 }  // namespace
 
-std::variant<ReplaySource, std::string> ReplaySource::open(const std::filesystem::path& run_dir,
-                                                           const Mission& mission,
-                                                           const MessageAuthenticator& seal) {
+std::variant<ReplaySource, std::string> ReplaySource::open(
+    const std::filesystem::path& run_dir, const Mission& mission,
+    const MessageAuthenticator& authenticator) {
   auto reader = EventLogReader::open(run_dir);
   if (auto* problem = std::get_if<std::string>(&reader)) return std::move(*problem);
-  return ReplaySource(std::get<EventLogReader>(std::move(reader)), mission, seal);
+  return ReplaySource(std::get<EventLogReader>(std::move(reader)), mission, authenticator);
 }
 
 const ReplayedMessage* ReplaySource::refuse(Refusal why) {
   std::string remedy = "the file is damaged, or another version wrote it";
   if (why == Refusal::kRun) remedy = "it is of another run: its log was copied into this folder";
-  if (why == Refusal::kTag && !seal_.keyed())
+  if (why == Refusal::kTag && !authenticator_.keyed())
     remedy = "the run had a mission key, or the file is damaged: give --key-file";
-  if (why == Refusal::kTag && seal_.keyed()) remedy = "the run had another mission key";
+  if (why == Refusal::kTag && authenticator_.keyed()) remedy = "the run had another mission key";
   if (why == Refusal::kUnkeyed) remedy = "the run had no mission key: leave --key-file away";
   problem_ = reader_.place() + ": not a message of this run (" + std::string(to_string(why)) +
              "); " + remedy;
@@ -51,7 +51,7 @@ const ReplayedMessage* ReplaySource::next() {
     problem_ = reader_.problem();
     return nullptr;
   }
-  const auto decoded = decode(event->bytes, run_, seal_, event->channel, &signatures_);
+  const auto decoded = decode(event->bytes, run_, authenticator_, event->channel, &signatures_);
   if (const auto* refusal = std::get_if<Refusal>(&decoded)) return refuse(*refusal);
   const Message& message = std::get<Message>(decoded);
   if (!transmitter_of(message, event->channel)) return refuse(Refusal::kType);

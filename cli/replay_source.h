@@ -30,7 +30,7 @@ class ReplaySource {
   /// @param seal  with the team's key, if the run had one
   static std::variant<ReplaySource, std::string> open(const std::filesystem::path& run_dir,
                                                       const Mission& mission,
-                                                      const MessageAuthenticator& seal);
+                                                      const MessageAuthenticator& authenticator);
 
   /// Valid until the next call; null at the end and after a problem.
   const ReplayedMessage* next();
@@ -42,14 +42,15 @@ class ReplaySource {
   std::vector<const ReplayedMessage*> newest() const;
 
  private:
-  ReplaySource(EventLogReader reader, const Mission& mission, const MessageAuthenticator& seal)
-      : reader_(std::move(reader)), dt_s_(mission.timing.dt_s), seal_(seal) {}
+  ReplaySource(EventLogReader reader, const Mission& mission,
+               const MessageAuthenticator& authenticator)
+      : reader_(std::move(reader)), dt_s_(mission.timing.dt_s), authenticator_(authenticator) {}
   const ReplayedMessage* refuse(Refusal why);
   void keep(const Message& message);
 
   EventLogReader reader_;
   double dt_s_;
-  MessageAuthenticator seal_;
+  MessageAuthenticator authenticator_;
   KnownSignatures signatures_;
   RunId run_ = 0;
   ReplayedMessage message_;

@@ -205,7 +205,7 @@ std::optional<std::string> seal_files(const MissionOptions& options, const Missi
   keep(kPlanFile, encode_plan(mission), setup.plan);
   if (const auto& table = mission.basis.table)
     keep(table_file_name(table->hash), table->file, setup.modes);
-  if (const MissionKey* key = options.seal.key()) {
+  if (const MissionKey* key = options.authenticator.key()) {
     const std::string text = key_text(*key, true);
     keep("key", std::as_bytes(std::span(text)), setup.key);
   }
@@ -215,12 +215,12 @@ std::optional<std::string> seal_files(const MissionOptions& options, const Missi
 /// Runs the mission. LCM works and the run directory is ready.
 int run_mission(const MissionOptions& options, const Scenario& scenario,
                 const Launcher::Setup& setup, StopSignals& signals) {
-  const MessageAuthenticator& seal = options.seal;
+  const MessageAuthenticator& authenticator = options.authenticator;
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display,
                        scenario.mission().basis.free_domain);
   auto opened = Transport::open(
-      setup.url, setup.run, seal, subscriptions_of(MissionWatch::kRole),
+      setup.url, setup.run, authenticator, subscriptions_of(MissionWatch::kRole),
       {.on_message = [&mission](const Message& message, Bus bus, AgentId transmitter) {
         mission.receive(message, bus, transmitter, now());
       }});
@@ -280,7 +280,8 @@ std::optional<Scenario> load_with_a_note(const MissionOptions& options) {
 int run(const MissionOptions& options) {
   const auto scenario = load_with_a_note(options);
   if (!scenario) return kExitBadInput;
-  if (!options.seal.can_sign()) return report_error(kExitBadInput, cannot_sign(options.key_file));
+  if (!options.authenticator.can_sign())
+    return report_error(kExitBadInput, cannot_sign(options.key_file));
   StopSignals signals;
   Launcher::Setup setup;
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path();

@@ -68,7 +68,7 @@ class Listener {
       const std::pair key(run, replay);
       if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(key))) return;
       TeamView& view =
-          runs_.try_emplace(key, run, since_, options_.seal.keyed(), replay).first->second;
+          runs_.try_emplace(key, run, since_, options_.authenticator.keyed(), replay).first->second;
       view.receive(message, bus, transmitter, now());
     };
   }

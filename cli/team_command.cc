@@ -21,7 +21,8 @@ int TeamCommand::carry_out() {
 }
 
 std::optional<int> TeamCommand::open() {
-  if (!options_.seal.can_sign()) return report_error(kExitBadInput, cannot_sign(options_.key_file));
+  if (!options_.authenticator.can_sign())
+    return report_error(kExitBadInput, cannot_sign(options_.key_file));
   auto opened = listen_to_teams(
       options_,
       [this](const Message& message, Bus bus, AgentId transmitter) {

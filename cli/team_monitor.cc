@@ -15,7 +15,7 @@ namespace {
 
 /// The maximum number of members. Members of former incarnations are removed when the roster ends
 /// them.
-constexpr std::size_t kMostLives = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
+constexpr std::size_t kMaxIncarnations = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
 constexpr AgentId kProcesses[] = {kLogger, kWorld, kCoordinator};
 
 std::string name_of(AgentId sender) {
@@ -27,7 +27,8 @@ std::string name_of(AgentId sender) {
 
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
                                                                       Hear hear, Hear hear_replay) {
-  return Transport::open(options.url, options.run, options.seal, subscriptions_of(Role::kMonitor),
+  return Transport::open(options.url, options.run, options.authenticator,
+                         subscriptions_of(Role::kMonitor),
                          {.on_message = std::move(hear), .on_replayed = std::move(hear_replay)});
 }
 
@@ -46,7 +47,7 @@ void MonitoredRun::on(const MissionPart& part, const Arrival&) {
   over_ = over_ || part.state == MissionState::kEnded || part.state == MissionState::kFailed;
   if (over_ && !part.reason.empty()) reason_ = part.reason;
   for (const RosterEntry& entry : part.roster) {
-    if (agents_.size() < kMostLives) agents_.try_emplace(entry.author);
+    if (agents_.size() < kMaxIncarnations) agents_.try_emplace(entry.author);
     if (entry.active_until >= 0) agents_.erase(entry.author);
   }
 }
@@ -54,7 +55,7 @@ void MonitoredRun::on(const MissionPart& part, const Arrival&) {
 void MonitoredRun::on(const AgentStatus& status, const Arrival& arrival) {
   const Author author{status.header.sender, status.header.incarnation};
   if (!arrival.fresh || author.agent < 0) return;
-  if (agents_.size() >= kMostLives && !agents_.contains(author)) return;
+  if (agents_.size() >= kMaxIncarnations && !agents_.contains(author)) return;
   agents_[author] = status.phase == AgentPhase::kFinished;
 }
 
@@ -76,7 +77,7 @@ void MonitoredRun::on(const RecordAck& ack, const Arrival& arrival) {
 /// The last message may be read before others that were sent earlier on another bus.
 void MonitoredRun::note_end(const Arrival& arrival, bool ended) {
   const Author author{arrival.from.sender, arrival.from.incarnation};
-  if (processes_.size() >= kMostLives && !processes_.contains(author)) return;
+  if (processes_.size() >= kMaxIncarnations && !processes_.contains(author)) return;
   bool& known = processes_[author];
   known = known || ended;
 }

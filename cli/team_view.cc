@@ -142,8 +142,8 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
 }
 
 /// By number: the newest incarnation, and whether it is a member.
-std::map<AgentId, std::pair<Author, bool>> TeamView::newest_lives() const {
-  std::map<AgentId, std::pair<Author, bool>> lives;
+std::map<AgentId, std::pair<Author, bool>> TeamView::newest_incarnations() const {
+  std::map<AgentId, std::pair<Author, bool>> incarnations;
   if (follower().revision() < 0) {
     std::map<AgentId, Instant> heard;
     for (const auto& [author, seen] : agents_) {
@@ -151,32 +151,32 @@ std::map<AgentId, std::pair<Author, bool>> TeamView::newest_lives() const {
       if (const auto [at, is_new] = heard.try_emplace(author.agent, sign);
           is_new || sign > at->second) {
         at->second = sign;
-        lives[author.agent] = {author, true};
+        incarnations[author.agent] = {author, true};
       }
     }
-    return lives;
+    return incarnations;
   }
   std::map<AgentId, Tick> left;
   for (const RosterEntry& entry : follower().roster()) {
     const bool member = entry.active_until < 0;
     const auto [at, is_new] = left.try_emplace(entry.author.agent, entry.active_until);
     if (!is_new && !member &&
-        (lives[entry.author.agent].second || entry.active_until <= at->second)) {
+        (incarnations[entry.author.agent].second || entry.active_until <= at->second)) {
       continue;
     }
     at->second = entry.active_until;
-    lives[entry.author.agent] = {entry.author, member};
+    incarnations[entry.author.agent] = {entry.author, member};
   }
-  return lives;
+  return incarnations;
 }
 
 void TeamView::add_agents(TeamPicture& picture, Instant now) const {
   int members = 0;
-  for (const auto& [id, life] : newest_lives()) {
-    const AgentRow& row = picture.agents.emplace_back(row_of(life.first, life.second, now));
-    members += life.second ? 1 : 0;
+  for (const auto& [id, newest] : newest_incarnations()) {
+    const AgentRow& row = picture.agents.emplace_back(row_of(newest.first, newest.second, now));
+    members += newest.second ? 1 : 0;
     picture.agents_alive +=
-        life.second && row.status && row.condition != Condition::kSilent ? 1 : 0;
+        newest.second && row.status && row.condition != Condition::kSilent ? 1 : 0;
   }
   const auto& mission = follower().mission();
   const int planned = mission ? static_cast<int>(mission->starts_m.size()) : 0;
@@ -263,8 +263,8 @@ bool TeamView::complete() const {
   for (const AgentId sender : {kCoordinator, kWorld, kLogger}) {
     if (should_speak(sender) && !processes_.contains(sender)) return false;
   }
-  const auto lives = newest_lives();
-  return std::all_of(lives.begin(), lives.end(), [this](const auto& one) {
+  const auto incarnations = newest_incarnations();
+  return std::all_of(incarnations.begin(), incarnations.end(), [this](const auto& one) {
     const auto& [author, member] = one.second;
     return !member || agents_.contains(author);
   });
@@ -273,8 +273,8 @@ bool TeamView::complete() const {
 bool TeamView::over() const {
   if (follower().over()) return true;
   bool anybody_finished = false;
-  for (const auto& [id, life] : newest_lives()) {
-    const auto& [author, member] = life;
+  for (const auto& [id, newest] : newest_incarnations()) {
+    const auto& [author, member] = newest;
     const auto seen = agents_.find(author);
     const bool finished =
         seen != agents_.end() && seen->second.status.phase == AgentPhase::kFinished;

@@ -109,7 +109,7 @@ class TeamView {
   Instant last_sign(const Author& author) const;
   AgentRow row_of(const Author& author, bool member, Instant now) const;
   Condition condition_of(const Author& author, const Seen& seen, Instant now) const;
-  std::map<AgentId, std::pair<Author, bool>> newest_lives() const;
+  std::map<AgentId, std::pair<Author, bool>> newest_incarnations() const;
   void add_agents(TeamPicture& picture, Instant now) const;
   void add_forgotten(TeamPicture& picture) const;
   void add_process(TeamPicture& picture, AgentId sender, Instant now) const;

@@ -111,10 +111,10 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
 }
 
 void Coordinator::admit(const Author& author, int kind, Instant now) {
-  const auto lives = std::count_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
-    return entry.author.agent == author.agent;
-  });
-  if (roster_.size() >= kMaxRosterEntries || lives >= kMaxIncarnationsPerAgent) return;
+  const auto incarnations =
+      std::count_if(roster_.begin(), roster_.end(),
+                    [&](const RosterEntry& entry) { return entry.author.agent == author.agent; });
+  if (roster_.size() >= kMaxRosterEntries || incarnations >= kMaxIncarnationsPerAgent) return;
   // The agents may be ahead of the last state received from a world that has died since.
   const Tick newest = std::max(world_.tick, team_tick_);
   if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;

@@ -291,7 +291,7 @@ void Coordinator::advance(Instant now, Outbox& out) {
 void Coordinator::lead(Instant now, Outbox& out) {
   if (!said_.first) said_.first = now;
   note_silences(now);
-  speak_above_the_dead(now);
+  supersede_dead_coordinator(now);
   if (state_ == MissionState::kRunning) review_coverage(now);
   if (state_ == MissionState::kWaiting) check_admission(now);
   if (state_ == MissionState::kRunning && timing().pace == Pace::kLockstep) check_tick(now);

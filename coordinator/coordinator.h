@@ -184,12 +184,12 @@ class Coordinator {
   void take_over(Instant now);
   Instant end_of_search() const;
   Instant next_look() const;
-  bool rival_lives(Instant now) const;
-  bool rival_leads(Instant now) const;
-  std::string led_by_rival() const;
+  bool other_coordinator_alive(Instant now) const;
+  bool other_coordinator_leads(Instant now) const;
+  std::string led_by_other_coordinator() const;
   void leave(std::string reason, Instant now);
   void begin_own();
-  void speak_above_the_dead(Instant now);
+  void supersede_dead_coordinator(Instant now);
   void lead(Instant now, Outbox& out);
   void note_silences(Instant now);
   void review_coverage(Instant now);
@@ -213,7 +213,7 @@ class Coordinator {
   Name name_;
   LedMission led_;
   MissionSearch search_;
-  std::optional<TeamStatus> rival_;  // another coordinator's
+  std::optional<TeamStatus> other_coordinator_;  // another coordinator's
   MissionState state_ = MissionState::kWaiting;
   std::vector<RosterEntry> roster_;
   std::vector<Hold> holds_;

@@ -135,7 +135,8 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   live(coordinator, transport, signals, stop, [&] {
     transport.set_run(coordinator.run());
     if (const Mission* flown = coordinator.mission()) {
-      transport.limit_agents(allowance_of(*flown, coordinator.roster().size()), coordinator.tick());
+      transport.limit_agents(rate_budget_of(*flown, coordinator.roster().size()),
+                             coordinator.tick());
     }
     watch.look(now(), coordinator.late_commands());
     roster.look(coordinator, now());
@@ -181,7 +182,7 @@ int main(int argc, char** argv) {
       "coordinator leads a mission there.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("coordinator", node.log_level);
-  if (!node.seal.can_sign()) {
+  if (!node.authenticator.can_sign()) {
     spdlog::error("{}", cannot_sign(node.key_file));
     return kExitBadInput;
   }

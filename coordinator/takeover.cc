@@ -34,7 +34,8 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
   if (std::pair(part.revision, part.header.incarnation) <=
       std::pair(revisions_.current, me_.incarnation()))
     return;
-  if (rival_lives(arrival.now) && rival_->header.incarnation == part.header.incarnation) {
+  if (other_coordinator_alive(arrival.now) &&
+      other_coordinator_->header.incarnation == part.header.incarnation) {
     return leave("another coordinator has taken the mission over", arrival.now);
   }
   // An agent repeated a revision of a coordinator that is gone. The team must accept our revisions
@@ -50,34 +51,36 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
 /// that roster or a newer one, so we send a higher revision. But the world may also be the first to
 /// name a revision of a coordinator that took over from us and is alive. So we first wait for
 /// messages of that coordinator.
-void Coordinator::speak_above_the_dead(Instant now) {
+void Coordinator::supersede_dead_coordinator(Instant now) {
   if (world_.newest_revision <= revisions_.current) return world_.newer_since.reset();
-  if (rival_lives(now) || now - *world_.newer_since <= silence_of(kCoordinator)) return;
+  if (other_coordinator_alive(now) || now - *world_.newer_since <= silence_of(kCoordinator)) return;
   revisions_.current = world_.newest_revision;
   world_.newer_since.reset();
   change();
 }
 
 void Coordinator::on(const TeamStatus& theirs, const Arrival& arrival) {
-  if (arrival.fresh) rival_ = theirs;
+  if (arrival.fresh) other_coordinator_ = theirs;
 }
 
-bool Coordinator::rival_lives(Instant now) const {
-  return rival_ && !me_.silent({kCoordinator, rival_->header.incarnation}, now);
+bool Coordinator::other_coordinator_alive(Instant now) const {
+  return other_coordinator_ &&
+         !me_.silent({kCoordinator, other_coordinator_->header.incarnation}, now);
 }
 
 /// Whether a live coordinator leads the mission that we would take over. While we know of none, any
 /// live coordinator counts.
-bool Coordinator::rival_leads(Instant now) const {
+bool Coordinator::other_coordinator_leads(Instant now) const {
   const auto leads = [](MissionState state) {
     return state == MissionState::kWaiting || state == MissionState::kRunning;
   };
-  return rival_lives(now) && leads(rival_->state) &&
-         (me_.run() == 0 || rival_->header.run == me_.run());
+  return other_coordinator_alive(now) && leads(other_coordinator_->state) &&
+         (me_.run() == 0 || other_coordinator_->header.run == me_.run());
 }
 
-std::string Coordinator::led_by_rival() const {
-  return "run " + to_hex(rival_->header.run) + " is led by the coordinator on " + rival_->host +
+std::string Coordinator::led_by_other_coordinator() const {
+  return "run " + to_hex(other_coordinator_->header.run) + " is led by the coordinator on " +
+         other_coordinator_->host +
          ": leave it to that one, choose another URL, or take the mission over with --resume";
 }
 
@@ -96,7 +99,7 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
   if (search_.found && now >= end_of_search()) return take_over(now);
   const auto looked = now - *search_.since;
   if (search_.takeover == Takeover::kIfRunning && me_.run() == 0 && looked >= kLookAround) {
-    return rival_leads(now) ? leave(led_by_rival(), now) : begin_own();
+    return other_coordinator_leads(now) ? leave(led_by_other_coordinator(), now) : begin_own();
   }
   if (looked >= kTakeoverPatience && !search_.found) {
     leave("no agent on this URL knows a mission that could be taken over", now);
@@ -133,7 +136,8 @@ std::optional<std::string> Coordinator::not_ours(Instant now) const {
     return run + " of another plan (" + me_.follower().mission()->name +
            ") is flying on this URL: choose another URL, or wait for its end";
   }
-  if (search_.takeover == Takeover::kIfRunning && rival_leads(now)) return led_by_rival();
+  if (search_.takeover == Takeover::kIfRunning && other_coordinator_leads(now))
+    return led_by_other_coordinator();
   return std::nullopt;
 }
 

@@ -58,10 +58,10 @@ void Invariants::violate(double t_s, Invariant invariant, const std::string& who
   if (!violation_) violation_ = {invariant, who, t_s, std::move(numbers)};
 }
 
-void Invariants::born(const Author& author) {
+void Invariants::started(const Author& author) {
   authors_.push_back(author);
   std::sort(authors_.begin(), authors_.end());
-  ++lives_[author.agent];
+  ++incarnation_count_[author.agent];
 }
 
 // ---- safety: what is said ----
@@ -193,7 +193,7 @@ void Invariants::check(double t_s, const Digest& digest, const TableView& speake
   }
 }
 
-void Invariants::heard(const Author& listener, const Digest& digest) {
+void Invariants::digest_received(const Author& listener, const Digest& digest) {
   relays_allowed_[listener] += static_cast<std::int64_t>(digest.entry_count) * block_count_;
 }
 
@@ -242,7 +242,7 @@ void Invariants::coordinated(double t_s, const Coordinator& coordinator, Instant
     const char* taken_for =
         entry == nullptr ? "nobody" : to_string(coordinator.member_state(*entry, now));
     if (entry != nullptr && coordinator.member_state(*entry, now) == MemberState::kAlive) continue;
-    violate(t_s, Invariant::kTheLivingAreKnown, "the coordinator",
+    violate(t_s, Invariant::kLiveAgentsAreKnown, "the coordinator",
             text("takes ", name_of(holder.self), " for ", taken_for));
   }
 }

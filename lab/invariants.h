@@ -56,8 +56,8 @@ enum class Invariant : std::uint8_t {
   kHeardLoggerIsKept,
   // Liveness.
   kEverybodyIsBack,
-  kTheLivingAreKnown,
-  kTheLivingCount,
+  kLiveAgentsAreKnown,
+  kLiveAgentsCount,
   kEverybodyLearnsEveryRow,
   kViewsAgree,
   kRelaysStop,
@@ -95,8 +95,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kNoWakeupInThePast, "nobody asks to be woken in the past"},
         {Invariant::kHeardLoggerIsKept, "a logger that is heard is not given up"},
         {Invariant::kEverybodyIsBack, "everybody is back in the mission"},
-        {Invariant::kTheLivingAreKnown, "who lives is taken for living"},
-        {Invariant::kTheLivingCount, "who lives is not forgotten"},
+        {Invariant::kLiveAgentsAreKnown, "who lives is taken for living"},
+        {Invariant::kLiveAgentsCount, "who lives is not forgotten"},
         {Invariant::kEverybodyLearnsEveryRow, "everybody learns every row"},
         {Invariant::kViewsAgree, "all agree on c_k within their staleness"},
         {Invariant::kRelaysStop, "relays stop once all know all"},
@@ -144,7 +144,7 @@ class Invariants {
   explicit Invariants(const Mission& mission);
 
   /// A new (agent, incarnation) begins to live.
-  void born(const Author& author);
+  void started(const Author& author);
 
   // ---- safety ----
 
@@ -157,7 +157,7 @@ class Invariants {
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has heard a digest.
-  void heard(const Author& listener, const Digest& digest);
+  void digest_received(const Author& listener, const Digest& digest);
   /// Bytes were read: whole ones are accepted, damaged ones refused.
   void decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged);
   /// A message has reached an agent, which now knows what `listener` says; no c_k is asked for. To
@@ -250,7 +250,7 @@ class Invariants {
   WireModes wire_modes_;
   std::optional<Violation> violation_;
   std::vector<Author> authors_;
-  std::map<AgentId, int> lives_;
+  std::map<AgentId, int> incarnation_count_;
   MissionFollower truth_;                                  // of all that was said of the mission
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, std::int64_t> own_steps_;               // after the tick begun last

@@ -61,7 +61,7 @@ void Invariants::check_steps(double t_s, const TableView& holder) {
   for (const auto& [id, steps] : steps_of_id) {
     // A process that is replaced within a tick may have sampled it, too.
     const std::int64_t most =
-        std::min(counted, covers_until(mission_, id)) + unknown + lives_[id] - 1;
+        std::min(counted, covers_until(mission_, id)) + unknown + incarnation_count_[id] - 1;
     if (steps <= most) continue;
     violate(t_s, Invariant::kNoStepCountsTwice, name_of(holder.self),
             text("holds ", steps, " steps of agent ", id, " in all, ", most, " are possible"));
@@ -162,7 +162,7 @@ void Invariants::check_counted(double t_s, const TableView& holder,
   for (const TableView& other : living) {
     const RosterEntry* entry = entry_of(*holder.roster, other.self);
     if (entry == nullptr || !is_forgotten(*entry, holder)) continue;
-    violate(t_s, Invariant::kTheLivingCount, name_of(holder.self),
+    violate(t_s, Invariant::kLiveAgentsCount, name_of(holder.self),
             text("leaves out what ", name_of(other.self), " covers at tick ", holder.answered));
   }
 }

@@ -94,7 +94,7 @@ class Trial : SimulationObserver {
 void Trial::started(NodeId node, Incarnation incarnation, bool again) {
   if (is_agent(node)) {
     at(node) = {};
-    invariants_.born({node, incarnation});
+    invariants_.started({node, incarnation});
     if (again) expect_back(node);
   } else if (again && node == simulation_.world_node()) {
     acknowledged_.reset();
@@ -143,7 +143,7 @@ void Trial::received(NodeId node, const Message& message) {
   if (!is_agent(node)) return;
   const Agent& agent = simulation_.agent(node);
   const auto* digest = std::get_if<Digest>(&message);
-  if (digest != nullptr) invariants_.heard(agent.author(), *digest);
+  if (digest != nullptr) invariants_.digest_received(agent.author(), *digest);
   TableView view{agent.author(), agent.coverage(), nullptr, &agent.counted_roster()};
   view.holds = agent.follower().holds();
   invariants_.received(view, message);

@@ -113,8 +113,8 @@ void write_block(const Contribution& block, std::vector<std::byte>& out) {
 
 }  // namespace
 
-void encode(const Message& message, std::vector<std::byte>& out, const MessageAuthenticator& seal,
-            std::string_view channel) {
+void encode(const Message& message, std::vector<std::byte>& out,
+            const MessageAuthenticator& authenticator, std::string_view channel) {
   std::visit(
       [&](const auto& plain) {
         using Plain = std::decay_t<decltype(plain)>;
@@ -123,21 +123,22 @@ void encode(const Message& message, std::vector<std::byte>& out, const MessageAu
         } else {
           write<Plain>(plain, out);
         }
-        seal.close(out, kSigned<Plain>, channel);
+        authenticator.close(out, kSigned<Plain>, channel);
       },
       message);
 }
 
 std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run,
-                                      const MessageAuthenticator& seal, std::string_view channel,
-                                      KnownSignatures* known) noexcept {
+                                      const MessageAuthenticator& authenticator,
+                                      std::string_view channel, KnownSignatures* known) noexcept {
   if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return Refusal::kSize;
   const Decoder* decoder = decoder_for(read64(bytes.data()));
   if (decoder == nullptr) return Refusal::kType;
-  if (const auto refusal = seal.check_tag(bytes, channel)) return *refusal;
+  if (const auto refusal = authenticator.check_tag(bytes, channel)) return *refusal;
   if (run != 0 && read64(bytes.data() + 8) != run) return Refusal::kRun;
   try {
-    if (decoder->is_signed && !seal.signature_holds(bytes, known)) return Refusal::kUnsigned;
+    if (decoder->is_signed && !authenticator.signature_holds(bytes, known))
+      return Refusal::kUnsigned;
     return decoder->decode(bytes);
   } catch (...) {  // only memory exhaustion can throw here
     return Refusal::kLimit;

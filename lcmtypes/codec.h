@@ -22,7 +22,7 @@ namespace ergocast {
 /// @param channel  that it will be published on; only a keyed seal uses it
 /// @pre counts within the limits of team/messages.h.
 void encode(const Message& message, std::vector<std::byte>& out,
-            const MessageAuthenticator& seal = {}, std::string_view channel = {});
+            const MessageAuthenticator& authenticator = {}, std::string_view channel = {});
 
 /// The message in `bytes`, or why it is refused. Never throws, whatever the bytes are.
 /// @param run  the only run accepted; 0 accepts any (for monitors and processes that have not
@@ -30,7 +30,7 @@ void encode(const Message& message, std::vector<std::byte>& out,
 /// @param channel  that it came by; only a keyed seal uses it
 /// @param known  signatures that need not be checked again; may be null
 std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run,
-                                      const MessageAuthenticator& seal = {},
+                                      const MessageAuthenticator& authenticator = {},
                                       std::string_view channel = {},
                                       KnownSignatures* known = nullptr) noexcept;
 

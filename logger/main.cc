@@ -262,7 +262,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
   live(recorder, transport, signals, stop, [&] {
     transport.set_run(recorder.run());
     if (const auto& mission = recorder.follower().mission()) {
-      transport.limit_agents(allowance_of(*mission, recorder.follower().roster().size()),
+      transport.limit_agents(rate_budget_of(*mission, recorder.follower().roster().size()),
                              recorder.newest());
     }
     logger.attend(now());

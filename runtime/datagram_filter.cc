@@ -129,7 +129,7 @@ class Filter {
     load(BPF_LD | BPF_W | BPF_IND, kLifeAt + 4);
     std::vector<std::size_t> repeats;
     for (const Repeated& one : flooded) {
-      skip_unless(static_cast<std::uint32_t>(one.life), [&] {
+      skip_unless(static_cast<std::uint32_t>(one.incarnation), [&] {
         load(BPF_LD | BPF_MEM, 0);
         code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, sequence_of(one), 0, 1));
         end(kKeepAll);

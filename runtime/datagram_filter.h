@@ -13,7 +13,7 @@ namespace ergocast {
 
 /// An incarnation whose messages are repeated in a flood, and its newest known sequence number.
 struct Repeated {
-  Incarnation life = 0;
+  Incarnation incarnation = 0;
   std::int64_t newest = 0;
 };
 

@@ -33,8 +33,8 @@ std::unique_ptr<Transport> connect(Core& core, const NodeOptions& node,
   more.on_message = [&core](const Message& message, Bus bus, AgentId transmitter) {
     core.receive(message, bus, transmitter, now());
   };
-  auto opened = Transport::open(node.url, node.run, node.seal, subscriptions_of(Core::kRole),
-                                std::move(more));
+  auto opened = Transport::open(node.url, node.run, node.authenticator,
+                                subscriptions_of(Core::kRole), std::move(more));
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return nullptr;

@@ -111,11 +111,11 @@ void add_url_option(CLI::App& app, LcmUrl& url) {
       ->type_name("URL");
 }
 
-void add_key_option(CLI::App& app, MessageAuthenticator& seal, std::string* file) {
+void add_key_option(CLI::App& app, MessageAuthenticator& authenticator, std::string* file) {
   const CLI::Option* option =
       app.add_option_function<std::string>(
              "--key-file",
-             [&seal, file](const std::string& name) {
+             [&authenticator, file](const std::string& name) {
                if (name.empty()) {
                  throw CLI::ValidationError("--key-file",
                                             "no name; leave it out to fly without a key");
@@ -124,7 +124,7 @@ void add_key_option(CLI::App& app, MessageAuthenticator& seal, std::string* file
                if (const auto* problem = std::get_if<std::string>(&key)) {
                  throw CLI::ValidationError("--key-file", *problem);
                }
-               seal = MessageAuthenticator(std::get<MissionKey>(key));
+               authenticator = MessageAuthenticator(std::get<MissionKey>(key));
                if (file != nullptr) *file = name;
              },
              "Mission key of the team, as `ergocast keygen` writes it; without one, anybody on the "
@@ -148,7 +148,7 @@ void add_run_id_option(CLI::App& app, RunId& run) {
 
 void add_bus_options(CLI::App& app, BusOptions& options) {
   add_url_option(app, options.url);
-  add_key_option(app, options.seal, &options.key_file);
+  add_key_option(app, options.authenticator, &options.key_file);
   add_run_id_option(app, options.run);
 }
 

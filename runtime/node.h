@@ -25,8 +25,8 @@ enum ExitCode {
 
 struct BusOptions {
   LcmUrl url;
-  RunId run = 0;              ///< 0: not given
-  MessageAuthenticator seal;  ///< without a key unless one was given
+  RunId run = 0;                       ///< 0: not given
+  MessageAuthenticator authenticator;  ///< without a key unless one was given
   std::string key_file;
 };
 
@@ -35,7 +35,8 @@ void add_url_option(CLI::App& app, LcmUrl& url);
 
 /// --key-file (default: $ERGOCAST_KEY_FILE, or no key; an empty variable is refused). `file` gets
 /// its name. Uses the command's parse-complete callback.
-void add_key_option(CLI::App& app, MessageAuthenticator& seal, std::string* file = nullptr);
+void add_key_option(CLI::App& app, MessageAuthenticator& authenticator,
+                    std::string* file = nullptr);
 
 /// The error text for a command that needs the coordinator's key file.
 std::string cannot_sign(const std::string& key_file);

@@ -23,30 +23,30 @@ constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
 }  // namespace
 
-RateBudget allowance_of(const Mission& mission, std::size_t members) {
+RateBudget rate_budget_of(const Mission& mission, std::size_t members) {
   const Timing& timing = mission.timing;
   const double blocks = block_count_of(mission);
   const double repeats =
       timing.pace == Pace::kLockstep ? kLockstepRepeatsPerSecond : kRealtimeRepeatsPerSecond;
   const double relayed = static_cast<double>(members) * blocks;
-  RateBudget allowance;
-  allowance.per_tick = kMargin * (blocks / timing.broadcast_period_ticks + 1 +
-                                  (2 + relayed) * std::min(1.0, timing.dt_s));
-  allowance.per_second = kMargin * (repeats * (blocks + 1) + relayed + kOthersPerSecond);
-  allowance.most =
-      kBacklog_s * allowance.per_second + kBacklogTicks * allowance.per_tick + kBacklogMessages;
-  return allowance;
+  RateBudget rate_budget;
+  rate_budget.per_tick = kMargin * (blocks / timing.broadcast_period_ticks + 1 +
+                                    (2 + relayed) * std::min(1.0, timing.dt_s));
+  rate_budget.per_second = kMargin * (repeats * (blocks + 1) + relayed + kOthersPerSecond);
+  rate_budget.most =
+      kBacklog_s * rate_budget.per_second + kBacklogTicks * rate_budget.per_tick + kBacklogMessages;
+  return rate_budget;
 }
 
-bool RateLimit::admit(AgentId from, bool is_news, Instant now) {
-  if (allowance_.most == 0 || from < 0 || from >= kMaxAgents) return true;
-  Budget& budget = budgets_[is_news ? 1 : 0][static_cast<std::size_t>(from)];
+bool RateLimit::admit(AgentId from, bool is_new, Instant now) {
+  if (rate_budget_.most == 0 || from < 0 || from >= kMaxAgents) return true;
+  Budget& budget = budgets_[is_new ? 1 : 0][static_cast<std::size_t>(from)];
   const double waited_s = std::chrono::duration<double>(now - budget.at).count();
   const auto ticks = static_cast<double>(std::max<Tick>(0, tick_ - budget.tick));
   budget.left = budget.begun
-                    ? std::min(allowance_.most, budget.left + waited_s * allowance_.per_second +
-                                                    ticks * allowance_.per_tick)
-                    : allowance_.most;
+                    ? std::min(rate_budget_.most, budget.left + waited_s * rate_budget_.per_second +
+                                                      ticks * rate_budget_.per_tick)
+                    : rate_budget_.most;
   budget = {budget.left, now, std::max(budget.tick, tick_), true};
   if (budget.left < 1) return false;
   budget.left -= 1;

@@ -20,18 +20,18 @@ struct RateBudget {
 /// whenever a tick is repeated, its commands, relayed blocks, digests and statuses. Ticks count
 /// separately, because lockstep has as many a second as the machine can do.
 /// @param members  entries of the roster, former members included
-RateBudget allowance_of(const Mission& mission, std::size_t members);
+RateBudget rate_budget_of(const Mission& mission, std::size_t members);
 
 /// One budget for each agent, refilled by time and ticks.
 class RateLimit {
  public:
   /// @param tick  the newest tick that the world is known to have reached
-  void allow(const RateBudget& allowance, Tick tick) { allowance_ = allowance, tick_ = tick; }
+  void allow(const RateBudget& rate_budget, Tick tick) { rate_budget_ = rate_budget, tick_ = tick; }
 
   /// Takes one message off a budget of `from`; false if the budget is empty. Repeats have a
   /// separate budget, because other processes may send them. Processes other than agents have no
   /// limit, and before allow() there is none.
-  bool admit(AgentId from, bool is_news, Instant now);
+  bool admit(AgentId from, bool is_new, Instant now);
 
  private:
   struct Budget {
@@ -40,7 +40,7 @@ class RateLimit {
     Tick tick = 0;
     bool begun = false;
   };
-  RateBudget allowance_;
+  RateBudget rate_budget_;
   Tick tick_ = 0;
   std::array<std::array<Budget, kMaxAgents>, 2> budgets_{};
 };

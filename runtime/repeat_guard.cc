@@ -5,10 +5,10 @@
 
 namespace ergocast {
 
-bool RepeatGuard::count(const Header& from, bool is_news, Instant now) {
-  if (!is_news) {
+bool RepeatGuard::count(const Header& from, bool is_new, Instant now) {
+  if (!is_new) {
     ++repeats_;
-    if (lives_.size() < kMostLives) lives_.insert({from.sender, from.incarnation});
+    if (flooding_.size() < kMaxIncarnations) flooding_.insert({from.sender, from.incarnation});
   }
   const bool was_flooded = !flooded_.empty();
   const bool lapsed = now - window_began_ >= kWindow * (was_flooded ? kCalmWindows : 1);
@@ -21,11 +21,11 @@ bool RepeatGuard::count(const Header& from, bool is_news, Instant now) {
   repeats_ = 0;
   flooded_.clear();
   if (!flooded) {
-    lives_.clear();
+    flooding_.clear();
     return was_flooded;
   }
-  for (const Author& life : lives_) {
-    flooded_.push_back({life.incarnation, liveness_.newest(life, bus_)});
+  for (const Author& author : flooding_) {
+    flooded_.push_back({author.incarnation, liveness_.newest(author, bus_)});
   }
   return true;
 }

@@ -31,17 +31,17 @@ class RepeatGuard {
   /// little at first.
   static constexpr int kCalmWindows = 10;
   /// More than the incarnations that a team has at a time.
-  static constexpr std::size_t kMostLives = 144;
+  static constexpr std::size_t kMaxIncarnations = 144;
 
   explicit RepeatGuard(Bus bus) : bus_(bus) {}
 
   /// Whether this message is new: its sender has sent neither this nor a later message in this
   /// incarnation (team/liveness.h).
   /// @pre the message was verified
-  bool is_news(const Header& from, Instant now) { return liveness_.record(from, bus_, now); }
+  bool is_new(const Header& from, Instant now) { return liveness_.record(from, bus_, now); }
 
-  /// Counts a message that was passed to is_news(). True if flooded() has changed.
-  bool count(const Header& from, bool is_news, Instant now);
+  /// Counts a message that was passed to is_new(). True if flooded() has changed.
+  bool count(const Header& from, bool is_new, Instant now);
 
   /// The messages that the kernel must drop; empty without a flood.
   std::span<const Repeated> flooded() const { return flooded_; }
@@ -50,8 +50,8 @@ class RepeatGuard {
   Bus bus_;
   Liveness liveness_;
   Instant window_began_{};
-  int repeats_ = 0;         // in this window, as received
-  std::set<Author> lives_;  // repeated since the flood began
+  int repeats_ = 0;            // in this window, as received
+  std::set<Author> flooding_;  // repeated since the flood began
   std::vector<Repeated> flooded_;
 };
 

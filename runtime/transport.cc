@@ -32,19 +32,19 @@ constexpr std::string_view kPrefix = "ERGOCAST_";
 
 class BusTransport final : public Transport {
  public:
-  BusTransport(RunId run, const MessageAuthenticator& seal, Handlers handlers)
-      : run_(run), seal_(seal), handlers_(std::move(handlers)) {}
+  BusTransport(RunId run, const MessageAuthenticator& authenticator, Handlers handlers)
+      : run_(run), authenticator_(authenticator), handlers_(std::move(handlers)) {}
 
   std::optional<std::string> connect(const LcmUrl& url, const Subscriptions& hears);
 
   void set_run(RunId run) override { run_ = run; }
   void publish(std::span<const Outgoing> outgoing) override;
-  void limit_agents(const RateBudget& allowance, Tick tick) override {
-    rates_.allow(allowance, tick);
+  void limit_agents(const RateBudget& rate_budget, Tick tick) override {
+    rates_.allow(rate_budget, tick);
   }
   void let_gather(const Gathering& gathering) override { gathering_ = gathering; }
   Instant deliver_until(Instant deadline, int wake_fd) override;
-  bool keyed() const override { return seal_.keyed(); }
+  bool keyed() const override { return authenticator_.keyed(); }
   bool filtered() const override;
   std::int64_t kernel_drops() override;
   bool renew_membership() override { return membership_->renew(); }
@@ -79,7 +79,7 @@ class BusTransport final : public Transport {
   void count_cut(Line& line) noexcept;
 
   RunId run_;
-  MessageAuthenticator seal_;
+  MessageAuthenticator authenticator_;
   Handlers handlers_;
   RateLimit rates_;
   Gathering gathering_;
@@ -116,7 +116,7 @@ std::optional<std::string> BusTransport::connect(const LcmUrl& url, const Subscr
 void BusTransport::publish(std::span<const Outgoing> outgoing) {
   for (const Outgoing& one : outgoing) {
     const std::string& channel = channel_of(one.message, one.relayer);
-    encode(one.message, bytes_, seal_, channel);
+    encode(one.message, bytes_, authenticator_, channel);
     writer_->add(one.bus, channel, bytes_);
   }
   writer_->flush();
@@ -152,7 +152,7 @@ void BusTransport::cut_repeats(Line& line) {
 
 void BusTransport::take(Line& line, const LcmDatagram& datagram, bool is_replay) {
   const auto& [channel, bytes] = datagram;
-  const auto decoded = decode(bytes, run_, seal_, channel, &signatures_);
+  const auto decoded = decode(bytes, run_, authenticator_, channel, &signatures_);
   if (const auto* refusal = std::get_if<Refusal>(&decoded)) {
     if (*refusal == Refusal::kType) note_unknown_format(channel);
     return refuse(*refusal);
@@ -161,10 +161,10 @@ void BusTransport::take(Line& line, const LcmDatagram& datagram, bool is_replay)
   const auto transmitter = transmitter_of(message, channel);
   if (!transmitter) return refuse(Refusal::kType);
   const Instant heard = now();
-  const bool is_news = line.guard.is_news(header_of(message), heard);
-  if (line.guard.count(header_of(message), is_news, heard)) cut_repeats(line);
-  if (!rates_.admit(*transmitter, is_news, heard)) {
-    if (is_news) rate_offender_ = *transmitter, ++over_rate_;
+  const bool is_new = line.guard.is_new(header_of(message), heard);
+  if (line.guard.count(header_of(message), is_new, heard)) cut_repeats(line);
+  if (!rates_.admit(*transmitter, is_new, heard)) {
+    if (is_new) rate_offender_ = *transmitter, ++over_rate_;
     return refuse(Refusal::kRate);
   }
   const Bus bus = line.reader->bus();
@@ -240,10 +240,10 @@ Instant BusTransport::deliver_until(Instant deadline, int wake_fd) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
-    const LcmUrl& url, RunId run, const MessageAuthenticator& seal, const Subscriptions& hears,
-    Handlers handlers) {
+    const LcmUrl& url, RunId run, const MessageAuthenticator& authenticator,
+    const Subscriptions& hears, Handlers handlers) {
   if (const auto problem = why_unreachable(url)) return *problem;
-  auto transport = std::make_unique<BusTransport>(run, seal, std::move(handlers));
+  auto transport = std::make_unique<BusTransport>(run, authenticator, std::move(handlers));
   if (const auto problem = transport->connect(url, hears)) return *problem;
   return std::unique_ptr<Transport>(std::move(transport));
 }

@@ -42,8 +42,8 @@ class Transport {
   /// @param run  the only run accepted; 0 accepts any until set_run()
   /// @param seal  signs and tags published messages; messages that it does not verify are refused
   static std::variant<std::unique_ptr<Transport>, std::string> open(
-      const LcmUrl& url, RunId run, const MessageAuthenticator& seal, const Subscriptions& hears,
-      Handlers handlers);
+      const LcmUrl& url, RunId run, const MessageAuthenticator& authenticator,
+      const Subscriptions& hears, Handlers handlers);
   virtual ~Transport() = default;
 
   virtual void set_run(RunId run) = 0;
@@ -51,7 +51,7 @@ class Transport {
   virtual void publish(std::span<const Outgoing> outgoing) = 0;
   void publish(const Outgoing& one) { publish(std::span(&one, 1)); }
   /// Sets the rate budget of agents and the world's tick; without a call nothing is limited.
-  virtual void limit_agents(const RateBudget& allowance, Tick tick) = 0;
+  virtual void limit_agents(const RateBudget& rate_budget, Tick tick) = 0;
 
   /// From now on, for so long after a message, only the world's bus wakes the caller; whatever
   /// wakes it, all buses are read. Without effect on a bus whose receive buffer is too small for so

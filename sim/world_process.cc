@@ -23,9 +23,9 @@ using namespace std::chrono_literals;
 /// Detects another world, or a driver, that moves the same vehicles. The world itself does not
 /// listen to its own bus, whose every message would wake it. Two in lockstep cannot tell themselves
 /// apart from their own repeats, and drivers refuse lockstep.
-class RivalWatch {
+class OtherWorldWatch {
  public:
-  RivalWatch(World& world, const NodeOptions& node) : world_(world), node_(node) {}
+  OtherWorldWatch(World& world, const NodeOptions& node) : world_(world), node_(node) {}
 
   void look(Instant now) {
     const auto& mission = world_.follower().mission();
@@ -49,10 +49,11 @@ class RivalWatch {
   static constexpr auto kListening = 500ms;
 
   void listen() {
-    auto opened = Transport::open(node_.url, world_.run(), node_.seal, {0, kTypes<WorldState>, 0},
-                                  {.on_message = [this](const Message& message, Bus, AgentId) {
-                                    meet(std::get<WorldState>(message));
-                                  }});
+    auto opened =
+        Transport::open(node_.url, world_.run(), node_.authenticator, {0, kTypes<WorldState>, 0},
+                        {.on_message = [this](const Message& message, Bus, AgentId) {
+                          meet(std::get<WorldState>(message));
+                        }});
     done_ = opened.index() != 0;
     if (!done_) listener_ = std::get<0>(std::move(opened));
   }
@@ -86,7 +87,7 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
   if (!connected) return kExitUnavailable;
   Transport& transport = *connected;
   TrafficWatch watch(transport);
-  RivalWatch rivals(world, node);
+  OtherWorldWatch other_worlds(world, node);
   spdlog::info("waiting for a mission on {}", node.url.base());
 
   bool logger_lost = false, begun = false;
@@ -95,11 +96,11 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
     transport.set_run(world.run());
     if (const auto& mission = world.follower().mission()) {
       const std::size_t members = world.follower().roster().size();
-      transport.limit_agents(allowance_of(*mission, members), world.tick());
+      transport.limit_agents(rate_budget_of(*mission, members), world.tick());
       transport.let_gather(gathering_of(*mission, members));
     }
     watch.look(now(), world.late_commands());
-    rivals.look(now());
+    other_worlds.look(now());
     if (world.begun_at() && !begun) spdlog::info("moving from tick {} on", *world.begun_at());
     begun = world.begun_at().has_value();
     if (world.logger_lost() && !logger_lost) spdlog::warn("the logger is silent: going on without");

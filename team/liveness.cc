@@ -40,44 +40,46 @@ bool must_be_over(const Timing& timing, Tick newest, PacingClock::duration silen
   return std::chrono::duration<double>(silence).count() > plan_s + kFarewellPatience_s;
 }
 
-Liveness::Life* Liveness::find_or_add(const Author& life) {
-  if (Life* known = lives_.find(life)) return known;
-  return lives_.size() >= kMostLives ? nullptr : &lives_[life];
+Liveness::Seen* Liveness::find_or_add(const Author& author) {
+  if (Seen* known = incarnations_.find(author)) return known;
+  return incarnations_.size() >= kMaxIncarnations ? nullptr : &incarnations_[author];
 }
 
 bool Liveness::record(const Header& from, Bus bus, Instant now, bool is_sign) {
-  Life* const life = find_or_add({from.sender, from.incarnation});
-  if (life == nullptr) return false;
-  Heard& heard = life->on_bus[static_cast<std::size_t>(bus)];
+  Seen* const seen = find_or_add({from.sender, from.incarnation});
+  if (seen == nullptr) return false;
+  Heard& heard = seen->on_bus[static_cast<std::size_t>(bus)];
   const bool fresh = heard.count == 0 || from.sequence > heard.newest;
   if (heard.count++ == 0) heard.first = from.sequence;
   if (!fresh) return false;
   heard.newest = from.sequence;
-  if (is_sign) life->sign = kinds_[kind_of(from.sender)] = now;
+  if (is_sign) seen->sign = kinds_[kind_of(from.sender)] = now;
   return true;
 }
 
-void Liveness::presume_alive(const Author& life, Instant now) { lives_[life].sign = now; }
+void Liveness::presume_alive(const Author& author, Instant now) {
+  incarnations_[author].sign = now;
+}
 
-std::optional<Instant> Liveness::last_sign(const Author& life) const {
-  const Life* const known = lives_.find(life);
+std::optional<Instant> Liveness::last_sign(const Author& author) const {
+  const Seen* const known = incarnations_.find(author);
   return known == nullptr ? std::nullopt : known->sign;
 }
 
-const Liveness::Heard* Liveness::heard_of(const Author& life, Bus bus) const {
-  const Life* const known = lives_.find(life);
+const Liveness::Heard* Liveness::heard_of(const Author& author, Bus bus) const {
+  const Seen* const known = incarnations_.find(author);
   if (known == nullptr) return nullptr;
   const Heard& heard = known->on_bus[static_cast<std::size_t>(bus)];
   return heard.count == 0 ? nullptr : &heard;
 }
 
-std::int64_t Liveness::newest(const Author& life, Bus bus) const {
-  const Heard* const heard = heard_of(life, bus);
+std::int64_t Liveness::newest(const Author& author, Bus bus) const {
+  const Heard* const heard = heard_of(author, bus);
   return heard == nullptr ? -1 : heard->newest;
 }
 
-std::int64_t Liveness::lost(const Author& life, Bus bus) const {
-  const Heard* const heard = heard_of(life, bus);
+std::int64_t Liveness::lost(const Author& author, Bus bus) const {
+  const Heard* const heard = heard_of(author, bus);
   if (heard == nullptr) return 0;
   // Messages before the first one, or repeats, may compensate for lost ones; the result is at least
   // 0.

@@ -53,31 +53,31 @@ class Liveness {
   /// Records a message that its sender has transmitted itself.
   /// @param is_sign  whether it is a sign of life if it is fresh
   /// @return whether it is fresh: its sender has sent neither this nor a later message in this
-  ///   incarnation on this bus. Messages of incarnations beyond kMostLives are never fresh.
+  ///   incarnation on this bus. Messages of incarnations beyond kMaxIncarnations are never fresh.
   bool record(const Header& from, Bus bus, Instant now, bool is_sign = true);
 
   /// Counts an incarnation as alive at `now`, for example after its admission. It gets a place even
   /// in a full table; the caller limits how many such incarnations there are.
-  void presume_alive(const Author& life, Instant now);
+  void presume_alive(const Author& author, Instant now);
 
   /// The time of the last sign of this incarnation.
-  std::optional<Instant> last_sign(const Author& life) const;
+  std::optional<Instant> last_sign(const Author& author) const;
   /// The time of the last sign of any incarnation of this kind; all agents are one kind.
   std::optional<Instant> last_sign_of_kind(AgentId sender) const { return kinds_[kind_of(sender)]; }
 
-  /// The newest sequence of `life` on `bus`; −1 if nothing was received.
-  std::int64_t newest(const Author& life, Bus bus) const;
+  /// The newest sequence of `author` on `bus`; −1 if nothing was received.
+  std::int64_t newest(const Author& author, Bus bus) const;
   /// How many of its messages are missing between the first and the newest one received.
-  std::int64_t lost(const Author& life, Bus bus) const;
+  std::int64_t lost(const Author& author, Bus bus) const;
 
   /// Twice the size of a roster: coordinators, worlds and loggers may have several incarnations.
-  static constexpr std::size_t kMostLives = 2 * kMaxRosterEntries;
+  static constexpr std::size_t kMaxIncarnations = 2 * kMaxRosterEntries;
 
  private:
   struct Heard {
     std::int64_t first = 0, newest = 0, count = 0;
   };
-  struct Life {
+  struct Seen {
     std::array<Heard, kBusCount> on_bus;
     std::optional<Instant> sign;
   };
@@ -85,10 +85,10 @@ class Liveness {
   static std::size_t kind_of(AgentId sender) {
     return sender >= 0 ? 0 : static_cast<std::size_t>(-std::max(sender, kOperator));
   }
-  Life* find_or_add(const Author& life);
-  const Heard* heard_of(const Author& life, Bus bus) const;
+  Seen* find_or_add(const Author& author);
+  const Heard* heard_of(const Author& author, Bus bus) const;
 
-  AuthorMap<Life> lives_;
+  AuthorMap<Seen> incarnations_;
   std::array<std::optional<Instant>, 1 - kOperator> kinds_;  // agents, then from kUnassigned down
 };
 

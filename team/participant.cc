@@ -63,10 +63,10 @@ CoordinatorSign Participant::coordinator_sign() const {
                                            : CoordinatorSign::kMission;
 }
 
-bool Participant::silent(const Author& life, Instant now) const {
-  const auto sign = liveness_.last_sign(life);
+bool Participant::silent(const Author& author, Instant now) const {
+  const auto sign = liveness_.last_sign(author);
   const Timing* const timing = knows_mission() ? &mission().timing : nullptr;
-  return !sign || now - *sign >= silence_of(life.agent, coordinator_sign(), timing);
+  return !sign || now - *sign >= silence_of(author.agent, coordinator_sign(), timing);
 }
 
 bool Participant::silent(AgentId process, Instant now, std::optional<Instant> since) const {

@@ -77,9 +77,9 @@ class Participant {
   // ---- the others ----
   const Liveness& liveness() const { return liveness_; }
   /// Counts an incarnation as alive at `now`; see Liveness.
-  void presume_alive(const Author& life, Instant now) { liveness_.presume_alive(life, now); }
+  void presume_alive(const Author& author, Instant now) { liveness_.presume_alive(author, now); }
   /// Whether this incarnation has given no sign of life for six heartbeats, or never.
-  bool silent(const Author& life, Instant now) const;
+  bool silent(const Author& author, Instant now) const;
   /// The same for any incarnation of the coordinator, the world or the logger.
   /// @param since  when it should have started to send
   bool silent(AgentId process, Instant now, std::optional<Instant> since = {}) const;

@@ -88,7 +88,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     agent/foresight_test.cc
     agent/forgetting_test.cc
     agent/hearing_test.cc
-    agent/life_test.cc
+    agent/incarnation_test.cc
     agent/mission_repeat_test.cc
     agent/pause_test.cc
     agent/radio_test.cc

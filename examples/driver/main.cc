@@ -26,7 +26,7 @@ int run(const NodeOptions& node, double speed_limit_mps, std::optional<AgentId> 
       [&] {
         transport.set_run(driver.run());
         if (const auto& mission = driver.follower().mission()) {
-          transport.limit_agents(allowance_of(*mission, driver.follower().roster().size()),
+          transport.limit_agents(rate_budget_of(*mission, driver.follower().roster().size()),
                                  driver.tick());
         }
       });

@@ -50,8 +50,8 @@ static void take(Agent& agent, Bus bus, std::string_view datagram) {
 
 int main() {
   std::random_device dice;
-  const Incarnation life = std::uniform_int_distribution<Incarnation>(1)(dice);
-  Agent agent({.incarnation = life, .host = "mine", .version = ERGOCAST_VERSION});
+  const Incarnation incarnation = std::uniform_int_distribution<Incarnation>(1)(dice);
+  Agent agent({.incarnation = incarnation, .host = "mine", .version = ERGOCAST_VERSION});
   pollfd buses[] = {listen_to(0), listen_to(1), listen_to(2)};
   char in[65536];
   for (Outbox out;; out.clear()) {

@@ -42,7 +42,7 @@ std::string described(RunId id, const HeardRun& run) {
 void Overheard::take(std::span<const std::byte> datagram) {
   const auto lcm = parse_datagram(datagram);
   if (!lcm || lcm->channel.empty()) return;
-  const auto decoded = decode(lcm->message, 0, seal_, lcm->channel);
+  const auto decoded = decode(lcm->message, 0, authenticator_, lcm->channel);
   if (const auto* message = std::get_if<Message>(&decoded)) return take(*message);
   const Refusal refusal = std::get<Refusal>(decoded);
   if (refusal == Refusal::kUnkeyed) {
@@ -79,7 +79,7 @@ std::optional<Finding> Overheard::key_finding() const {
                    "Whoever has a key refuses all that it says.",
                    "--key-file FILE   # for every process, or for none"};
   }
-  if (other_key_ > 0 && seal_.keyed()) {
+  if (other_key_ > 0 && authenticator_.keyed()) {
     return Finding{"swarm bus", Level::kWarning, "messages that this key does not open",
                    "They are damaged, or their senders have another key and refuse all that this "
                    "host says.",
@@ -120,9 +120,9 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
   return {"swarm bus", Level::kOk, "nobody speaks on " + where, "", ""};
 }
 
-Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& seal,
+Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& authenticator,
                           std::chrono::milliseconds duration, std::string& error) {
-  Overheard overheard(seal);
+  Overheard overheard(authenticator);
   const Socket socket = group_listener(url.group, url.base_port, error);
   if (!error.empty()) return overheard;
   std::array<std::byte, 65536> buffer;

@@ -28,7 +28,8 @@ struct HeardRun {
 /// Counts datagrams of the swarm bus. It does not trust their content.
 class Overheard {
  public:
-  explicit Overheard(const MessageAuthenticator& seal = {}) : seal_(seal) {}
+  explicit Overheard(const MessageAuthenticator& authenticator = {})
+      : authenticator_(authenticator) {}
 
   void take(std::span<const std::byte> datagram);
   /// @param free_port  a free base port, if one is known
@@ -41,7 +42,7 @@ class Overheard {
   void take(const Message& message);
   std::optional<Finding> key_finding() const;
 
-  MessageAuthenticator seal_;
+  MessageAuthenticator authenticator_;
   std::map<RunId, HeardRun> runs_;
   std::int64_t other_key_ = 0, unkeyed_ = 0;  // ours by their format, but refused by our seal
   std::int64_t foreign_messages_ = 0;         // LCM's, but not of Ergocast
@@ -49,7 +50,7 @@ class Overheard {
 };
 
 /// Listens for `duration`. `error` tells why nothing can be received, if so.
-Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& seal,
+Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& authenticator,
                           std::chrono::milliseconds duration, std::string& error);
 
 /// Reports whether messages are checked with a team's key.

@@ -30,11 +30,11 @@ std::optional<int> some_free_base_port() {
 }
 
 /// Checks ports and swarm bus.
-void examine_bus(const LcmUrl& url, const MessageAuthenticator& seal, Examination& all) {
+void examine_bus(const LcmUrl& url, const MessageAuthenticator& authenticator, Examination& all) {
   const auto everybody = holders("/proc", url);
   std::string refusal;
-  Overheard overheard(seal);
-  if (all.lcm_usable) overheard = listen_to_swarm(url, seal, kListening, refusal);
+  Overheard overheard(authenticator);
+  if (all.lcm_usable) overheard = listen_to_swarm(url, authenticator, kListening, refusal);
   const auto free = everybody.empty() && refusal.empty() && !overheard.anything()
                         ? std::nullopt
                         : some_free_base_port();
@@ -54,7 +54,8 @@ void examine_bus(const LcmUrl& url, const MessageAuthenticator& seal, Examinatio
 
 }  // namespace
 
-Examination examine(const LcmUrl& url, const MessageAuthenticator& seal, bool several_hosts) {
+Examination examine(const LcmUrl& url, const MessageAuthenticator& authenticator,
+                    bool several_hosts) {
   Examination all;
   Findings& findings = all.findings;
   const auto every = interfaces();
@@ -67,8 +68,8 @@ Examination examine(const LcmUrl& url, const MessageAuthenticator& seal, bool se
   findings = routing_findings(url, routed, every);
   findings.push_back(ttl_finding(url, several_hosts));
   findings.push_back(self_test_finding(url, failure, routed.has_value()));
-  examine_bus(url, seal, all);
-  findings.push_back(authentication_finding(seal.keyed()));
+  examine_bus(url, authenticator, all);
+  findings.push_back(authentication_finding(authenticator.keyed()));
   findings.push_back(receive_buffer_finding(url, measure_receive_buffer(url)));
   findings.push_back(fragments_finding("/proc"));
   if (routed) findings.push_back(reverse_path_finding("/proc", *routed));

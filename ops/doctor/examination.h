@@ -17,6 +17,7 @@ struct Examination {
 
 /// @param seal  the team's, if it has a key
 /// @param several_hosts  whether the team uses other hosts, too
-Examination examine(const LcmUrl& url, const MessageAuthenticator& seal, bool several_hosts);
+Examination examine(const LcmUrl& url, const MessageAuthenticator& authenticator,
+                    bool several_hosts);
 
 }  // namespace ergocast::doctor

@@ -48,7 +48,7 @@ void hear_until(Instant deadline, const Socket& listener, PeerLedger& ledger) {
 
 }  // namespace
 
-PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal,
+PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& authenticator,
                    std::chrono::seconds duration) {
   PeerTest test;
   const Socket listener = group_listener(url.group, url.base_port, test.error);
@@ -58,7 +58,7 @@ PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal,
   setsockopt(sender.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
   const sockaddr_in group = address_of(url.group, url.base_port);
 
-  PeerLedger ledger(random_identity(), host_name(), version(), seal.fingerprint());
+  PeerLedger ledger(random_identity(), host_name(), version(), authenticator.fingerprint());
   std::vector<std::byte> bytes;
   const auto count = static_cast<std::uint32_t>(duration.count() * kProbesPerSecond);
   const Instant start = now();

@@ -21,7 +21,7 @@ struct PeerTest {
 };
 
 /// Sends kProbesPerSecond for `duration`. @pre at most kMaxPeerSeconds
-PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal,
+PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& authenticator,
                    std::chrono::seconds duration);
 
 /// One finding for each peer, or one if no peer was received.

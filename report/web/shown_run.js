@@ -75,9 +75,9 @@ export const livePage = {
     }
     if (performance.now() - (run.stripAt ?? 0) > 500) { run.stripAt = performance.now(); buildStrip(); showFacts(facts); }
     if (run.tracks.length > 12 && !run.tailChosen) { run.tailChosen = true; set('tail', startTail(run)); }
-    put($('seal'), facts.replay ? 'replay' : facts.authenticated ? '' : 'not authenticated');
-    $('seal').title = facts.replay ? 'ergocast replay sends a record: nobody flies' : NO_KEY;
-    $('seal').hidden = facts.authenticated && !facts.replay;
+    put($('authentication'), facts.replay ? 'replay' : facts.authenticated ? '' : 'not authenticated');
+    $('authentication').title = facts.replay ? 'ergocast replay sends a record: nobody flies' : NO_KEY;
+    $('authentication').hidden = facts.authenticated && !facts.replay;
     ask();
   },
   ended(run, text) {

@@ -54,7 +54,7 @@ TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
   EXPECT_EQ(commands[0].position_m, Eigen::Vector3d(100, 500, 0));
   EXPECT_EQ(commands[0].header.tick, 0);
   EXPECT_EQ(commands[0].header.sender, 0);
-  EXPECT_EQ(commands[0].header.incarnation, life_of(0));
+  EXPECT_EQ(commands[0].header.incarnation, incarnation_of(0));
 }
 
 TEST(AgentTick, SpeaksOnTheBusesOfTheProtocol) {

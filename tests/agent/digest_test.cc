@@ -119,7 +119,7 @@ TEST(DigestOfATeam, NamesFormerMembersFirstWhileATeammateHoldsSomethingElseOfThe
   EXPECT_NE(speaker.settled(), teammate.settled());
   for (int turn = 0; turn < 5; ++turn) {
     Digest theirs = teammate.repair.digest(teammate.table, teammate.roster, 19);
-    theirs.header = {kRun, 3, life_of(3), turn + 1, 0};
+    theirs.header = {kRun, 3, incarnation_of(3), turn + 1, 0};
     speaker.repair.on(theirs, speaker.table, speaker.roster, at(turn * 1s), 19);
     const auto named = speaker.named();
     const auto former = std::count_if(named.begin(), named.end(),

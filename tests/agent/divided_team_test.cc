@@ -50,10 +50,11 @@ Coefficients average_of(const Mission& mission, const CoverageTable& table) {
 }
 
 /// c_k of these lives, straight from where they were.
-Coefficients average_of(const Mission& mission,
-                        const std::vector<std::pair<Author, std::vector<Eigen::Vector3d>>>& lives) {
+Coefficients average_of(
+    const Mission& mission,
+    const std::vector<std::pair<Author, std::vector<Eigen::Vector3d>>>& incarnations) {
   CoverageTable table(mission.basis, mission.timing.dt_s);
-  for (const auto& [author, path] : lives) {
+  for (const auto& [author, path] : incarnations) {
     for (const Contribution& block : blocks_of(mission, author, path, 0)) table.merge(block, 1000);
   }
   return average_of(mission, table);
@@ -131,11 +132,11 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   run_ticks(team, 4, 20, 22);
   team.wait(at(2200ms), 3s);
 
-  std::vector<std::pair<Author, std::vector<Eigen::Vector3d>>> lives;
+  std::vector<std::pair<Author, std::vector<Eigen::Vector3d>>> incarnations;
   for (AgentId id = 0; id < 4; ++id) {
-    lives.emplace_back(author_of(id), path_of(id, 0, id == 3 ? 20 : 22));
+    incarnations.emplace_back(author_of(id), path_of(id, 0, id == 3 ? 20 : 22));
   }
-  const Coefficients everything = average_of(mission, lives);
+  const Coefficients everything = average_of(mission, incarnations);
   for (AgentId id = 0; id < 3; ++id) {
     EXPECT_EQ(team[id].coverage()->row_count(), 4u);
     EXPECT_EQ(average_of(mission, *team[id].coverage()), everything) << "bit for bit, agent " << id;

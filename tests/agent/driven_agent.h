@@ -15,7 +15,9 @@ namespace ergocast::test {
 
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-inline AgentIdentity identity_of(AgentId id) { return {kRun, id, life_of(id), "here", "1.2.3"}; }
+inline AgentIdentity identity_of(AgentId id) {
+  return {kRun, id, incarnation_of(id), "here", "1.2.3"};
+}
 
 /// 12 × 12 modes: two blocks.
 inline Mission two_block_mission(int agents) {

@@ -200,7 +200,7 @@ TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
   // 1 was restarted at tick 5. Its blocks from tick 5 on are of the new incarnation, those before
   // of the former one.
   const Mission mission = looking_ahead(3, true);
-  const Author restarted{1, life_of(1) + 7};
+  const Author restarted{1, incarnation_of(1) + 7};
   const std::vector<RosterEntry> roster{
       {author_of(0), 0, -1}, {author_of(1), 0, 5}, {restarted, 5, -1}};
   const auto foreseen = [&](const Eigen::Vector3d& before_m) {
@@ -229,7 +229,7 @@ TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
     // Agent 2 sends each second a digest that has nothing of agent 1.
     if (tick % 10 == 0) {
       Digest digest;
-      digest.header = {kRun, 2, life_of(2), ++sequence, tick};
+      digest.header = {kRun, 2, incarnation_of(2), ++sequence, tick};
       digest.entry_count = 1;
       digest.entries[0] = {author_of(1), 0};
       give(agent, digest, at(tick * 100ms));

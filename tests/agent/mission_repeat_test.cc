@@ -96,7 +96,7 @@ TEST(MissionRepeat, IsNotForAnAgentThatJoins) {
   Agent agent = informed_agent();
   for (const Tick tick : {-1, 0}) {
     EXPECT_EQ(repeated_after(agent, Hello{{kRun, kUnassigned, 71, 1, tick}, 1, "", ""}), 0u);
-    EXPECT_EQ(repeated_after(agent, Hello{{kRun, 1, life_of(1), 1, tick}, 1, "", ""}), 0u);
+    EXPECT_EQ(repeated_after(agent, Hello{{kRun, 1, incarnation_of(1), 1, tick}, 1, "", ""}), 0u);
   }
 }
 
@@ -204,7 +204,7 @@ TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   const auto hellos = only<Hello>(advance(agent, at(11s)));
   ASSERT_EQ(hellos.size(), 1u);
   EXPECT_EQ(hellos[0].requested_id, 0);
-  EXPECT_EQ(hellos[0].header.incarnation, life_of(0));
+  EXPECT_EQ(hellos[0].header.incarnation, incarnation_of(0));
   EXPECT_TRUE(only<Hello>(advance(agent, at(11s + 249ms))).empty());
   EXPECT_EQ(only<Hello>(advance(agent, at(11s + 250ms))).size(), 1u);
   EXPECT_LE(agent.next_wakeup(), at(11s + 500ms));

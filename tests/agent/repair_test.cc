@@ -38,7 +38,7 @@ class Repair : public ::testing::Test {
   /// `from` reports in its next digest that it holds only `steps` of `author`.
   void complain(AgentId from, const Author& author, std::int64_t steps, Instant now) {
     Digest digest;
-    digest.header = {kRun, from, life_of(from), ++sequence, 0};
+    digest.header = {kRun, from, incarnation_of(from), ++sequence, 0};
     digest.entry_count = 1;
     digest.entries[0] = {author, steps};
     repair.on(digest, table, roster, now, 0);
@@ -99,7 +99,7 @@ TEST(AgentDigests, OnceASecond) {
   const auto first = digests_at(at(0s));
   ASSERT_EQ(first.size(), 1u);
   EXPECT_EQ(first[0].header.sender, 0);
-  EXPECT_EQ(first[0].header.incarnation, life_of(0));
+  EXPECT_EQ(first[0].header.incarnation, incarnation_of(0));
   EXPECT_EQ(first[0].entry_count, 3);
   EXPECT_TRUE(digests_at(at(999ms)).empty());
   EXPECT_LE(agent.next_wakeup(), at(1s));
@@ -370,7 +370,7 @@ TEST(AgentDigests, OfWhoIsNoMemberAreNotRead) {
     return only<Contribution>(advance(agent, at(2s))).size();
   };
   EXPECT_EQ(answers_to({1, 4711}), 0u) << "a member's number, but nobody's life";
-  EXPECT_EQ(answers_to({0, life_of(1)}), 0u) << "a member's life under another number";
+  EXPECT_EQ(answers_to({0, incarnation_of(1)}), 0u) << "a member's life under another number";
   EXPECT_EQ(answers_to(author_of(1)), 1u);
 }
 

@@ -267,9 +267,9 @@ void StepFloor::see(Tick tick, const std::vector<Eigen::Vector3d>& places_m) {
     Mate& mate = mates_[i];
     waves(places_m[i].x(), wave_numbers.x(), stride_, mate.along_x);
     waves(places_m[i].y(), wave_numbers.y(), stride_, mate.along_y);
-    const bool is_news = tick > mate.tick;
-    mate.step_s = is_news ? mission_.timing.dt_s : 0;
-    mate.steps += is_news;
+    const bool is_new = tick > mate.tick;
+    mate.step_s = is_new ? mission_.timing.dt_s : 0;
+    mate.steps += is_new;
     mate.gained_steps = 1;
     mate.tick = tick;
   }

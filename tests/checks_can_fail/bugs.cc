@@ -599,9 +599,10 @@ Instant bug_next_turn_of_world(const World* self) {
 
 // ---- codec ----
 
-Decoded bug_decode(std::span<const std::byte> bytes, RunId run, const MessageAuthenticator& seal,
-                   std::string_view channel, KnownSignatures* known) {
-  Decoded result = real_decode(bytes, run, seal, channel, known);
+Decoded bug_decode(std::span<const std::byte> bytes, RunId run,
+                   const MessageAuthenticator& authenticator, std::string_view channel,
+                   KnownSignatures* known) {
+  Decoded result = real_decode(bytes, run, authenticator, channel, known);
   const bool refused = std::holds_alternative<Refusal>(result);
   if (bug("whole messages are refused") && !refused) return Refusal::kTag;
   if (bug("damage passes") && refused) return Digest{};

@@ -121,16 +121,16 @@ class DoctorCanFail : public OnHosts {
   std::vector<Plant> plants_of_peers();
 
   std::filesystem::path key_file(const char* name) const { return folder_ / name; }
-  MessageAuthenticator seal(const char* name) const {
+  MessageAuthenticator authenticator(const char* name) const {
     return MessageAuthenticator(std::get<MissionKey>(read_key_file(key_file(name))));
   }
 
   /// Sends `message` while the doctor listens.
   template <class M>
-  std::function<Speaker(int)> says(M message, const MessageAuthenticator& seal = {}) {
-    return [message, seal](int port) -> Speaker {
+  std::function<Speaker(int)> says(M message, const MessageAuthenticator& authenticator = {}) {
+    return [message, authenticator](int port) -> Speaker {
       const auto url = "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?ttl=1";
-      return [stranger = std::make_shared<Stranger>(url, seal), message] {
+      return [stranger = std::make_shared<Stranger>(url, authenticator), message] {
         stranger->say(Bus::kSwarm, message);
       };
     };
@@ -393,7 +393,7 @@ std::vector<Plant> DoctorCanFail::plants_on_the_bus() {
        "",
        {},
        false,
-       says(hello, seal("other"))},
+       says(hello, authenticator("other"))},
       {"swarm bus",
        "a team with a mission key",
        "note",
@@ -404,7 +404,7 @@ std::vector<Plant> DoctorCanFail::plants_on_the_bus() {
        "",
        {},
        false,
-       says(hello, seal("ours"))},
+       says(hello, authenticator("ours"))},
       {"swarm bus",
        "other LCM traffic: LIDAR",
        "warning",

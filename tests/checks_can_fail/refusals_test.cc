@@ -26,14 +26,14 @@ class RefusalsCanBeSeen : public RunningMission {
                     bool for_coordinator) {
     EXPECT_EQ(write_key_file(file, key_text(key, for_coordinator)), std::nullopt);
   }
-  static MessageAuthenticator seal(const std::filesystem::path& file) {
+  static MessageAuthenticator authenticator(const std::filesystem::path& file) {
     return MessageAuthenticator(std::get<MissionKey>(read_key_file(file)));
   }
 
   /// Receives the mission's parts, which also contain its run.
   void learn_mission() {
     const auto ear = std::get<0>(Transport::open(
-        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, seal(team_), {kTypes<MissionPart>, 0, 0},
+        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, authenticator(team_), {kTypes<MissionPart>, 0, 0},
         {.on_message = [this](const Message& message, Bus, AgentId) {
           if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
         }}));
@@ -55,8 +55,9 @@ class RefusalsCanBeSeen : public RunningMission {
   void say_raw(std::size_t bytes) {
     Stranger(kUrl).say(Bus::kSwarm, "ERGOCAST_HELLO", std::vector<std::byte>(bytes));
   }
-  void say(const MessageAuthenticator& seal, const Message& message, Bus bus = Bus::kSwarm) {
-    Stranger(kUrl, seal).say(bus, message);
+  void say(const MessageAuthenticator& authenticator, const Message& message,
+           Bus bus = Bus::kSwarm) {
+    Stranger(kUrl, authenticator).say(bus, message);
   }
 
   void exceed_rate() {
@@ -73,20 +74,20 @@ class RefusalsCanBeSeen : public RunningMission {
   /// More former incarnations of one agent than a table has rows for, and a message of each. The
   /// coordinator's key is enough to send that.
   void crowd() {
-    constexpr int kLives = kMaxIncarnationsPerAgent + 1;
+    constexpr int kIncarnations = kMaxIncarnationsPerAgent + 1;
     constexpr AgentId kMany = 99;
-    Stranger usurper(kUrl, seal(coordinator_));
+    Stranger usurper(kUrl, authenticator(coordinator_));
     int life = 0;
     for (MissionPart part : follower_.parts()) {
       part.revision += 1000;
       part.signature = {};  // it was valid for the unchanged part
-      for (; life < kLives && part.roster.size() < kMaxRosterEntriesPerMessage; ++life) {
+      for (; life < kIncarnations && part.roster.size() < kMaxRosterEntriesPerMessage; ++life) {
         part.roster.push_back({{kMany, static_cast<Incarnation>(1000 + life)}, 0, 1});
       }
       usurper.say(Bus::kSwarm, part);
     }
-    ASSERT_EQ(life, kLives) << "the plan has too few parts";
-    for (int i = 0; i < kLives; ++i) {
+    ASSERT_EQ(life, kIncarnations) << "the plan has too few parts";
+    for (int i = 0; i < kIncarnations; ++i) {
       Contribution block;
       block.header = from(kMany, run());
       block.header.incarnation = static_cast<Incarnation>(1000 + i);
@@ -117,20 +118,20 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
   Child mission =
       launch_endless(scenario(), {"--realtime=2", "--key-file", coordinator_, "--lcm-url", kUrl});
   learn_mission();
-  rate_offender_ = std::make_unique<Stranger>(kUrl, seal(team_));
+  rate_offender_ = std::make_unique<Stranger>(kUrl, authenticator(team_));
   const std::map<Refusal, std::function<void()>> plants = {
       // Longer than any message; the kernel drops much shorter or longer datagrams.
       {Refusal::kSize, [this] { say_raw(1230); }},
       {Refusal::kType, [this] { say_raw(200); }},
-      {Refusal::kTag, [this] { say(seal(other_), hello(run())); }},
+      {Refusal::kTag, [this] { say(authenticator(other_), hello(run())); }},
       {Refusal::kUnkeyed, [this] { say({}, hello(run())); }},
       {Refusal::kUnsigned,
        [this] {
-         say(seal(team_), Stop{from(kOperator, run()), false, "no key"});
+         say(authenticator(team_), Stop{from(kOperator, run()), false, "no key"});
        }},
-      {Refusal::kRun, [this] { say(seal(team_), hello(run() + 1)); }},
+      {Refusal::kRun, [this] { say(authenticator(team_), hello(run() + 1)); }},
       // An agent that sends the places of all vehicles.
-      {Refusal::kRange, [this] { say(seal(team_), world_of(3), Bus::kWorld); }},
+      {Refusal::kRange, [this] { say(authenticator(team_), world_of(3), Bus::kWorld); }},
       {Refusal::kEncoding,
        [this] {
          const Author teammate = follower_.roster().back().author;
@@ -138,7 +139,7 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
          block.header = from(teammate.agent, run());
          block.header.incarnation = teammate.incarnation;
          block.encoding = ContributionEncoding::kFixed16;
-         say(seal(team_), block);
+         say(authenticator(team_), block);
        }},
       {Refusal::kRate, [this] { exceed_rate(); }},
       // Before the mission's first tick.
@@ -146,7 +147,7 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
        [this] {
          Stop old{from(kOperator, run()), false, "a recording"};
          old.header.tick = -1;
-         say(seal(coordinator_), old);
+         say(authenticator(coordinator_), old);
        }},
       {Refusal::kLimit, [this] { crowd(); }},
   };

@@ -32,7 +32,7 @@ class RecordedTeam : public ::testing::Test {
   void log(const Message& message) {
     std::vector<std::byte> bytes;
     const std::string& channel = channel_of(message);
-    encode(message, bytes, seal_, channel);
+    encode(message, bytes, authenticator_, channel);
     events_ += big_endian(0xEDA1DA01, 4) + big_endian(++count_, 8) +
                big_endian(static_cast<std::uint64_t>(now_.count()), 8) +
                big_endian(channel.size(), 4) + big_endian(bytes.size(), 4) + channel;
@@ -72,7 +72,7 @@ class RecordedTeam : public ::testing::Test {
 
   test::TempFolder folder_;
   Mission mission_ = test::small_mission(2);
-  MessageAuthenticator seal_;
+  MessageAuthenticator authenticator_;
   const std::chrono::microseconds begin_ = 1000h;
   std::chrono::microseconds now_ = begin_;
   std::uint64_t count_ = 0;
@@ -115,7 +115,7 @@ TEST_F(RecordedTeam, APauseOfTheLoggerIsNoSilence) {
 TEST_F(RecordedTeam, NeedsNoKey) {
   MissionKey key;
   key.shared.fill(std::byte{7});
-  seal_ = MessageAuthenticator(key);
+  authenticator_ = MessageAuthenticator(key);
   record_ticks(3s, {0, 1});
   EXPECT_EQ(read()["agents"].size(), 2U);
 }

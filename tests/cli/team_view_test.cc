@@ -164,7 +164,7 @@ TEST_F(TeamViewTest, WhoWaitsAndStandsStillIsNamedWithWhomItWaitsFor) {
   waiting.header.sequence = 2;
   give(view_, waiting, at(800ms));
   EXPECT_EQ(condition(1, at(800ms)), Condition::kWaiting);
-  waiting.header = {kRun, 1, life_of(1), 3, 6};
+  waiting.header = {kRun, 1, incarnation_of(1), 3, 6};
   give(view_, waiting, at(900ms));
   EXPECT_EQ(condition(1, at(900ms)), Condition::kOk) << "it has moved on";
   waiting.header.sequence = 4;
@@ -321,9 +321,9 @@ TEST_F(TeamViewTest, APlanOfAnotherVersionIsTroubleWithItsReason) {
 }
 
 TEST_F(TeamViewTest, InventedAgentsCostNoMemory) {
-  for (Incarnation life = 1; life < 10000; ++life) {
-    AgentStatus invented = status(static_cast<AgentId>(life % kMaxAgents), 1);
-    invented.header.incarnation = life;
+  for (Incarnation incarnation = 1; incarnation < 10000; ++incarnation) {
+    AgentStatus invented = status(static_cast<AgentId>(incarnation % kMaxAgents), 1);
+    invented.header.incarnation = incarnation;
     give(view_, invented, at(0s));
   }
   EXPECT_LE(view_.picture(at(0s)).agents.size(), std::size_t{kMaxAgents});

@@ -37,8 +37,8 @@ TEST(CoordinatorAdmits, WhoeverDoesNotCareUnderTheLowestFreeNumber) {
 TEST(CoordinatorAdmits, BeyondThePlanUnderTheNextNumberUpToTheLimit) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   give(coordinator, hello_of(5), at(0s));
-  for (Incarnation life = 1; life <= kMaxAgents + 72; ++life) {
-    give(coordinator, hello_of(kUnassigned, life), at(0s));
+  for (Incarnation incarnation = 1; incarnation <= kMaxAgents + 72; ++incarnation) {
+    give(coordinator, hello_of(kUnassigned, incarnation), at(0s));
   }
   ASSERT_EQ(coordinator.roster().size(), static_cast<std::size_t>(kMaxAgents));
   EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 3})) << "the first beyond the plan";
@@ -95,7 +95,7 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
     return *std::find_if(coordinator.roster().begin(), coordinator.roster().end(),
                          [&](const auto& e) { return e.author.incarnation == incarnation; });
   };
-  EXPECT_EQ(entry(life_of(0)).active_until, 7) << "out at the tick at which";
+  EXPECT_EQ(entry(incarnation_of(0)).active_until, 7) << "out at the tick at which";
   EXPECT_EQ(entry(99).active_from, 7) << "the other comes in";
   EXPECT_EQ(entry(99).active_until, -1);
 }
@@ -103,14 +103,15 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
 TEST(CoordinatorAdmits, NoMoreLivesOfANumberThanItsLimit) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   Instant now = at(0s);
-  for (Incarnation life = 5000; life < 5000 + 2 * kMaxIncarnationsPerAgent; ++life) {
-    give(coordinator, status_of(1, static_cast<std::int64_t>(life)), now += 4s);
-    give(coordinator, hello_of(0, life), now);
+  for (Incarnation incarnation = 5000; incarnation < 5000 + 2 * kMaxIncarnationsPerAgent;
+       ++incarnation) {
+    give(coordinator, status_of(1, static_cast<std::int64_t>(incarnation)), now += 4s);
+    give(coordinator, hello_of(0, incarnation), now);
   }
-  const auto lives =
+  const auto incarnations =
       std::count_if(coordinator.roster().begin(), coordinator.roster().end(),
                     [](const RosterEntry& entry) { return entry.author.agent == 0; });
-  EXPECT_EQ(lives, kMaxIncarnationsPerAgent);
+  EXPECT_EQ(incarnations, kMaxIncarnationsPerAgent);
 }
 
 TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
@@ -188,7 +189,8 @@ TEST(CoordinatorAdmits, NobodyWhoDoesNotKnowTheNewestMissionAndSaysItSoon) {
 TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
   Coordinator coordinator = coordinator_of(small_mission(20));
   const std::int64_t known = newest_said(coordinator, at(0s));
-  for (AgentId id = 0; id < 20; ++id) give(coordinator, hello_of(id, life_of(id), known), at(1ms));
+  for (AgentId id = 0; id < 20; ++id)
+    give(coordinator, hello_of(id, incarnation_of(id), known), at(1ms));
   EXPECT_EQ(coordinator.roster().size(), 20u);
 }
 
@@ -240,8 +242,8 @@ TEST(CoordinatorAdmits, NobodyOnceTheMissionIsOver) {
 
 TEST(CoordinatorAdmits, ABoundedNumberOfLives) {
   Coordinator coordinator = coordinator_of(small_mission(1));
-  for (Incarnation life = 1; life <= 2000; ++life) {
-    give(coordinator, hello_of(0, life), at(std::chrono::seconds(10 * life)));
+  for (Incarnation incarnation = 1; incarnation <= 2000; ++incarnation) {
+    give(coordinator, hello_of(0, incarnation), at(std::chrono::seconds(10 * incarnation)));
   }
   EXPECT_LE(coordinator.roster().size(), 4u * kMaxAgents);
 }
@@ -291,9 +293,9 @@ TEST(CoordinatorAdmits, EachAgentAsTheKindThatItBringsOrThatIsPlanned) {
 
 TEST(CoordinatorAdmits, ANewcomerOfAKindOnlyWhereThePlanHasNoOther) {
   Coordinator coordinator = coordinator_of(mission_of_two_kinds());
-  for (const Incarnation life : {10, 11}) {
-    give(coordinator, hello_of_kind(kUnassigned, life, "fine"), at(0s));
-    give(coordinator, hello_of_kind(kUnassigned, life, "fine"), at(1s));
+  for (const Incarnation incarnation : {10, 11}) {
+    give(coordinator, hello_of_kind(kUnassigned, incarnation, "fine"), at(0s));
+    give(coordinator, hello_of_kind(kUnassigned, incarnation, "fine"), at(1s));
   }
   ASSERT_EQ(coordinator.roster().size(), 2u);
   EXPECT_EQ(coordinator.roster()[0].author, (Author{3, 10}));
@@ -322,9 +324,9 @@ TEST(CoordinatorAdmits, NobodyToABodyThatIsAnotherVehicleThanItsKinds) {
   ASSERT_EQ(coordinator.unknown_kinds().size(), 1u);
   EXPECT_NE(coordinator.unknown_kinds().begin()->second.find("cannot drive number 1"),
             std::string::npos);
-  for (const Incarnation life : {12, 13}) {
-    give(coordinator, hello_of_kind(kUnassigned, life, "fine"), at(0s));
-    give(coordinator, hello_of_kind(kUnassigned, life, "fine"), at(1s));
+  for (const Incarnation incarnation : {12, 13}) {
+    give(coordinator, hello_of_kind(kUnassigned, incarnation, "fine"), at(0s));
+    give(coordinator, hello_of_kind(kUnassigned, incarnation, "fine"), at(1s));
   }
   ASSERT_EQ(coordinator.roster().size(), 1u) << "beyond the plan are vehicles of the first kind";
   EXPECT_EQ(coordinator.roster()[0].author, (Author{3, 12}));

@@ -64,7 +64,8 @@ TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogethe
   EXPECT_EQ(follower.plan(), encode_plan(mission));
   EXPECT_TRUE(follower.mission());
   ASSERT_EQ(follower.roster().size(), 30u);
-  for (AgentId id = 0; id < 30; ++id) EXPECT_NE(follower.entry_of(life_of(id)), nullptr) << id;
+  for (AgentId id = 0; id < 30; ++id)
+    EXPECT_NE(follower.entry_of(incarnation_of(id)), nullptr) << id;
 }
 
 TEST(CoordinatorRepeats, ANewRevisionForEveryChange) {
@@ -176,8 +177,8 @@ TEST(CoordinatorTimeOut, StartsAgainWithAnAdmissionThatTheTickWaitsFor) {
 }
 
 /// A starting world asks the team for its state, and waits for `whom`.
-Hello question_of_world(Incarnation life, AgentId whom) {
-  return {{kRun, kWorld, life, next_sequence(), 0}, whom, "", ""};
+Hello question_of_world(Incarnation incarnation, AgentId whom) {
+  return {{kRun, kWorld, incarnation, next_sequence(), 0}, whom, "", ""};
 }
 
 TEST(CoordinatorTimeOut, NamesWhomAWorldThatBeginsWaitsFor) {

@@ -23,7 +23,7 @@ inline constexpr std::int64_t kEveryRevision = std::int64_t{1} << 40;
 inline Hello hello_of(AgentId id, Incarnation incarnation, std::int64_t revision = kEveryRevision) {
   return {{kRun, kUnassigned, incarnation, 1, 0}, id, "somewhere", kVersion, revision};
 }
-inline Hello hello_of(AgentId id) { return hello_of(id, life_of(id)); }
+inline Hello hello_of(AgentId id) { return hello_of(id, incarnation_of(id)); }
 
 inline void admit_all(Coordinator& coordinator, int agents, Instant now) {
   for (AgentId id = 0; id < agents; ++id) give(coordinator, hello_of(id), now);

@@ -19,14 +19,14 @@ class Farewell : public ::testing::Test {
     advance(coordinator_, at(1s));
   }
 
-  void agent_leaves(AgentId id, Incarnation life) {
+  void agent_leaves(AgentId id, Incarnation incarnation) {
     AgentStatus status = status_of(id, next_sequence());
-    status.header.incarnation = life;
+    status.header.incarnation = incarnation;
     status.phase = AgentPhase::kFinished;
     status.header.tick = 7;
     give(coordinator_, status, at(1s));
   }
-  void agent_leaves(AgentId id) { agent_leaves(id, life_of(id)); }
+  void agent_leaves(AgentId id) { agent_leaves(id, incarnation_of(id)); }
   void world_leaves() {
     WorldState last = world_where(7, {6, 6});
     last.last = true;

@@ -86,7 +86,7 @@ TEST(LargeTeam, IsAdmittedAndFollowedFromWhatChanges) {
   farewell.phase = AgentPhase::kFinished;
   give(coordinator, farewell, at(900ms));
   follow(at(900ms));
-  EXPECT_GE(follower.entry_of(life_of(700))->active_until, 0) << "one part has changed";
+  EXPECT_GE(follower.entry_of(incarnation_of(700))->active_until, 0) << "one part has changed";
 }
 
 TEST(LargeTeam, OfAllItsLivesIsFollowedAlsoByALatecomerUnderLoss) {
@@ -95,9 +95,9 @@ TEST(LargeTeam, OfAllItsLivesIsFollowedAlsoByALatecomerUnderLoss) {
   mission.timing.admission_timeout_s = 3600;
   Coordinator coordinator = coordinator_of(mission);
   Instant now = at(0s);
-  for (Incarnation life = 0; life < 4; ++life) {
+  for (Incarnation incarnation = 0; incarnation < 4; ++incarnation) {
     for (AgentId id = 0; id < kMaxAgents; ++id) {
-      const Incarnation nonce = 10000 * (life + 1) + static_cast<Incarnation>(id);
+      const Incarnation nonce = 10000 * (incarnation + 1) + static_cast<Incarnation>(id);
       give(coordinator, hello_of(id, nonce), now);
     }
     now += 10s;

@@ -40,9 +40,9 @@ Coordinator taken_over(const MissionPart& memory) {
 }
 
 /// A message that only a live coordinator sends.
-TeamStatus alive(Incarnation life, std::int64_t sequence = 1) {
+TeamStatus alive(Incarnation incarnation, std::int64_t sequence = 1) {
   TeamStatus status;
-  status.header = {kRun, kCoordinator, life, sequence, 0};
+  status.header = {kRun, kCoordinator, incarnation, sequence, 0};
   status.host = "there";
   return status;
 }
@@ -503,8 +503,8 @@ TEST(TakenOver, ItsOwnOrOlderWordsComingBackDoNotScareACoordinator) {
 TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
   const auto both = [] {
     std::vector<Coordinator> two;
-    for (const Incarnation life : {kSuccessorLife, kSuccessorLife + 1}) {
-      two.emplace_back(CoordinatorIdentity{0, life, "here", kVersion},
+    for (const Incarnation incarnation : {kSuccessorLife, kSuccessorLife + 1}) {
+      two.emplace_back(CoordinatorIdentity{0, incarnation, "here", kVersion},
                        encode_plan(small_mission(2)), Takeover::kIfRunning);
       advance(two.back(), at(0s));
       give(two.back(), status_of(0, 1), at(0s));

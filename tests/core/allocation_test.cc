@@ -202,7 +202,7 @@ TEST(Allocations, KnowingPlacesFromBeaconsMakesNone) {
       BeaconBook& book = books[static_cast<std::size_t>(id)];
       book.measured(tick - 1, 1, {40.0 * id, 0, 0}, {0, 0, 0});
       if (auto beacon = book.next(1, now)) {
-        beacon->header = {test::kRun, id, test::life_of(id), tick, tick};
+        beacon->header = {test::kRun, id, test::incarnation_of(id), tick, tick};
         for (BeaconBook& other : books) other.hear(*beacon, true, now);
       }
       for (const Neighbour& body : book.bodies({40.0 * id, 0, 0}, now)) known += body.known;

@@ -393,10 +393,10 @@ TEST(CoverageTableLimits, SixteenLivesOfAnAgentAndTheOthersAreNotAffected) {
   CoverageTable table = table_of(2);
   Contribution block = first_step();
   block.header.sender = 3;
-  for (Incarnation life = 1; life <= 40; ++life) {
-    block.header.incarnation = life;
+  for (Incarnation incarnation = 1; incarnation <= 40; ++incarnation) {
+    block.header.incarnation = incarnation;
     EXPECT_EQ(table.merge(block, 10),
-              life <= kMaxIncarnationsPerAgent ? Merge::kNewer : Merge::kRefusedLimit);
+              incarnation <= kMaxIncarnationsPerAgent ? Merge::kNewer : Merge::kRefusedLimit);
   }
   EXPECT_EQ(table.row_count(), static_cast<std::size_t>(kMaxIncarnationsPerAgent));
   block.header.sender = 4;

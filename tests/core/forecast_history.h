@@ -236,11 +236,11 @@ inline RosterEntry entry_of(const Author& author, Tick from, Tick until = -1) {
 inline std::vector<Contribution> told_each_tick(int agents, const Mission& mission,
                                                 Tick every = 1) {
   std::vector<Contribution> said;
-  std::vector<Life> lives;
+  std::vector<Life> incarnations;
   for (AgentId id = 0; id < agents; ++id)
-    lives.emplace_back(id == 0 ? kSelf : Author{id, 1}, mission);
+    incarnations.emplace_back(id == 0 ? kSelf : Author{id, 1}, mission);
   for (Tick tick = 0; tick < kEnd; ++tick) {
-    for (Life& life : lives) {
+    for (Life& life : incarnations) {
       life.cover(tick);
       if (tick % every != 0) continue;
       for (const Contribution& block : life.speak(tick)) said.push_back(block);

@@ -20,7 +20,8 @@ constexpr double kDt = 0.1;
 constexpr std::int64_t kManySteps = 1000;
 constexpr std::uint64_t kHistories = 40;
 const Box kDomain{{0, 0, 0}, {2000, 1000, 0}};
-const std::vector<Author> kLives{{0, 9}, {0, 7}, {1, 5}, {2, 1}, {2, 0xffffffffffffffff}, {5, 3}};
+const std::vector<Author> kIncarnations{{0, 9}, {0, 7}, {1, 5}, {2, 1}, {2, 0xffffffffffffffff},
+                                        {5, 3}};
 
 /// 12 × 12 modes: two blocks.
 Basis basis() {
@@ -51,7 +52,7 @@ class Dice {
 std::vector<Contribution> everything_said(std::uint64_t history) {
   Dice dice(history);
   std::vector<Contribution> said;
-  for (const Author& author : kLives) {
+  for (const Author& author : kIncarnations) {
     CoverageTable own = empty_table();
     std::int64_t sequence = 0;
     const auto ticks = static_cast<Tick>(1 + dice.below(12));
@@ -91,7 +92,7 @@ CoverageTable table_after(const std::vector<Contribution>& heard) {
 
 /// Everything that `from` holds reaches `to`, as teammates pass it on.
 void pass_on(const CoverageTable& from, CoverageTable& to) {
-  for (const Author& author : kLives) {
+  for (const Author& author : kIncarnations) {
     for (int b = 0; b < from.block_count(); ++b) {
       const Contribution block = from.block(author, b);
       if (block.steps > 0) to.merge(block, kManySteps);
@@ -108,7 +109,7 @@ Coefficients average_of(const CoverageTable& table) {
 /// Bit for bit, the headers of what would be passed on included.
 void expect_same(const CoverageTable& a, const CoverageTable& b) {
   EXPECT_EQ(a.row_count(), b.row_count());
-  for (const Author& author : kLives) {
+  for (const Author& author : kIncarnations) {
     for (int block = 0; block < 2; ++block) {
       const Contribution one = a.block(author, block), other = b.block(author, block);
       EXPECT_EQ(one.steps, other.steps);
@@ -165,7 +166,7 @@ TEST(MergeProperty, KeepsOfEachBlockTheOneWithMostSteps) {
       auto& steps = most[{block.author(), block.block}];
       steps = std::max(steps, block.steps);
     }
-    for (const Author& author : kLives) {
+    for (const Author& author : kIncarnations) {
       for (int b = 0; b < 2; ++b) EXPECT_EQ(table.block(author, b).steps, (most[{author, b}]));
     }
   });
@@ -174,7 +175,7 @@ TEST(MergeProperty, KeepsOfEachBlockTheOneWithMostSteps) {
 TEST(MergeProperty, AddsUpInTheOrderOfAuthorsWhateverTheOrderOfArrival) {
   in_every_history([](const auto& said, Dice& dice) {
     const CoverageTable table = table_after(part_of(said, dice));
-    std::set<Author> in_order(kLives.begin(), kLives.end());
+    std::set<Author> in_order(kIncarnations.begin(), kIncarnations.end());
     const Coefficients average = average_of(table);
     for (int k = 0; k < 144; ++k) {
       double sum = 0;
@@ -198,7 +199,7 @@ TEST(MergeProperty, WhatIsPassedOnIsWhatWasSaid) {
     std::map<std::pair<Author, std::int64_t>, const Contribution*> originals;
     for (const Contribution& block : said)
       originals[{block.author(), block.header.sequence}] = &block;
-    for (const Author& author : kLives) {
+    for (const Author& author : kIncarnations) {
       for (int b = 0; b < 2; ++b) {
         const Contribution passed = far.block(author, b);
         if (passed.steps == 0) continue;
@@ -217,7 +218,7 @@ TEST(MergeProperty, ForgettingIsLeavingOutAndKeeping) {
   in_every_history([](const auto& said, Dice& dice) {
     const auto heard = part_of(said, dice);
     std::set<Author> forgotten;
-    for (const Author& author : kLives) {
+    for (const Author& author : kIncarnations) {
       if (dice.below(2) == 0) forgotten.insert(author);
     }
     std::vector<Contribution> of_the_rest;
@@ -240,7 +241,7 @@ TEST(MergeProperty, ForgettingIsLeavingOutAndKeeping) {
 TEST(MergeProperty, ForgettingDoesNotDependOnWhatHasArrived) {
   in_every_history([](const auto& said, Dice& dice) {
     const auto heard = part_of(said, dice);
-    const Author gone = kLives[dice.below(kLives.size())];
+    const Author gone = kIncarnations[dice.below(kIncarnations.size())];
     CoverageTable first = empty_table();
     first.forget(gone);
     for (const Contribution& block : heard) first.merge(block, kManySteps);

@@ -20,8 +20,9 @@ constexpr std::size_t kMostBytes = 9000;
 
 }  // namespace
 
-Adversary::Adversary(const LcmUrl& url, const MessageAuthenticator& seal, std::uint64_t seed)
-    : url_(url), seal_(seal), dice_(seed), mouth_(AF_INET, SOCK_DGRAM) {
+Adversary::Adversary(const LcmUrl& url, const MessageAuthenticator& authenticator,
+                     std::uint64_t seed)
+    : url_(url), authenticator_(authenticator), dice_(seed), mouth_(AF_INET, SOCK_DGRAM) {
   for (int bus = 0; bus < kBusCount; ++bus) {
     std::string error;
     ears_.push_back(doctor::group_listener(url.group, url.base_port + bus, error));
@@ -53,7 +54,8 @@ void Adversary::take(int bus, std::span<const std::uint8_t> datagram) {
   if (end == rest.end()) return;
   Packet packet{bus, std::string(rest.begin(), end), {end + 1, rest.end()}};
   if (packet.message.size() < kHeaderBytes || forged(packet.channel, packet.message)) return;
-  const auto world = decode(std::as_bytes(std::span(packet.message)), 0, seal_, packet.channel);
+  const auto world =
+      decode(std::as_bytes(std::span(packet.message)), 0, authenticator_, packet.channel);
   const auto* message = std::get_if<Message>(&world);
   if (const auto* state = message ? std::get_if<WorldState>(message) : nullptr) {
     tick_ = std::max(tick_, state->header.tick);
@@ -74,7 +76,7 @@ Adversary::Packet Adversary::damaged(const Packet& original) {
   packet.message.resize(now);
   if (packet.message == original.message) packet.message[dice_.below(now)] ^= 1;
   // An attacker without a key can compute the tag of a team without a key.
-  if (seal_.keyed() && now >= kHeaderBytes && dice_.below(2) == 0) retag(packet.message);
+  if (authenticator_.keyed() && now >= kHeaderBytes && dice_.below(2) == 0) retag(packet.message);
   if (dice_.below(8) == 0) packet.channel = heard_[dice_.below(heard_.size())].channel;
   if (dice_.below(64) == 0) packet.channel += static_cast<char>('0' + dice_.below(10));
   if (dice_.below(5) == 0) packet.bus = static_cast<int>(dice_.below(kBusCount));

@@ -18,7 +18,7 @@ class Adversary {
  public:
   /// @param seal  the team's, only for reading its state. If it has a key, some forgeries get the
   ///              tag that is valid without one.
-  Adversary(const LcmUrl& url, const MessageAuthenticator& seal, std::uint64_t seed);
+  Adversary(const LcmUrl& url, const MessageAuthenticator& authenticator, std::uint64_t seed);
 
   /// Reads the waiting datagrams. They are recorded until the first one was sent.
   void listen();
@@ -49,7 +49,7 @@ class Adversary {
   std::vector<std::uint8_t> wrapped(const Packet& packet);
 
   LcmUrl url_;
-  MessageAuthenticator seal_;
+  MessageAuthenticator authenticator_;
   Dice dice_;
   std::vector<Socket> ears_;
   Socket mouth_;

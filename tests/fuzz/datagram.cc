@@ -48,8 +48,8 @@ void check_accepted(const Message& message, std::string_view channel,
 }
 
 void take(std::span<const std::byte> bytes, std::string_view channel) {
-  static const MessageAuthenticator seal(MissionKey{{std::byte{7}}, {std::byte{8}}, {}});
-  ERGOCAST_REQUIRE(std::holds_alternative<Refusal>(decode(bytes, 0, seal, channel)));
+  static const MessageAuthenticator authenticator(MissionKey{{std::byte{7}}, {std::byte{8}}, {}});
+  ERGOCAST_REQUIRE(std::holds_alternative<Refusal>(decode(bytes, 0, authenticator, channel)));
   const auto decoded = decode(bytes, 0);
   if (const auto* message = std::get_if<Message>(&decoded))
     check_accepted(*message, channel, bytes);

@@ -51,7 +51,7 @@ Instant listen(Input input, Core& core, const Receive& receive) {
 }
 
 void agent_listens(Input input) {
-  Agent agent({test::kRun, 0, test::life_of(0), "here", "1"});
+  Agent agent({test::kRun, 0, test::incarnation_of(0), "here", "1"});
   listen(input, agent, [&agent](const Message& message, Instant now, AgentId transmitter) {
     test::give(agent, message, now, transmitter);
   });

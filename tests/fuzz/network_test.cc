@@ -89,14 +89,14 @@ class HostileNetwork : public RunningMission {
   }
 
   void fly_among_adversaries(const std::vector<std::string>& more,
-                             const MessageAuthenticator& seal) {
+                             const MessageAuthenticator& authenticator) {
     const long strikes = setting("ERGOCAST_FUZZ_DATAGRAMS", 20000);
     const std::chrono::duration<double> time(
         static_cast<double>(strikes) / static_cast<double>(setting("ERGOCAST_FUZZ_PER_S", 4000)));
     std::vector<std::string> arguments{"--realtime", "--lcm-url", kUrl};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Child mission = launch_endless(scenario(), arguments);
-    Adversary adversary(std::get<LcmUrl>(LcmUrl::parse(kUrl)), seal, 1);
+    Adversary adversary(std::get<LcmUrl>(LcmUrl::parse(kUrl)), authenticator, 1);
     const std::vector<pid_t> before = crew();
     ASSERT_EQ(before.size(), 7U);
     const long memory_kb = largest_kb(before);

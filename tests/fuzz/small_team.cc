@@ -80,7 +80,7 @@ SmallTeam::SmallTeam(std::uint8_t features)
       recorder_(kRun, test::kLoggerLife, trajectory_, metrics_),
       view_(kRun, now_) {
   for (AgentId id = 0; id < kAgents; ++id) {
-    agents_.emplace_back(AgentIdentity{kRun, id, test::life_of(id), "here", "1"});
+    agents_.emplace_back(AgentIdentity{kRun, id, test::incarnation_of(id), "here", "1"});
   }
 }
 

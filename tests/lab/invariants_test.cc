@@ -24,7 +24,7 @@ class InvariantsTest : public ::testing::Test {
  protected:
   InvariantsTest() : mission_(mission()), team_(mission_) {
     for (const Author& author : {kOne, kTwo, kLeft}) {
-      team_.born(author);
+      team_.started(author);
       roster_.push_back({author, 0, author == kLeft ? 10 : -1});
     }
     team_.sent(0, world(99, {5, 5, 0}), nullptr);
@@ -82,8 +82,8 @@ class InvariantsTest : public ::testing::Test {
   /// @param later  the roster from the admission on
   std::string violated_by_forecast(double off, const std::vector<RosterEntry>& later) {
     Invariants team(mission_);
-    team.born(kOne);
-    team.born(kTwo);
+    team.started(kOne);
+    team.started(kTwo);
     team.sent(0, world(99, {5, 5, 0}), nullptr);
     CoverageTable table(mission_.basis, 0.1), other(mission_.basis, 0.1);
     Forecast forecast(mission_, kOne);
@@ -182,7 +182,7 @@ TEST_F(InvariantsTest, RelaysAnswerDigests) {
   const TableView one = holder(table, c_one_);
   Digest asks;
   asks.entry_count = 1;
-  team_.heard(kOne, asks);
+  team_.digest_received(kOne, asks);
   const Outgoing relay{Bus::kSwarm, table.block(kTwo, 0), 0};
   team_.sent(1, relay, &one);
   team_.sent(1, relay, &one);
@@ -379,7 +379,7 @@ TEST_F(InvariantsTest, RelaysStopOnceAllKnowAll) {
   const TableView one = holder(table, c_one_);
   Digest asks;
   asks.entry_count = 10;
-  team_.heard(kOne, asks);
+  team_.digest_received(kOne, asks);
   const Outgoing relay{Bus::kSwarm, table.block(kTwo, 0), 0};
   team_.sent(1, relay, &one);
   team_.recovered(2, {one});

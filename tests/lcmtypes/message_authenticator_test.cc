@@ -27,8 +27,8 @@ MissionKey member_of(MissionKey key) {
   return key;
 }
 
-const MessageAuthenticator kCoordinatorSeal{key_of(1)};
-const MessageAuthenticator kMemberSeal{member_of(key_of(1))};
+const MessageAuthenticator kCoordinatorAuthenticator{key_of(1)};
+const MessageAuthenticator kMemberAuthenticator{member_of(key_of(1))};
 const MessageAuthenticator kOtherTeam{key_of(2)};
 
 Message unsigned_copy(Message message) {
@@ -42,67 +42,75 @@ bool is_signed(const Message& message) {
          std::holds_alternative<Pause>(message);
 }
 
-Bytes sealed(const Message& message, const MessageAuthenticator& seal,
-             AgentId relayer = kUnassigned) {
+Bytes authenticated(const Message& message, const MessageAuthenticator& authenticator,
+                    AgentId relayer = kUnassigned) {
   Bytes bytes;
-  encode(message, bytes, seal, channel_of(message, relayer));
+  encode(message, bytes, authenticator, channel_of(message, relayer));
   return bytes;
 }
-std::string opened(const Bytes& bytes, const MessageAuthenticator& seal, std::string_view channel) {
-  return verdict(decode(bytes, kRun, seal, channel));
+std::string opened(const Bytes& bytes, const MessageAuthenticator& authenticator,
+                   std::string_view channel) {
+  return verdict(decode(bytes, kRun, authenticator, channel));
 }
 
 TEST(MessageAuthenticator, EveryMessageOfTheTeamIsOpenedByEveryMember) {
   for (const Message& message : every_message()) {
-    const Bytes bytes = sealed(unsigned_copy(message), kCoordinatorSeal);
-    EXPECT_EQ(opened(bytes, kMemberSeal, channel_of(message)), "accepted") << message.index();
-    EXPECT_EQ(opened(bytes, kCoordinatorSeal, channel_of(message)), "accepted") << message.index();
+    const Bytes bytes = authenticated(unsigned_copy(message), kCoordinatorAuthenticator);
+    EXPECT_EQ(opened(bytes, kMemberAuthenticator, channel_of(message)), "accepted")
+        << message.index();
+    EXPECT_EQ(opened(bytes, kCoordinatorAuthenticator, channel_of(message)), "accepted")
+        << message.index();
   }
 }
 
 TEST(MessageAuthenticator, FingerprintsAreEqualForEqualKeysOnly) {
-  EXPECT_EQ(kMemberSeal.fingerprint(), kCoordinatorSeal.fingerprint());
-  EXPECT_NE(kMemberSeal.fingerprint(), kOtherTeam.fingerprint());
-  EXPECT_NE(kMemberSeal.fingerprint(), 0u);
+  EXPECT_EQ(kMemberAuthenticator.fingerprint(), kCoordinatorAuthenticator.fingerprint());
+  EXPECT_NE(kMemberAuthenticator.fingerprint(), kOtherTeam.fingerprint());
+  EXPECT_NE(kMemberAuthenticator.fingerprint(), 0u);
   EXPECT_EQ(MessageAuthenticator().fingerprint(), 0u);
   MissionKey half = key_of(1);
   half.coordinator = key_of(2).coordinator;
-  EXPECT_NE(MessageAuthenticator(half).fingerprint(), kMemberSeal.fingerprint())
+  EXPECT_NE(MessageAuthenticator(half).fingerprint(), kMemberAuthenticator.fingerprint())
       << "obeys somebody else";
 }
 
 TEST(MessageAuthenticator, WhatHasNoKeyOrAnotherIsRefusedByName) {
   for (const Message& message : every_message()) {
     const std::string& channel = channel_of(message);
-    EXPECT_EQ(opened(sealed(message, MessageAuthenticator()), kMemberSeal, channel), "unkeyed");
-    EXPECT_EQ(opened(sealed(unsigned_copy(message), kOtherTeam), kMemberSeal, channel), "tag");
+    EXPECT_EQ(opened(authenticated(message, MessageAuthenticator()), kMemberAuthenticator, channel),
+              "unkeyed");
     EXPECT_EQ(
-        opened(sealed(unsigned_copy(message), kCoordinatorSeal), MessageAuthenticator(), channel),
+        opened(authenticated(unsigned_copy(message), kOtherTeam), kMemberAuthenticator, channel),
         "tag");
+    EXPECT_EQ(opened(authenticated(unsigned_copy(message), kCoordinatorAuthenticator),
+                     MessageAuthenticator(), channel),
+              "tag");
   }
 }
 
 TEST(MessageAuthenticator, NoChangedBitIsAccepted) {
   for (const Message& message : every_message()) {
-    const Bytes good = sealed(unsigned_copy(message), kCoordinatorSeal);
+    const Bytes good = authenticated(unsigned_copy(message), kCoordinatorAuthenticator);
     for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
       Bytes bad = good;
       bad[bit / 8] ^= static_cast<std::byte>(1 << (bit % 8));
-      EXPECT_NE(opened(bad, kMemberSeal, channel_of(message)), "accepted") << bit;
+      EXPECT_NE(opened(bad, kMemberAuthenticator, channel_of(message)), "accepted") << bit;
       // Knowledge of the format without the key does not help.
-      ASSERT_NE(opened(retagged(bad), kMemberSeal, channel_of(message)), "accepted") << bit;
+      ASSERT_NE(opened(retagged(bad), kMemberAuthenticator, channel_of(message)), "accepted")
+          << bit;
     }
   }
 }
 
 TEST(MessageAuthenticator, ARepeatUnderAnotherNameIsRefused) {
-  const Bytes bytes = sealed(contribution(), kMemberSeal);
-  EXPECT_EQ(opened(bytes, kMemberSeal, "ERGOCAST_CONTRIBUTION_3"), "accepted");
+  const Bytes bytes = authenticated(contribution(), kMemberAuthenticator);
+  EXPECT_EQ(opened(bytes, kMemberAuthenticator, "ERGOCAST_CONTRIBUTION_3"), "accepted");
   for (const char* channel : {"ERGOCAST_CONTRIBUTION_4", "ERGOCAST_CONTRIBUTION", ""}) {
-    EXPECT_EQ(opened(bytes, kMemberSeal, channel), "tag") << channel;
+    EXPECT_EQ(opened(bytes, kMemberAuthenticator, channel), "tag") << channel;
   }
   // A teammate relays it under its own name, which needs the key.
-  EXPECT_EQ(opened(sealed(contribution(), kMemberSeal, 4), kMemberSeal, "ERGOCAST_CONTRIBUTION_4"),
+  EXPECT_EQ(opened(authenticated(contribution(), kMemberAuthenticator, 4), kMemberAuthenticator,
+                   "ERGOCAST_CONTRIBUTION_4"),
             "accepted");
 }
 
@@ -110,29 +118,35 @@ TEST(MessageAuthenticator, AMemberCannotSpeakForTheCoordinator) {
   for (const Message& message : every_message()) {
     if (!is_signed(message)) continue;
     const std::string& channel = channel_of(message);
-    EXPECT_EQ(opened(sealed(unsigned_copy(message), kMemberSeal), kMemberSeal, channel),
+    EXPECT_EQ(opened(authenticated(unsigned_copy(message), kMemberAuthenticator),
+                     kMemberAuthenticator, channel),
               "unsigned");
-    EXPECT_EQ(opened(sealed(message, kMemberSeal), kMemberSeal, channel), "unsigned");
+    EXPECT_EQ(opened(authenticated(message, kMemberAuthenticator), kMemberAuthenticator, channel),
+              "unsigned");
   }
 }
 
 TEST(MessageAuthenticator, AMemberRepeatsWhatTheCoordinatorSignedButCannotChangeIt) {
   const Message said = unsigned_copy(mission_part());
-  const Bytes bytes = sealed(said, kCoordinatorSeal);
-  const auto decoded = decode(bytes, kRun, kMemberSeal, channel_of(said));
+  const Bytes bytes = authenticated(said, kCoordinatorAuthenticator);
+  const auto decoded = decode(bytes, kRun, kMemberAuthenticator, channel_of(said));
   auto part = std::get<MissionPart>(std::get<Message>(decoded));
-  EXPECT_EQ(sealed(part, kMemberSeal), bytes);
+  EXPECT_EQ(authenticated(part, kMemberAuthenticator), bytes);
   part.revision += 1;
-  EXPECT_EQ(opened(sealed(part, kMemberSeal), kMemberSeal, channel_of(said)), "unsigned");
+  EXPECT_EQ(
+      opened(authenticated(part, kMemberAuthenticator), kMemberAuthenticator, channel_of(said)),
+      "unsigned");
 }
 
 TEST(MessageAuthenticator, ASignatureIsOfOneMessageOfOneRun) {
   Stop stop;
   stop.header = header_of_sender(kOperator);
-  const auto decoded = decode(sealed(stop, kCoordinatorSeal), kRun, kMemberSeal, channel_of(stop));
+  const auto decoded = decode(authenticated(stop, kCoordinatorAuthenticator), kRun,
+                              kMemberAuthenticator, channel_of(stop));
   Stop again = std::get<Stop>(std::get<Message>(decoded));
   again.header.run = kRun + 1;
-  EXPECT_EQ(verdict(decode(sealed(again, kMemberSeal), 0, kMemberSeal, channel_of(stop))),
+  EXPECT_EQ(verdict(decode(authenticated(again, kMemberAuthenticator), 0, kMemberAuthenticator,
+                           channel_of(stop))),
             "unsigned");
 }
 
@@ -146,11 +160,11 @@ MessageAuthenticator obeying_another() {
 
 TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
   const Message said = unsigned_copy(mission_part());
-  const Bytes bytes = sealed(said, kCoordinatorSeal);
+  const Bytes bytes = authenticated(said, kCoordinatorAuthenticator);
   const std::string& channel = channel_of(said);
   KnownSignatures known;
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "unsigned");
-  EXPECT_EQ(verdict(decode(bytes, kRun, kMemberSeal, channel, &known)), "accepted");
+  EXPECT_EQ(verdict(decode(bytes, kRun, kMemberAuthenticator, channel, &known)), "accepted");
   // A check would refuse it as before.
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "accepted");
 }
@@ -158,28 +172,28 @@ TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
 TEST(KnownSignatures, WhatIsRefusedIsNotRemembered) {
   const Message said = unsigned_copy(mission_part());
   const std::string& channel = channel_of(said);
-  const Bytes forged = sealed(said, kMemberSeal);
+  const Bytes forged = authenticated(said, kMemberAuthenticator);
   KnownSignatures known;
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(verdict(decode(forged, kRun, kMemberSeal, channel, &known)), "unsigned");
+    EXPECT_EQ(verdict(decode(forged, kRun, kMemberAuthenticator, channel, &known)), "unsigned");
   }
-  const Bytes good = sealed(said, kCoordinatorSeal);
-  EXPECT_EQ(verdict(decode(good, kRun, kMemberSeal, channel, &known)), "accepted");
+  const Bytes good = authenticated(said, kCoordinatorAuthenticator);
+  EXPECT_EQ(verdict(decode(good, kRun, kMemberAuthenticator, channel, &known)), "accepted");
 }
 
 TEST(KnownSignatures, AKnownTagMakesNoOtherBytesAcceptable) {
   const Message said = unsigned_copy(mission_part());
   const std::string& channel = channel_of(said);
-  const Bytes good = sealed(said, kCoordinatorSeal);
+  const Bytes good = authenticated(said, kCoordinatorAuthenticator);
   KnownSignatures known;
-  ASSERT_EQ(verdict(decode(good, kRun, kMemberSeal, channel, &known)), "accepted");
+  ASSERT_EQ(verdict(decode(good, kRun, kMemberAuthenticator, channel, &known)), "accepted");
   for (std::size_t at = 0; at < good.size(); ++at) {
     Bytes bad = good;
     bad[at] ^= std::byte{1};
-    EXPECT_NE(verdict(decode(bad, kRun, kMemberSeal, channel, &known)), "accepted") << at;
+    EXPECT_NE(verdict(decode(bad, kRun, kMemberAuthenticator, channel, &known)), "accepted") << at;
   }
   // The message of a former run is still refused.
-  EXPECT_EQ(verdict(decode(good, kRun + 1, kMemberSeal, channel, &known)), "run");
+  EXPECT_EQ(verdict(decode(good, kRun + 1, kMemberAuthenticator, channel, &known)), "run");
 }
 
 TEST(KnownSignatures, HaveRoomForSoManyAndCheckTheOthersAgain) {
@@ -200,20 +214,20 @@ TEST(KnownSignatures, HaveRoomForSoManyAndCheckTheOthersAgain) {
 }
 
 TEST(MessageAuthenticator, ShortMessagesWithoutRoomForASignatureAreRefused) {
-  Bytes bytes = sealed(stop(), kCoordinatorSeal);
+  Bytes bytes = authenticated(stop(), kCoordinatorAuthenticator);
   bytes.resize(kHeaderBytes + 63);
-  kMemberSeal.close(bytes, false, channel_of(stop()));
-  EXPECT_EQ(opened(bytes, kMemberSeal, channel_of(stop())), "unsigned");
+  kMemberAuthenticator.close(bytes, false, channel_of(stop()));
+  EXPECT_EQ(opened(bytes, kMemberAuthenticator, channel_of(stop())), "unsigned");
 }
 
 TEST(MessageAuthenticator, WithoutAKeyTheTagIsThatOfTheFormat) {
   for (const Message& message : every_message()) {
-    EXPECT_EQ(sealed(message, MessageAuthenticator()), retagged(encoded(message)));
+    EXPECT_EQ(authenticated(message, MessageAuthenticator()), retagged(encoded(message)));
   }
 }
 
 TEST(MessageAuthenticator, TheKeyedTagIsBlake2bOverMessageAndChannel) {
-  const Bytes bytes = sealed(command(), kMemberSeal);
+  const Bytes bytes = authenticated(command(), kMemberAuthenticator);
   Bytes hashed = bytes;
   std::fill_n(hashed.begin() + 44, 16, std::byte{0});
   for (const char c : std::string_view("ERGOCAST_COMMAND_2")) hashed.push_back(std::byte(c));

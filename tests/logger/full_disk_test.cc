@@ -8,7 +8,7 @@ namespace {
 
 using namespace test;
 
-Incarnation life_of(const Outbox& out) { return header_of(out.back().message).incarnation; }
+Incarnation incarnation_of(const Outbox& out) { return header_of(out.back().message).incarnation; }
 
 /// One agent, and more ticks than a recorder keeps.
 Mission long_mission(Pace pace) {
@@ -45,7 +45,7 @@ TEST(FullDisk, WhatWasStillHeldIsWrittenAfterwards) {
   free_space(record, at(3s));
   const Outbox said = advance(record.recorder, at(3s));
   EXPECT_EQ(acks(said), std::vector<Tick>{69});
-  EXPECT_NE(life_of(said), kLoggerLife) << "a world that gave it up takes it back";
+  EXPECT_NE(incarnation_of(said), kLoggerLife) << "a world that gave it up takes it back";
   EXPECT_EQ(record.trajectory.str(), untroubled.trajectory.str());
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }
@@ -91,8 +91,9 @@ TEST(Statuses, OfNoMoreLivesThanThereCanBeAreKept) {
     status.header.incarnation = life;
     record.tell(status);
   };
-  for (Incarnation life = 1; life <= Liveness::kMostLives + 1; ++life) hear(life, 1);
-  EXPECT_EQ(record.recorder.statuses().size(), Liveness::kMostLives - 1) << "and the coordinator";
+  for (Incarnation life = 1; life <= Liveness::kMaxIncarnations + 1; ++life) hear(life, 1);
+  EXPECT_EQ(record.recorder.statuses().size(), Liveness::kMaxIncarnations - 1)
+      << "and the coordinator";
   hear(1, 2);
   EXPECT_EQ(record.recorder.statuses().at({1, 1}).header.sequence, 2) << "of those it goes on";
 }

@@ -19,9 +19,9 @@ namespace ergocast::test {
 
 class BusObserver {
  public:
-  explicit BusObserver(const std::string& url, const MessageAuthenticator& seal = {}) {
+  explicit BusObserver(const std::string& url, const MessageAuthenticator& authenticator = {}) {
     transport_ = std::get<0>(Transport::open(
-        std::get<LcmUrl>(LcmUrl::parse(url)), 0, seal,
+        std::get<LcmUrl>(LcmUrl::parse(url)), 0, authenticator,
         {kTypes<MissionPart, Contribution, Digest, AgentStatus>, 0, kTypes<Command, RecordAck>},
         {.on_message = [this](const Message& message, Bus, AgentId) { hear(message); }}));
   }

@@ -97,7 +97,7 @@ class Keyed : public ByHand {
     EXPECT_EQ(write_key_file(coordinator_, key_text(key, true)), std::nullopt);
     EXPECT_EQ(write_key_file(team_, key_text(key, false)), std::nullopt);
   }
-  MessageAuthenticator seal(const std::filesystem::path& file) const {
+  MessageAuthenticator authenticator(const std::filesystem::path& file) const {
     return MessageAuthenticator(std::get<MissionKey>(read_key_file(file)));
   }
   /// The id of the mission that is flying.
@@ -145,7 +145,8 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
     constexpr Tick kNotLate = Tick{1} << 40;
     return Stop{{run, kOperator, 1, 0, kNotLate}, false, why};
   };
-  Stranger outsider(kUrl), member(kUrl, seal(team_)), coordinator(kUrl, seal(coordinator_));
+  Stranger outsider(kUrl), member(kUrl, authenticator(team_)),
+      coordinator(kUrl, authenticator(coordinator_));
   for (int i = 0; i < 20; ++i) {
     outsider.say(Bus::kSwarm, stop("no key"));
     member.say(Bus::kSwarm, stop("an agent's key"));

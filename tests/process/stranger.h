@@ -16,11 +16,11 @@ namespace ergocast::test {
 
 class Stranger {
  public:
-  explicit Stranger(const std::string& url, const MessageAuthenticator& seal = {})
+  explicit Stranger(const std::string& url, const MessageAuthenticator& authenticator = {})
       : url_(std::get<LcmUrl>(LcmUrl::parse(url))),
-        transport_(std::get<0>(Transport::open(
-            url_, 0, seal, Subscriptions{}, {.on_message = [](const Message&, Bus, AgentId) {}}))) {
-  }
+        transport_(
+            std::get<0>(Transport::open(url_, 0, authenticator, Subscriptions{},
+                                        {.on_message = [](const Message&, Bus, AgentId) {}}))) {}
 
   void say(Bus bus, Message message) {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);

@@ -48,7 +48,7 @@ int refused(const Mission& mission, int messages_per_tick, double ticks_per_seco
   RateLimit limit;
   int refused = 0;
   for (Tick tick = 0; tick < 10000; ++tick) {
-    limit.allow(allowance_of(mission, 4), tick);
+    limit.allow(rate_budget_of(mission, 4), tick);
     const Instant now = Instant{} + seconds(static_cast<double>(tick) / ticks_per_second);
     for (int i = 0; i < messages_per_tick; ++i) refused += limit.admit(0, true, now) ? 0 : 1;
   }
@@ -78,7 +78,7 @@ TEST(RateLimit, RefusesMostOfAHundredTimesThat) {
 TEST(RateLimit, ABacklogOfTenSecondsIsNoBabble) {
   const Mission mission = mission_of(Pace::kRealtime);
   RateLimit limit;
-  limit.allow(allowance_of(mission, 4), 0);
+  limit.allow(rate_budget_of(mission, 4), 0);
   EXPECT_TRUE(limit.admit(0, true, at(1s)));
   for (int i = 0; i < 10 * 10 * kHonest + 2000; ++i) EXPECT_TRUE(limit.admit(0, true, at(1s))) << i;
 }

@@ -17,7 +17,7 @@ class Guarded : public ::testing::Test {
  protected:
   /// True if the kernel needs a new list.
   bool hear(const Header& from, Instant when) {
-    return guard_.count(from, guard_.is_news(from, when), when);
+    return guard_.count(from, guard_.is_new(from, when), when);
   }
   /// So many of the same at once.
   bool flood(const Header& from, int count, Instant when) {
@@ -80,13 +80,13 @@ TEST_F(Guarded, AFloodThatLastsIsCutAtEverNewerSequencesAndItsEndOpensAgain) {
 }
 
 TEST_F(Guarded, RemembersNoMoreLivesThanItsLimit) {
-  const int many = static_cast<int>(RepeatGuard::kMostLives) + 50;
+  const int many = static_cast<int>(RepeatGuard::kMaxIncarnations) + 50;
   for (int life = 1; life <= many; ++life) hear(said(0, static_cast<Incarnation>(life), 1), at(1s));
   for (int round = 0; round < 3; ++round) {
     for (int life = 1; life <= many; ++life)
       hear(said(0, static_cast<Incarnation>(life), 1), at(1s));
   }
-  EXPECT_LE(guard_.flooded().size(), RepeatGuard::kMostLives);
+  EXPECT_LE(guard_.flooded().size(), RepeatGuard::kMaxIncarnations);
   EXPECT_GT(guard_.flooded().size(), 0U);
 }
 

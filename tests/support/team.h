@@ -24,8 +24,8 @@ inline constexpr Incarnation kCoordinatorLife = 0xc0, kWorldLife = 0x3d, kLogger
 inline Instant at(std::chrono::nanoseconds since_start) { return Instant{since_start}; }
 
 /// The incarnation that agent `id` has in these tests.
-inline Incarnation life_of(AgentId id) { return 1000 + static_cast<Incarnation>(id); }
-inline Author author_of(AgentId id) { return {id, life_of(id)}; }
+inline Incarnation incarnation_of(AgentId id) { return 1000 + static_cast<Incarnation>(id); }
+inline Author author_of(AgentId id) { return {id, incarnation_of(id)}; }
 
 /// A uniform target on [0, 2000]², every agent starting on the line y = 500.
 inline Mission small_mission(int agents) {
@@ -93,7 +93,7 @@ inline WorldState world_state(Tick tick, const std::vector<Eigen::Vector3d>& pos
 
 inline Command command_of(AgentId id, Tick tick, const Eigen::Vector3d& velocity_mps) {
   Command command;
-  command.header = {kRun, id, life_of(id), tick + 2, tick};
+  command.header = {kRun, id, incarnation_of(id), tick + 2, tick};
   command.velocity_mps = velocity_mps;
   return command;
 }
@@ -101,7 +101,7 @@ inline Command command_of(AgentId id, Tick tick, const Eigen::Vector3d& velocity
 inline AgentStatus status_of(AgentId id, std::int64_t sequence, Tick answered_tick = -1,
                              AgentId waiting_for = kUnassigned) {
   AgentStatus status;
-  status.header = {kRun, id, life_of(id), sequence, 0};
+  status.header = {kRun, id, incarnation_of(id), sequence, 0};
   status.phase = AgentPhase::kRunning;
   status.answered_tick = answered_tick;
   status.waiting_for = waiting_for;

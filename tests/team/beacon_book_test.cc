@@ -57,7 +57,7 @@ class Team {
   }
   void say(AgentId from, Beacon beacon, Tick tick,
            const std::function<bool(AgentId, AgentId)>& hears) {
-    beacon.header = {kRun, from, life_of(from), ++sequence_, tick};
+    beacon.header = {kRun, from, incarnation_of(from), ++sequence_, tick};
     last_[from] = beacon;
     for (AgentId to = 0; to < std::ssize(books_); ++to) {
       if (to != from && hears(from, to))
@@ -136,7 +136,7 @@ class LateTeam {
 
  private:
   void say(AgentId from, Beacon beacon, Tick tick) {
-    beacon.header = {kRun, from, life_of(from), ++sequence_, tick};
+    beacon.header = {kRun, from, incarnation_of(from), ++sequence_, tick};
     for (AgentId to = 0; to < kAgents; ++to) {
       const auto draw = static_cast<Tick>((sequence_ * 7919 + to * 104729) % 1009);
       if (to == from || draw % 4 == 0) continue;

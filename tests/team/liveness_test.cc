@@ -18,31 +18,31 @@ Header said(AgentId sender, Incarnation life, std::int64_t sequence) {
   return {1, sender, life, sequence, 0};
 }
 
-bool is_news(Liveness& liveness, const Header& from, Bus bus = Bus::kSwarm) {
+bool is_new(Liveness& liveness, const Header& from, Bus bus = Bus::kSwarm) {
   return liveness.record(from, bus, at(0s));
 }
 
 TEST(Liveness, OnlyWhatComesLaterIsNews) {
   Liveness liveness;
-  EXPECT_TRUE(is_news(liveness, said(3, 7, 5)));
-  EXPECT_FALSE(is_news(liveness, said(3, 7, 5)));
-  EXPECT_FALSE(is_news(liveness, said(3, 7, 4)));
-  EXPECT_TRUE(is_news(liveness, said(3, 7, 6)));
-  EXPECT_FALSE(is_news(liveness, said(3, 7, 5)));
+  EXPECT_TRUE(is_new(liveness, said(3, 7, 5)));
+  EXPECT_FALSE(is_new(liveness, said(3, 7, 5)));
+  EXPECT_FALSE(is_new(liveness, said(3, 7, 4)));
+  EXPECT_TRUE(is_new(liveness, said(3, 7, 6)));
+  EXPECT_FALSE(is_new(liveness, said(3, 7, 5)));
 }
 
 TEST(Liveness, LivesAndSendersAreToldApart) {
   Liveness liveness;
-  EXPECT_TRUE(is_news(liveness, said(3, 7, 5)));
-  EXPECT_TRUE(is_news(liveness, said(3, 8, 1)));
-  EXPECT_TRUE(is_news(liveness, said(kWorld, 7, 1)));
-  EXPECT_FALSE(is_news(liveness, said(3, 7, 5))) << "a successor does not wake its predecessor";
+  EXPECT_TRUE(is_new(liveness, said(3, 7, 5)));
+  EXPECT_TRUE(is_new(liveness, said(3, 8, 1)));
+  EXPECT_TRUE(is_new(liveness, said(kWorld, 7, 1)));
+  EXPECT_FALSE(is_new(liveness, said(3, 7, 5))) << "a successor does not wake its predecessor";
 }
 
 TEST(Liveness, EachBusHasSequencesOfItsOwn) {
   Liveness liveness;
-  EXPECT_TRUE(is_news(liveness, said(3, 7, 5), Bus::kSwarm));
-  EXPECT_TRUE(is_news(liveness, said(3, 7, 1), Bus::kCommand));
+  EXPECT_TRUE(is_new(liveness, said(3, 7, 5), Bus::kSwarm));
+  EXPECT_TRUE(is_new(liveness, said(3, 7, 1), Bus::kCommand));
   EXPECT_EQ(liveness.newest({3, 7}, Bus::kSwarm), 5);
   EXPECT_EQ(liveness.newest({3, 7}, Bus::kCommand), 1);
   EXPECT_EQ(liveness.newest({3, 7}, Bus::kWorld), -1);
@@ -51,14 +51,14 @@ TEST(Liveness, EachBusHasSequencesOfItsOwn) {
 
 TEST(Liveness, RemembersNoMoreLivesThanItsLimit) {
   Liveness liveness;
-  constexpr auto kMost = static_cast<Incarnation>(Liveness::kMostLives);
+  constexpr auto kMost = static_cast<Incarnation>(Liveness::kMaxIncarnations);
   for (Incarnation life = 1; life <= kMost; ++life) {
-    EXPECT_TRUE(is_news(liveness, said(0, life, 1)));
+    EXPECT_TRUE(is_new(liveness, said(0, life, 1)));
   }
-  EXPECT_FALSE(is_news(liveness, said(0, kMost + 1, 1)));
+  EXPECT_FALSE(is_new(liveness, said(0, kMost + 1, 1)));
   EXPECT_FALSE(liveness.last_sign({0, kMost + 1}));
-  EXPECT_TRUE(is_news(liveness, said(0, kMost, 2))) << "whom it knows, it still hears";
-  EXPECT_TRUE(is_news(liveness, said(0, kMost, 4)));
+  EXPECT_TRUE(is_new(liveness, said(0, kMost, 2))) << "whom it knows, it still hears";
+  EXPECT_TRUE(is_new(liveness, said(0, kMost, 4)));
   EXPECT_EQ(liveness.lost({0, kMost}, Bus::kSwarm), 1) << "of those it goes on";
   EXPECT_EQ(liveness.lost({0, kMost + 1}, Bus::kSwarm), 0);
 }
@@ -95,14 +95,14 @@ TEST(Liveness, WhoIsPresumedAliveWasNotHeard) {
   EXPECT_EQ(liveness.last_sign({3, 7}), at(1s));
   EXPECT_FALSE(liveness.last_sign_of_kind(3));
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kSwarm), 0);
-  EXPECT_TRUE(is_news(liveness, said(3, 7, 1)));
+  EXPECT_TRUE(is_new(liveness, said(3, 7, 1)));
 }
 
 TEST(Liveness, WhoIsPresumedAliveHasAPlaceInAFullTable) {
   Liveness liveness;
-  for (Incarnation life = 1; life <= Liveness::kMostLives; ++life)
-    is_news(liveness, said(0, life, 1));
-  const Author admitted{3, Liveness::kMostLives + 7};
+  for (Incarnation life = 1; life <= Liveness::kMaxIncarnations; ++life)
+    is_new(liveness, said(0, life, 1));
+  const Author admitted{3, Liveness::kMaxIncarnations + 7};
   liveness.presume_alive(admitted, at(1s));
   EXPECT_EQ(liveness.last_sign(admitted), at(1s));
   EXPECT_TRUE(liveness.record(said(3, admitted.incarnation, 1), Bus::kSwarm, at(2s)));
@@ -111,10 +111,10 @@ TEST(Liveness, WhoIsPresumedAliveHasAPlaceInAFullTable) {
 
 TEST(Liveness, CountsWhatIsMissingInASequence) {
   Liveness liveness;
-  for (const std::int64_t sequence : {11, 12, 15, 14}) is_news(liveness, said(3, 7, sequence));
+  for (const std::int64_t sequence : {11, 12, 15, 14}) is_new(liveness, said(3, 7, sequence));
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kSwarm), 1) << "13; what came before 11 was before its time";
-  is_news(liveness, said(3, 7, 10));
-  is_news(liveness, said(3, 7, 10));
+  is_new(liveness, said(3, 7, 10));
+  is_new(liveness, said(3, 7, 10));
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kSwarm), 0) << "never fewer than none";
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kCommand), 0);
 }

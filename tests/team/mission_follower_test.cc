@@ -273,7 +273,7 @@ TEST(MissionFollower, FindsAnEntryByItsIncarnation) {
   follower.receive(mission_part(0, MissionState::kRunning, roster));
   ASSERT_NE(follower.entry_of(99), nullptr);
   EXPECT_EQ(follower.entry_of(99)->active_from, 4);
-  EXPECT_EQ(follower.entry_of(life_of(1))->author.agent, 1);
+  EXPECT_EQ(follower.entry_of(incarnation_of(1))->author.agent, 1);
   EXPECT_EQ(follower.entry_of(98), nullptr);
 }
 

@@ -109,7 +109,7 @@ TEST(Participant, CountsAPlanThatIsNotThisRuns) {
 TEST(Participant, OnlyWhatItsSenderSaysForTheFirstTimeIsFresh) {
   Participant agent = participant(Role::kAgent);
   Contribution block;
-  block.header = {kRun, 1, life_of(1), 5, 0};
+  block.header = {kRun, 1, incarnation_of(1), 5, 0};
   EXPECT_FALSE(agent.accept(block, Bus::kSwarm, 2, at(1s))->fresh) << "agent 2 repeats it";
   EXPECT_FALSE(agent.liveness().last_sign(author_of(1))) << "its author may be dead";
   EXPECT_TRUE(agent.accept(block, Bus::kSwarm, 1, at(2s))->fresh);
@@ -144,10 +144,10 @@ TEST(Participant, WhoWasNotToSpeakYetIsNotSilent) {
 TEST(Participant, KnowsMembersUnderTheirOwnNumbersOnly) {
   Participant agent = participant(Role::kAgent);
   accept(agent, mission_part(0, MissionState::kWaiting, roster_of(2)));
-  ASSERT_NE(agent.member({kRun, 1, life_of(1), 0, 0}), nullptr);
-  EXPECT_EQ(agent.member({kRun, 1, life_of(1), 0, 0})->author, author_of(1));
-  EXPECT_EQ(agent.member({kRun, 0, life_of(1), 0, 0}), nullptr);
-  EXPECT_EQ(agent.member({kRun, 1, life_of(5), 0, 0}), nullptr);
+  ASSERT_NE(agent.member({kRun, 1, incarnation_of(1), 0, 0}), nullptr);
+  EXPECT_EQ(agent.member({kRun, 1, incarnation_of(1), 0, 0})->author, author_of(1));
+  EXPECT_EQ(agent.member({kRun, 0, incarnation_of(1), 0, 0}), nullptr);
+  EXPECT_EQ(agent.member({kRun, 1, incarnation_of(5), 0, 0}), nullptr);
 }
 
 TEST(Participant, AnAgentIsSilentAfterThreeSeconds) {
@@ -313,7 +313,7 @@ TEST(Participant, ARelayedBlockKeepsItsAuthor) {
   Participant agent = participant(Role::kAgent);
   agent.set_id(3);
   Contribution block;
-  block.header = {0, 1, life_of(1), 5, 9};  // a table does not know the run
+  block.header = {0, 1, incarnation_of(1), 5, 9};  // a table does not know the run
   Outbox out;
   agent.relay(Bus::kSwarm, block, out);
   ASSERT_EQ(out.size(), 1u);

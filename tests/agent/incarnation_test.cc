@@ -20,7 +20,7 @@ TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
   const auto hellos = only<Hello>(advance(agent, at(0s)));
   ASSERT_EQ(hellos.size(), 1u);
   EXPECT_EQ(hellos[0].requested_id, 3);
-  EXPECT_EQ(hellos[0].header.incarnation, life_of(3));
+  EXPECT_EQ(hellos[0].header.incarnation, incarnation_of(3));
   EXPECT_EQ(hellos[0].host, "here");
   EXPECT_EQ(hellos[0].version, "1.2.3");
   EXPECT_TRUE(advance(agent, at(249ms)).empty());
@@ -42,7 +42,7 @@ TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
 TEST(AgentJoining, TakesTheNumberThatTheRosterGivesItsIncarnation) {
   AgentIdentity anybody = identity_of(0);
   anybody.requested_id = kUnassigned;
-  anybody.incarnation = life_of(2);
+  anybody.incarnation = incarnation_of(2);
   announce(small_mission(3));
   Agent agent(anybody);
   EXPECT_EQ(agent.id(), kUnassigned);
@@ -122,12 +122,12 @@ TEST(AgentJoining, AnAgentWithoutARunJoinsTheFirstItHearsOf) {
 TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
   announce(small_mission(2));
   Agent agent(identity_of(1));
-  AgentStatus rival = status_of(1, 1);
-  rival.header.incarnation = 77;
+  AgentStatus duplicate = status_of(1, 1);
+  duplicate.header.incarnation = 77;
   for (std::int64_t sequence = 1; sequence <= 11; ++sequence) {
     EXPECT_FALSE(agent.finished());
-    rival.header.sequence = sequence;
-    give(agent, rival, at(500ms * (sequence - 1)));
+    duplicate.header.sequence = sequence;
+    give(agent, duplicate, at(500ms * (sequence - 1)));
   }
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
@@ -138,12 +138,12 @@ TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
 TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
   announce(small_mission(2));
   Agent agent(identity_of(1));
-  AgentStatus rival = status_of(1, 5);
-  rival.header.incarnation = 77;
+  AgentStatus duplicate = status_of(1, 5);
+  duplicate.header.incarnation = 77;
   auto when = 0s;
   for (const std::int64_t sequence : {5, 6, 5, 4, 3, 5, 6, 6}) {
-    rival.header.sequence = sequence;
-    give(agent, rival, at(when));
+    duplicate.header.sequence = sequence;
+    give(agent, duplicate, at(when));
     when = when == 0s ? 1s : when + 10s;
   }
   for (int i = 0; i < 10; ++i) give(agent, status_of(0, i), at(0s));
@@ -161,10 +161,10 @@ TEST(AgentJoining, AnAgentThatAskedForNoNumberHasNoRival) {
 
 TEST(AgentJoining, OnceAdmittedItDoesNotGiveWay) {
   Agent agent = running_agent(small_mission(2));
-  AgentStatus rival = status_of(0, 1);
-  rival.header.incarnation = 77;
-  for (rival.header.sequence = 1; rival.header.sequence < 10; ++rival.header.sequence) {
-    give(agent, rival, at(0s));
+  AgentStatus duplicate = status_of(0, 1);
+  duplicate.header.incarnation = 77;
+  for (duplicate.header.sequence = 1; duplicate.header.sequence < 10; ++duplicate.header.sequence) {
+    give(agent, duplicate, at(0s));
   }
   EXPECT_FALSE(agent.finished());
 }
@@ -226,12 +226,12 @@ TEST(AgentHears, CoverageOfMembersOnly) {
   Agent agent = running_agent(mission);
   // More incarnations of our own number than a table holds, and one of a teammate: none is in the
   // roster.
-  for (Incarnation life = 1; life <= 20; ++life) {
-    give(agent, blocks_of(mission, {0, life}, {{900, 900, 0}}, 1).front(), at(0s));
-    give(agent, blocks_of(mission, {1, life}, {{900, 900, 0}}, 1).front(), at(0s));
+  for (Incarnation incarnation = 1; incarnation <= 20; ++incarnation) {
+    give(agent, blocks_of(mission, {0, incarnation}, {{900, 900, 0}}, 1).front(), at(0s));
+    give(agent, blocks_of(mission, {1, incarnation}, {{900, 900, 0}}, 1).front(), at(0s));
   }
   // A member's name with another's life is nobody's either.
-  give(agent, blocks_of(mission, {0, life_of(1)}, {{900, 900, 0}}, 1).front(), at(0s));
+  give(agent, blocks_of(mission, {0, incarnation_of(1)}, {{900, 900, 0}}, 1).front(), at(0s));
   EXPECT_EQ(agent.coverage()->row_count(), 1u) << "its own";
   tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);

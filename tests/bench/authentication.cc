@@ -32,19 +32,19 @@ Message message_of(std::int64_t kind) {
   return block;
 }
 
-const MessageAuthenticator& seal_of(bool keyed) {
-  static const MessageAuthenticator kSeals[] = {MessageAuthenticator(),
-                                                MessageAuthenticator(make_mission_key())};
-  return kSeals[keyed];
+const MessageAuthenticator& authenticator_of(bool keyed) {
+  static const MessageAuthenticator kAuthenticators[] = {MessageAuthenticator(),
+                                                         MessageAuthenticator(make_mission_key())};
+  return kAuthenticators[keyed];
 }
 
 void Close(benchmark::State& state) {
   const Message message = message_of(state.range(0));
-  const MessageAuthenticator& seal = seal_of(state.range(1) != 0);
+  const MessageAuthenticator& authenticator = authenticator_of(state.range(1) != 0);
   const std::string& channel = channel_of(message);
   std::vector<std::byte> bytes;
   for (auto _ : state) {
-    encode(message, bytes, seal, channel);
+    encode(message, bytes, authenticator, channel);
     benchmark::DoNotOptimize(bytes.data());
   }
   state.counters["bytes"] = static_cast<double>(bytes.size());
@@ -52,12 +52,12 @@ void Close(benchmark::State& state) {
 
 void Open(benchmark::State& state) {
   const Message message = message_of(state.range(0));
-  const MessageAuthenticator& seal = seal_of(state.range(1) != 0);
+  const MessageAuthenticator& authenticator = authenticator_of(state.range(1) != 0);
   const std::string& channel = channel_of(message);
   std::vector<std::byte> bytes;
-  encode(message, bytes, seal, channel);
+  encode(message, bytes, authenticator, channel);
   for (auto _ : state) {
-    const auto decoded = decode(bytes, 1, seal, channel);
+    const auto decoded = decode(bytes, 1, authenticator, channel);
     if (!std::holds_alternative<Message>(decoded)) state.SkipWithError("refused");
     benchmark::DoNotOptimize(decoded);
   }
@@ -70,7 +70,7 @@ void Refuse(benchmark::State& state) {
   std::vector<std::byte> bytes;
   encode(message, bytes);
   for (auto _ : state) {
-    const auto decoded = decode(bytes, 1, seal_of(true), channel);
+    const auto decoded = decode(bytes, 1, authenticator_of(true), channel);
     if (std::holds_alternative<Message>(decoded)) state.SkipWithError("accepted");
     benchmark::DoNotOptimize(decoded);
   }
