@@ -69,7 +69,7 @@ Agent::Agent(AgentIdentity identity)
 
 void Agent::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   // What is out of range is not heard at all.
-  if (finished() || !radio_.hears(me_.id(), transmitter)) return;
+  if (finished() || !radio_.receives(me_.id(), transmitter)) return;
   const auto arrival = me_.accept(message, bus, transmitter, now);
   if (!arrival) return;
   std::visit([&](const auto& m) { on(m, *arrival); }, message);
@@ -210,7 +210,7 @@ void Agent::on(const Digest& theirs, const Arrival& arrival) {
 void Agent::on(const Beacon& beacon, const Arrival& arrival) {
   InMission* const mission_run = in_mission();
   if (mission_run == nullptr || !mission_run->beacons) return;
-  mission_run->beacons->hear(beacon, arrival.fresh, {mission_run->step.tick, arrival.now});
+  mission_run->beacons->receive(beacon, arrival.fresh, {mission_run->step.tick, arrival.now});
 }
 
 void Agent::on(const WorldState& world, const Arrival& arrival) {
@@ -254,8 +254,8 @@ void Agent::advance(Instant now, Outbox& out) {
       publish_status(*mission_run, now, out);
   }
   if (auto* const end = std::get_if<Finished>(&state_)) {
-    std::move(end->last_words.begin(), end->last_words.end(), std::back_inserter(out));
-    end->last_words.clear();
+    std::move(end->final_messages.begin(), end->final_messages.end(), std::back_inserter(out));
+    end->final_messages.clear();
   }
 }
 
@@ -292,10 +292,11 @@ void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
     if (send_zero_velocity) {  // the last word to the vehicle, whose driver may know no STOP
       mission_run->last_command.position_m = mission_run->step.x_m;
       mission_run->last_command.velocity_mps.setZero();
-      me_.publish(Bus::kCommand, mission_run->last_command, mission_run->step.tick, end.last_words);
+      me_.publish(Bus::kCommand, mission_run->last_command, mission_run->step.tick,
+                  end.final_messages);
     }
     me_.publish(Bus::kSwarm, status_of(*mission_run, AgentPhase::kFinished),
-                std::max<Tick>(mission_run->step.tick, 0), end.last_words);
+                std::max<Tick>(mission_run->step.tick, 0), end.final_messages);
     end.mission = std::move(*mission_run);
   }
   state_ = std::move(end);

@@ -164,7 +164,7 @@ class Agent {
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
     AuthorMap<Tick> last_update;  // when a member's coverage last grew for us, in ticks that count
     std::optional<Instant> running_since;
-    Instant stalled_said{};
+    Instant stall_announced{};
     std::optional<WorldView> pending;
     Step step;
     Command last_command, command_before;     // header.tick −1: none yet
@@ -175,7 +175,7 @@ class Agent {
     bool failed;
     std::string reason;
     std::optional<InMission> mission;  // as it was
-    Outbox last_words;                 // its final status, still to be published
+    Outbox final_messages;             // its final status, still to be published
   };
 
   template <class M>
@@ -212,7 +212,7 @@ class Agent {
   void note_places(InMission& mission_run, const WorldState& world);
   bool may_begin(const InMission& mission_run) const;
   bool begin_tick(InMission& mission_run, Instant now, Outbox& out);
-  void say_place(InMission& mission_run, const WorldView& view, Outbox& out);
+  void publish_place(InMission& mission_run, const WorldView& view, Outbox& out);
   bool stalled(const InMission& mission_run, Instant now) const;
   void broadcast(InMission& mission_run, bool all, Outbox& out);
   void repeat(InMission& mission_run, Outbox& out);

@@ -36,15 +36,15 @@ class EncodingLog {
  public:
   void look(const Agent& agent) {
     const auto refused = agent.refused()[static_cast<std::size_t>(Refusal::kEncoding)];
-    if (refused == 0 || said_) return;
-    said_ = true;
+    if (refused == 0 || reported_) return;
+    reported_ = true;
     spdlog::warn(
         "somebody sends coverage in another contribution_encoding than the plan says, and it is "
         "refused: within a run all agents use the plan's");
   }
 
  private:
-  bool said_ = false;
+  bool reported_ = false;
 };
 
 /// Says once each that places of teammates were refused.
@@ -53,16 +53,16 @@ class BeaconLog {
   void look(const Agent& agent) {
     const BeaconBook* const beacons = agent.beacons();
     if (beacons == nullptr) return;
-    if (beacons->late() > 0 && !std::exchange(late_said_, true))
+    if (beacons->late() > 0 && !std::exchange(late_reported_, true))
       spdlog::info("beacons of teammates overtake each other; who is overtaken is not heard");
-    if (beacons->from_the_future() > 0 && !std::exchange(future_said_, true))
+    if (beacons->from_the_future() > 0 && !std::exchange(future_reported_, true))
       spdlog::warn(
           "a teammate's beacon answers to one that this agent has not sent yet, and is refused: "
           "does another process speak for this agent?");
   }
 
  private:
-  bool late_said_ = false, future_said_ = false;
+  bool late_reported_ = false, future_reported_ = false;
 };
 
 int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) {
@@ -80,7 +80,7 @@ int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) 
   AgentPhase logged = AgentPhase::kJoining;
   spdlog::info("joining on {}", node.url.base());
 
-  live(
+  run_core(
       agent, transport, signals, [&] { agent.leave("told to stop by a signal"); },
       [&] {
         transport.set_run(agent.run());

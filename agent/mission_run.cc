@@ -21,7 +21,7 @@ constexpr auto kStallPeriod = 1s;
 
 /// Says what a block has gained on the one broadcast before. Said again in the same tick, it says
 /// the same.
-void tell_gains(const Contribution& before, Contribution& block) {
+void note_gains(const Contribution& before, Contribution& block) {
   if (before.steps == block.steps) {
     block.gains = before.gains;
     block.gained_steps = before.gained_steps;
@@ -41,7 +41,7 @@ void Agent::advance_mission(InMission& mission_run, Instant now, Outbox& out) {
   if (step.repeat_wanted) repeat(mission_run, out);
   if (step.answered < step.tick && may_answer(mission_run)) answer(mission_run, out);
   if (stalled(mission_run, now)) {
-    mission_run.stalled_said = now;
+    mission_run.stall_announced = now;
     broadcast(mission_run, true, out);
   }
   if (!me_.cut_off(step.tick, now)) return;
@@ -62,7 +62,7 @@ void Agent::note_places(InMission& mission_run, const WorldState& world) {
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    if (!radio_.hears(me_.id(), vehicle.id)) continue;
+    if (!radio_.receives(me_.id(), vehicle.id)) continue;
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
     mission_run.forecast->see(vehicle.id, me_.counted(tick), vehicle.position_m);
   }
@@ -102,7 +102,7 @@ bool Agent::begin_tick(InMission& mission_run, Instant now, Outbox& out) {
   step.body_mps = view.velocity_mps;
   step.x_m = mission.domain.nearest(view.position_m);
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
-  if (mission_run.beacons) say_place(mission_run, view, out);
+  if (mission_run.beacons) publish_place(mission_run, view, out);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
   if (step.tick < mission_run.active_from || step.held) return true;
   if (!rests(mission, me_.id(), step.counted))
@@ -112,7 +112,7 @@ bool Agent::begin_tick(InMission& mission_run, Instant now, Outbox& out) {
   return true;
 }
 
-void Agent::say_place(InMission& mission_run, const WorldView& view, Outbox& out) {
+void Agent::publish_place(InMission& mission_run, const WorldView& view, Outbox& out) {
   mission_run.beacons->measured(view.answered_tick, view.roster_revision, view.position_m,
                                 view.velocity_mps);
   const auto beacon = mission_run.beacons->next(follower().revision(),
@@ -126,7 +126,7 @@ void Agent::say_place(InMission& mission_run, const WorldView& view, Outbox& out
 bool Agent::stalled(const InMission& mission_run, Instant now) const {
   return mission().timing.pace == Pace::kRealtime && !mission_run.step.held &&
          mission_run.step.tick >= mission_run.active_from &&
-         now - std::max(mission_run.step.begun, mission_run.stalled_said) >= kStallPeriod;
+         now - std::max(mission_run.step.begun, mission_run.stall_announced) >= kStallPeriod;
 }
 
 /// The blocks that are due, or all. Who learns late that the mission was paused has counted too
@@ -138,7 +138,7 @@ void Agent::broadcast(InMission& mission_run, bool all, Outbox& out) {
     const bool counted_less = tick < published.header.tick;
     if (!all && !counted_less && tick < published.next_broadcast_tick) continue;
     Contribution block = mission_run.table.block(me_.author(), b);
-    if (block.encoding == ContributionEncoding::kFixed16) tell_gains(published, block);
+    if (block.encoding == ContributionEncoding::kFixed16) note_gains(published, block);
     block.header.tick = tick;  // a repeat says it, too: forecasts count a block's age from it
     block.next_broadcast_tick = next_broadcast(mission(), me_.id(), tick, b);
     me_.publish(Bus::kSwarm, block, tick, out);
@@ -176,7 +176,7 @@ bool Agent::may_answer(InMission& mission_run) const {
   if (step.held) return true;  // nobody broadcasts
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(step.tick)) continue;
-    if (!radio_.hears(me_.id(), entry.author.agent)) continue;
+    if (!radio_.receives(me_.id(), entry.author.agent)) continue;
     // Who was admitted to rest never broadcasts.
     if (rests(mission(), entry.author.agent, me_.counted(entry.active_from))) continue;
     if (!mission_run.table.holds_due(entry.author, step.counted)) {

@@ -16,19 +16,19 @@ class StateParts {
     const auto part = static_cast<std::size_t>(world.part);
     if (world.header.tick > tick_) {
       tick_ = world.header.tick;
-      heard_.reset();
+      received_.reset();
     }
-    if (world.header.tick != tick_ || part >= heard_.size()) return;
-    heard_.set(part);
+    if (world.header.tick != tick_ || part >= received_.size()) return;
+    received_.set(part);
     wanted_ = static_cast<std::size_t>(world.parts);
   }
 
   /// Whether no part of `tick` is missing that may still come.
-  bool complete(Tick tick) const { return tick_ > tick || heard_.count() >= wanted_; }
+  bool complete(Tick tick) const { return tick_ > tick || received_.count() >= wanted_; }
 
  private:
   Tick tick_ = -1;  // the newest that was heard of
-  std::bitset<kMaxAgents / kMaxVehiclesPerState> heard_;
+  std::bitset<kMaxAgents / kMaxVehiclesPerState> received_;
   std::size_t wanted_ = 0;
 };
 

@@ -39,7 +39,7 @@ int check(const std::filesystem::path& file, const Overrides& overrides, bool pr
   const auto scenario = load_or_complain(file, overrides);
   if (!scenario) return kExitBadInput;
   for (const Problem& warning : scenario->warnings()) {
-    tell("warning: " + to_string(warning));
+    print_message("warning: " + to_string(warning));
   }
   if (print) {
     std::fputs(scenario->print().c_str(), stdout);

@@ -74,7 +74,7 @@ int export_run(const ExportOptions& options) {
     origin = std::get<0>(read);
   }
   if (!origin && options.to == "geojson") {
-    tell(
+    print_message(
         "note: the scenario has no origin, so the place of (0, 0) is taken to be latitude 0, "
         "longitude 0; --origin LATITUDE,LONGITUDE says where it is");
     origin = GeoPlace{0, 0};

@@ -14,7 +14,7 @@ namespace {
 /// The live runs, after a line for each entry of no use.
 std::vector<LiveRun> runs_here() {
   LiveRuns found = live_runs();
-  for (const std::string& warning : found.warnings) tell("warning: " + warning);
+  for (const std::string& warning : found.warnings) print_message("warning: " + warning);
   return std::move(found.runs);
 }
 

@@ -123,13 +123,13 @@ void Launcher::note_forgetting(Stage stage) {
     const bool lives_or_left = !process.end_noted || process.child->exit_code() == kExitDone;
     return process.role == Role::kAgent && lives_or_left;
   });
-  if (forgot_) display_.say("no agent is left: those that follow do not know what was covered");
+  if (forgot_) display_.print("no agent is left: those that follow do not know what was covered");
 }
 
 void Launcher::take_note(Process& process, Instant now, Stage stage) {
   process.end_noted = true;
   const auto code = process.child->exit_code();
-  if (tells_the_end(process)) expect_end(now);
+  if (implies_the_end(process)) expect_end(now);
   if (ended_as_expected(process)) return;
   const bool refused = code == kExitUnavailable || !process.child->executed();
   // A process that ends in order may have received the mission's end before us.
@@ -151,7 +151,7 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
 }
 
 /// The process's last messages may have been lost, or the launcher may have been suspended.
-bool Launcher::tells_the_end(const Process& process) {
+bool Launcher::implies_the_end(const Process& process) {
   return process.child->exit_code() == kExitDone && process.role != Role::kAgent &&
          !runs(Role::kCoordinator);
 }
@@ -168,15 +168,15 @@ void Launcher::restart(Process& process, Instant now, Stage stage) {
     if (process.child->exit_code() == kExitDone) explain(process);
     if (process.restarts >= kMaxRestarts) return give_up(process, stage);
     ++process.restarts;
-    display_.say(process.name + ": restarted (" + std::to_string(process.restarts) + " of " +
-                 std::to_string(kMaxRestarts) + ")");
+    display_.print(process.name + ": restarted (" + std::to_string(process.restarts) + " of " +
+                   std::to_string(kMaxRestarts) + ")");
   }
   // The new coordinator must also start the mission if no agent knows it yet.
   const bool resume = process.role == Role::kLogger ||
                       (process.role == Role::kCoordinator && stage != Stage::kGathering);
   const auto problem = launch(process, resume);
   if (!problem) return;
-  if (process.refusals == 0) display_.say(*problem);
+  if (process.refusals == 0) display_.print(*problem);
   try_again(process, now, stage, false);
 }
 
@@ -190,7 +190,7 @@ void Launcher::try_again(Process& process, Instant now, Stage stage, bool execut
     return give_up(process, stage);
   }
   if (process.refusals == 0)
-    display_.say(process.name + ": is started as soon as that is possible");
+    display_.print(process.name + ": is started as soon as that is possible");
   process.restart_at = now + restart_delay(process.restarts + process.refusals++);
 }
 
@@ -198,9 +198,9 @@ void Launcher::give_up(Process& process, Stage stage) {
   process.given_up = true;
   const std::string loss = loss_of(process);
   if (process.role == Role::kLogger) {
-    display_.say(loss + ": the team goes on without a record");
+    display_.print(loss + ": the team goes on without a record");
   } else if (process.role == Role::kCoordinator && stage == Stage::kRunning) {
-    display_.say(loss + ": the team goes on to the plan's last tick");
+    display_.print(loss + ": the team goes on to the plan's last tick");
   } else {
     fail(loss);
   }
@@ -214,11 +214,11 @@ std::string Launcher::loss_of(const Process& process) {
 }
 
 void Launcher::explain(const Process& process) {
-  display_.say(process.name + " (process " + std::to_string(process.child->pid()) + ") " +
-               process.child->fate() + "; the end of " + process.program.log.string() + ":");
+  display_.print(process.name + " (process " + std::to_string(process.child->pid()) + ") " +
+                 process.child->fate() + "; the end of " + process.program.log.string() + ":");
   std::string tail = last_lines(process.program.log, kLinesOfExplanation);
   if (!tail.empty()) tail.pop_back();
-  display_.say(tail.empty() ? "    (nothing was logged)" : printable(tail));
+  display_.print(tail.empty() ? "    (nothing was logged)" : printable(tail));
 }
 
 void Launcher::fail(std::string reason) {
@@ -239,7 +239,7 @@ void Launcher::escalate(int how_hard) {
   escalated_ = std::max(escalated_, how_hard);
   for (Process& process : processes_) {
     if (!process.child || !process.child->running()) continue;
-    display_.say(process.name + ": " + (how_hard == 1 ? "asked to end" : "killed"));
+    display_.print(process.name + ": " + (how_hard == 1 ? "asked to end" : "killed"));
     process.child->send(how_hard == 1 ? SIGTERM : SIGKILL);
   }
 }

@@ -103,7 +103,7 @@ class Launcher {
   bool is_simulated() const { return setup_.world.filename() == "ergocast-sim"; }
   bool runs(Role role);
   void take_note(Process& process, Instant now, Stage stage);
-  bool tells_the_end(const Process& process);
+  bool implies_the_end(const Process& process);
   bool ended_as_expected(const Process& process) const;
   void restart(Process& process, Instant now, Stage stage);
   void try_again(Process& process, Instant now, Stage stage, bool executed);

@@ -67,7 +67,7 @@ class Watch final : public LiveWatch {
   }
 
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(source_.bus, hear(false), hear(true));
+    auto opened = listen_to_teams(source_.bus, receiver(false), receiver(true));
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     return {};
@@ -94,13 +94,13 @@ class Watch final : public LiveWatch {
     if (source_.mission) team_->begin(*source_.mission, source_.density);
   }
 
-  Hear hear(bool replay) {
+  OnMessage receiver(bool replay) {
     return [this, replay](const Message& message, Bus bus, AgentId transmitter) {
-      hear(message, bus, transmitter, replay);
+      receive(message, bus, transmitter, replay);
     };
   }
 
-  void hear(const Message& message, Bus bus, AgentId transmitter, bool replay) {
+  void receive(const Message& message, Bus bus, AgentId transmitter, bool replay) {
     const RunId run = header_of(message).run;
     if (run == 0) return;
     if (!team_) adopt(run, replay);

@@ -288,7 +288,7 @@ int main(int argc, char** argv) {
   try {
     return ergocast::cli::parse_and_do(argc, argv);
   } catch (const std::exception& error) {
-    ergocast::cli::tell(std::string("ergocast: ") + error.what());
+    ergocast::cli::print_message(std::string("ergocast: ") + error.what());
     return ergocast::kExitFailed;
   }
 }

@@ -97,8 +97,8 @@ void PageProcess::launch(Instant now) {
 void PageProcess::attend(Instant now) {
   if (child_ && !child_->running()) {
     if (ends_ < kMostEndsToReport) {
-      display_.say("page (process " + std::to_string(child_->pid()) + ") " + child_->fate() +
-                   ", and is started again; the mission does not need it (log/page.log)");
+      display_.print("page (process " + std::to_string(child_->pid()) + ") " + child_->fate() +
+                     ", and is started again; the mission does not need it (log/page.log)");
     }
     child_.reset();
     restart_at_ = now + restart_delay(ends_++);
@@ -106,7 +106,7 @@ void PageProcess::attend(Instant now) {
   if (!child_ && now >= restart_at_) launch(now);
 }
 
-void PageProcess::say(const std::string& line) {
+void PageProcess::print(const std::string& line) {
   std::istringstream parts(line);
   for (std::string part; log_ && std::getline(parts, part);) log_->info("{}", printable(part));
 }

@@ -52,7 +52,7 @@ class PageProcess {
   /// Starts the process again if it has ended; to be called all the time.
   void attend(Instant now);
   /// A line for the page's log, which goes to log/run.log.
-  void say(const std::string& line);
+  void print(const std::string& line);
   /// The record is complete: from now on the page shows it.
   void finish() { running_.reset(); }
 

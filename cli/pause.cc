@@ -50,7 +50,7 @@ class Pausing : public TeamCommand {
 
   int insist() {
     while (!is_done()) {
-      say();
+      publish_pause();
       if (!listen()) return interrupted();
       if (team().over()) return ended_before();
       if (!is_done() && waited() >= kAnswerPatience) return report_error(kExitFailed, why_not());
@@ -94,7 +94,7 @@ class Pausing : public TeamCommand {
     transport_->publish({Bus::kSwarm, question});
   }
 
-  void say() {
+  void publish_pause() {
     if (now() < next_) return;
     next_ = now() + kPeriod;
     ++header_.sequence;
@@ -119,7 +119,7 @@ class Pausing : public TeamCommand {
                             : "the mission was not heard: is its coordinator running?");
   }
   std::string why_not() const {
-    if (!team().coordinator_heard())
+    if (!team().coordinator_seen())
       return "no coordinator is heard, and nobody else names a tick: start one with "
              "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
     if (team().holds().size() == kMaxHolds && pauses_)

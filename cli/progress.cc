@@ -18,37 +18,37 @@ bool overloaded(const MissionProgress& at) {
 
 /// The texts to show, the most important first.
 std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
-  std::vector<std::string> said{text_of("t = %.0f of ", static_cast<double>(at.tick) * at.dt_s) +
-                                text_of("%.0f s", static_cast<double>(at.tick_count) * at.dt_s)};
+  std::vector<std::string> parts{text_of("t = %.0f of ", static_cast<double>(at.tick) * at.dt_s) +
+                                 text_of("%.0f s", static_cast<double>(at.tick_count) * at.dt_s)};
   const bool under_way =
       at.tick < at.tick_count && ticks_per_s > 0 && !at.world_silent && !at.paused;
-  if (at.paused) said.push_back("paused");
-  if (at.world_silent) said.push_back("waiting for the world");
-  if (at.coordinator_silent) said.push_back("no coordinator");
+  if (at.paused) parts.push_back("paused");
+  if (at.world_silent) parts.push_back("waiting for the world");
+  if (at.coordinator_silent) parts.push_back("no coordinator");
   if (overloaded(at)) {
     const double share = late_share(at.missed_deadlines, at.world_tick, at.agents_expected);
-    said.push_back("WARNING: " + std::to_string(std::lround(100 * share)) + " % of commands late");
+    parts.push_back("WARNING: " + std::to_string(std::lround(100 * share)) + " % of commands late");
   }
   if (under_way) {
-    said.push_back(clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) +
-                   " left");
+    parts.push_back(clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) +
+                    " left");
   }
   if (at.ergodic_metric > 0) {
-    said.push_back(text_of("phi^2 = %.3g", at.ergodic_metric) +
-                   (at.free_domain ? " (free domain)" : ""));
+    parts.push_back(text_of("phi^2 = %.3g", at.ergodic_metric) +
+                    (at.free_domain ? " (free domain)" : ""));
   }
   if (at.silent_agent != kUnassigned && !at.coordinator_silent) {
-    said.push_back("agent " + std::to_string(at.silent_agent) + " silent");
+    parts.push_back("agent " + std::to_string(at.silent_agent) + " silent");
   }
   if (at.missed_deadlines > 0 && !overloaded(at)) {
-    said.push_back(std::to_string(at.missed_deadlines) + " commands late");
+    parts.push_back(std::to_string(at.missed_deadlines) + " commands late");
   }
   if (!at.coordinator_silent) {
-    said.push_back(std::to_string(at.agents_alive) + " of " + std::to_string(at.agents_expected) +
-                   " agents");
+    parts.push_back(std::to_string(at.agents_alive) + " of " + std::to_string(at.agents_expected) +
+                    " agents");
   }
-  if (under_way) said.push_back(text_of("%.0f ticks/s", ticks_per_s));
-  return said;
+  if (under_way) parts.push_back(text_of("%.0f ticks/s", ticks_per_s));
+  return parts;
 }
 
 }  // namespace
@@ -66,11 +66,11 @@ void ProgressDisplay::show(const MissionProgress& progress) {
 
 /// Once: the line says it again and again.
 void ProgressDisplay::warn_of_overload(const MissionProgress& at) {
-  if (overload_said_) return;
+  if (overload_reported_) return;
   const auto warning = overload_warning(at.missed_deadlines, at.world_tick, at.agents_expected);
   if (!warning) return;
-  overload_said_ = true;
-  say("warning: " + *warning);
+  overload_reported_ = true;
+  print("warning: " + *warning);
 }
 
 }  // namespace ergocast::cli

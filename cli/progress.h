@@ -27,8 +27,8 @@ class ProgressDisplay {
  public:
   /// Shows it, if the last display was long enough ago.
   void show(const MissionProgress& progress);
-  void say(const std::string& line) {
-    line_.say(line);
+  void print(const std::string& line) {
+    line_.print(line);
     if (also_) also_(line);
   }
   /// Who gets the lines besides.
@@ -40,7 +40,7 @@ class ProgressDisplay {
 
   ProgressLine line_;
   Rate ticks_;
-  bool overload_said_ = false;
+  bool overload_reported_ = false;
   std::function<void(const std::string&)> also_;
 };
 

@@ -94,7 +94,7 @@ void ProgressLine::show(double share, const std::vector<std::string>& facts) {
   bar_shown_ = true;
 }
 
-void ProgressLine::say(const std::string& line) {
+void ProgressLine::print(const std::string& line) {
   std::fprintf(stderr, "%s%s\n", bar_shown_ ? "\r\x1b[K" : "", line.c_str());
   bar_shown_ = false;
 }

@@ -23,7 +23,7 @@ class ProgressLine {
   /// @param facts  the most important first; as many as fit are shown
   void show(double share, const std::vector<std::string>& facts);
   /// A line of its own, above the bar.
-  void say(const std::string& line);
+  void print(const std::string& line);
   /// Leaves the bar's last state on the terminal; later output begins on a new line.
   void end();
 

@@ -244,13 +244,14 @@ FileComparison compare_summary(const fs::path& run_dir, const Mission& mission,
   FileComparison summary{kSummaryFile, "", "", ""};
   int compared = 0, free = 0;
   const auto differ = [&](const std::string& pointer) {
-    const auto said = [&](const Json& flat) {
+    const auto value_in = [&](const Json& flat) {
       return flat.contains(pointer)
                  ? flat[pointer].dump(-1, ' ', false, Json::error_handler_t::replace)
                  : std::string("nothing");
     };
-    summary.difference = place_of(run_dir / kSummaryFile, pointer) + "\nrecorded:  " + said(left) +
-                         "\nexpected:  " + said(right) + '\n';
+    summary.difference = place_of(run_dir / kSummaryFile, pointer) +
+                         "\nrecorded:  " + value_in(left) + "\nexpected:  " + value_in(right) +
+                         '\n';
   };
   for (const auto* side : {&right, &left}) {
     for (const auto& [pointer, value] : side->items()) {

@@ -62,7 +62,7 @@ class Listener {
     return true;
   }
 
-  void hear(const LoggedEvent& event) {
+  void receive(const LoggedEvent& event) {
     const auto message = accepted(event.bytes, copy_);
     const auto transmitter = message ? transmitter_of(*message, event.channel) : std::nullopt;
     if (!transmitter) return;
@@ -173,7 +173,7 @@ Json recorded_team(const std::filesystem::path& run_dir, const Mission& mission,
   if (!log) return nullptr;
   Listener listener(mission);
   while (const LoggedEvent* event = log->next()) {
-    if (listener.wants(event->channel, event->time_us)) listener.hear(*event);
+    if (listener.wants(event->channel, event->time_us)) listener.receive(*event);
   }
   if (problem != nullptr) *problem = log->problem().value_or("");
   return listener.json();

@@ -45,8 +45,8 @@ std::variant<bool, std::string> is_taken(const LcmUrl& url, StopSignals& signals
   BusOptions bus;
   bus.url = url;
   bool heard = false;
-  const Hear hear = [&heard](const Message&, Bus, AgentId) { heard = true; };
-  auto opened = listen_to_teams(bus, hear, hear);
+  const OnMessage on_message = [&heard](const Message&, Bus, AgentId) { heard = true; };
+  auto opened = listen_to_teams(bus, on_message, on_message);
   if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
   Transport& transport = *std::get<0>(opened);
   const Instant until = now() + kReplayLookAround;

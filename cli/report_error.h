@@ -19,22 +19,23 @@ inline constexpr std::size_t kMostLines = 50, kMostBytes = 2000;
 
 /// Writes one line for people. All errors of the command pass here: the text may contain bytes of a
 /// file or of another host, and printable() escapes those that would control the terminal.
-inline void tell(const std::string& text) {
+inline void print_message(const std::string& text) {
   const std::string shown = printable(std::string_view(text).substr(0, kMostBytes));
   std::fprintf(stderr, "%s%s\n", shown.c_str(), text.size() > kMostBytes ? "…" : "");
 }
 
 /// Writes one line on standard error; returns the exit code.
 inline int report_error(ExitCode code, const std::string& problem) {
-  tell(problem);
+  print_message(problem);
   return code;
 }
 
 /// Writes one line for each problem.
 inline int report_error(ExitCode code, const std::vector<std::string>& problems) {
-  for (std::size_t i = 0; i < std::min(problems.size(), kMostLines); ++i) tell(problems[i]);
+  for (std::size_t i = 0; i < std::min(problems.size(), kMostLines); ++i)
+    print_message(problems[i]);
   if (problems.size() > kMostLines)
-    tell("and " + std::to_string(problems.size() - kMostLines) + " more");
+    print_message("and " + std::to_string(problems.size() - kMostLines) + " more");
   return code;
 }
 inline int report_error(ExitCode code, const std::vector<Problem>& problems) {

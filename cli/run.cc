@@ -50,7 +50,7 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, 
     transport.deliver_until(now() + (over ? kAttendPeriodAtEnd : kAttendPeriod), signals.fd());
     if (const int count = signals.take(); count > 0) {
       asked += count;
-      if (asked == 1) display.say("ending the mission in order; once more to end it now");
+      if (asked == 1) display.print("ending the mission in order; once more to end it now");
       if (asked == 2) launcher.escalate(1);
       if (asked > 2) launcher.escalate(2);
       mission.stop(false, "Ctrl-C or SIGTERM");
@@ -131,13 +131,13 @@ nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher:
 }
 
 void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDisplay& display) {
-  display.say("run " + to_hex(setup.run) + " of " + scenario.name() + " into " +
-              setup.run_dir.string());
-  display.say("  swarm    " + setup.url.of(Bus::kSwarm));
-  display.say("  world    " + setup.url.of(Bus::kWorld));
-  display.say("  command  " + setup.url.of(Bus::kCommand));
-  display.say("  key      " +
-              (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
+  display.print("run " + to_hex(setup.run) + " of " + scenario.name() + " into " +
+                setup.run_dir.string());
+  display.print("  swarm    " + setup.url.of(Bus::kSwarm));
+  display.print("  world    " + setup.url.of(Bus::kWorld));
+  display.print("  command  " + setup.url.of(Bus::kCommand));
+  display.print("  key      " +
+                (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
 }
 
 /// What other commands of this user find out about the run.
@@ -165,8 +165,8 @@ std::variant<std::unique_ptr<PageProcess>, std::string> begin_page(const Mission
                                      .page = options.page},
                                     display);
   if (auto* page = std::get_if<0>(&started)) {
-    display.say("  page     " + (*page)->url());
-    display.also_to([page = page->get()](const std::string& line) { page->say(line); });
+    display.print("  page     " + (*page)->url());
+    display.also_to([page = page->get()](const std::string& line) { page->print(line); });
   }
   return started;
 }
@@ -235,7 +235,7 @@ int run_mission(const MissionOptions& options, const Scenario& scenario,
   PageProcess* const page = std::get<0>(watching).get();
   auto entry = RunEntry::write(live_run(setup, scenario));
   if (const auto* problem = std::get_if<std::string>(&entry)) {
-    display.say("warning: " + *problem + "; give the other commands --lcm-url");
+    display.print("warning: " + *problem + "; give the other commands --lcm-url");
   }
   Launcher launcher(setup, display);
   if (const auto problem = launcher.start()) {
@@ -263,8 +263,8 @@ std::optional<Scenario> load_with_a_note(const MissionOptions& options) {
   std::jthread note([&] {
     std::unique_lock lock(mutex);
     if (read.wait_for(lock, kNoteAfter, [&] { return done; })) return;
-    tell("reading " + options.scenario.string() +
-         ": the modes of a free domain, or large maps, take some seconds");
+    print_message("reading " + options.scenario.string() +
+                  ": the modes of a free domain, or large maps, take some seconds");
   });
   auto scenario = load_or_complain(options.scenario, options.overrides);
   {

@@ -21,17 +21,17 @@ std::int64_t wall_clock_us() {
 SimulatedEvents::SimulatedEvents(const std::filesystem::path& folder, const Mission& mission)
     : log_(folder), dt_s_(mission.timing.dt_s), start_us_(wall_clock_us()) {}
 
-void SimulatedEvents::says(lab::NodeId, const Outbox& outbox) {
-  for (const Outgoing& said : outbox) {
-    if (const auto* world = std::get_if<WorldState>(&said.message))
+void SimulatedEvents::sends(lab::NodeId, const Outbox& outbox) {
+  for (const Outgoing& sent : outbox) {
+    if (const auto* world = std::get_if<WorldState>(&sent.message))
       tick_ = std::max(tick_, world->header.tick);
     // Those on the command bus only repeat another bus.
-    const bool repeats = std::holds_alternative<MissionPart>(said.message) ||
-                         std::holds_alternative<Stop>(said.message);
-    if (said.bus == Bus::kCommand && repeats) continue;
-    encode(said.message, bytes_);
+    const bool repeats = std::holds_alternative<MissionPart>(sent.message) ||
+                         std::holds_alternative<Stop>(sent.message);
+    if (sent.bus == Bus::kCommand && repeats) continue;
+    encode(sent.message, bytes_);
     const double t_us = 1e6 * static_cast<double>(tick_) * dt_s_;
-    log_.write(channel_of(said.message, said.relayer), bytes_,
+    log_.write(channel_of(sent.message, sent.relayer), bytes_,
                start_us_ + static_cast<std::int64_t>(t_us));
   }
 }

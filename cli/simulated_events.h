@@ -21,7 +21,7 @@ class SimulatedEvents : public lab::SimulationObserver {
  public:
   SimulatedEvents(const std::filesystem::path& folder, const Mission& mission);
 
-  void says(lab::NodeId, const Outbox& outbox) override;
+  void sends(lab::NodeId, const Outbox& outbox) override;
   /// The write error, if there was one.
   std::optional<std::string> flush() { return log_.flush(); }
   /// Segments removed because of the log's limit.

@@ -42,7 +42,7 @@ class Listener {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(options_, hear(false), hear(true));
+    auto opened = listen_to_teams(options_, receiver(false), receiver(true));
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -62,7 +62,7 @@ class Listener {
   const Transport& transport() const { return *transport_; }
 
  private:
-  Hear hear(bool replay) {
+  OnMessage receiver(bool replay) {
     return [this, replay](const Message& message, Bus bus, AgentId transmitter) {
       const RunId run = header_of(message).run;
       const std::pair key(run, replay);
@@ -129,8 +129,8 @@ class End {
     if (!view.over()) return false;
     if (!since_) since_ = now;
     const auto state = view.picture(now).state;
-    const bool told = state == MissionState::kEnded || state == MissionState::kFailed;
-    return told || now - *since_ >= kLastWord;
+    const bool over = state == MissionState::kEnded || state == MissionState::kFailed;
+    return over || now - *since_ >= kLastWord;
   }
 
  private:

@@ -39,13 +39,13 @@ class Stopping : public TeamCommand {
   explicit Stopping(const StopOptions& options) : TeamCommand(options), options_(options) {}
 
   /// Sends STOP to every run that is known, if it is due.
-  void speak() {
+  void send_stops() {
     if (options_.run != 0) runs_.try_emplace(options_.run, options_.run, since_);
-    for (const auto& [run, team] : runs_) speak_to(run, team);
-    say_to_the_crowd();
+    for (const auto& [run, team] : runs_) send_stop_to(run, team);
+    send_stop_to_the_crowd();
   }
   /// Listens for a moment and judges; the exit code once all is known.
-  std::optional<int> hear() {
+  std::optional<int> judge_answers() {
     if (!listen()) return interrupted();
     for (auto& [run, request] : requests_) {
       const MonitoredRun& team = runs_.at(run);
@@ -72,12 +72,12 @@ class Stopping : public TeamCommand {
       if (options_.run == 0) transport_->set_run(runs_.begin()->first);
     }
     while (true) {
-      speak();
-      if (const auto code = hear()) return *code;
+      send_stops();
+      if (const auto code = judge_answers()) return *code;
     }
   }
 
-  void speak_to(RunId run, const MonitoredRun& team) {
+  void send_stop_to(RunId run, const MonitoredRun& team) {
     const char* how = options_.at_once ? kAtOnce : "stopped by `ergocast stop` on ";
     const auto [at, is_new] =
         requests_.try_emplace(run, Request{StopRequest(run, false, how + host_name()), now()});
@@ -93,7 +93,7 @@ class Stopping : public TeamCommand {
   }
 
   /// Runs beyond kMostRuns must stop, too. Other runs, or recordings of them, may fill the table.
-  void say_to_the_crowd() {
+  void send_stop_to_the_crowd() {
     if (!options_.at_once) return;
     for (const auto& [run, tick] : crowd_) {
       StopRequest(run, false, kAtOnce + host_name()).repeat(*transport_, now(), true, tick);
@@ -129,7 +129,7 @@ class Stopping : public TeamCommand {
   std::optional<int> verdict(const Request& request, const MonitoredRun& team) const {
     const auto waited = now() - request.since;
     if (team.unheard()) return waited < kListeningTime ? std::nullopt : std::optional(nobody());
-    const bool world_due = options_.at_once && !team.world_heard() && team.tick() > 0;
+    const bool world_due = options_.at_once && !team.world_seen() && team.tick() > 0;
     if (world_due && waited < kListeningTime) return std::nullopt;
     const auto left = awaited(team);
     const bool obeyed =
@@ -145,7 +145,7 @@ class Stopping : public TeamCommand {
   }
 
   std::optional<int> why_not_in_order(const MonitoredRun& team, Instant::duration waited) const {
-    if (!team.coordinator_heard() && waited >= kListeningTime) {
+    if (!team.coordinator_seen() && waited >= kListeningTime) {
       return fail(team,
                   "no coordinator is heard, and nobody else ends a mission in order: "
                   "ergocast stop --now stops the team at once");
@@ -165,7 +165,7 @@ class Stopping : public TeamCommand {
     const bool at_once = options_.at_once;
     const char* obeyed = !at_once ? (team.over() ? "the coordinator has ended the mission"
                                                  : "the coordinator has not answered yet")
-                         : !team.world_heard() ? "no world or driver is heard yet"
+                         : !team.world_seen()  ? "no world or driver is heard yet"
                          : team.stands_still() ? "all vehicles stand still"
                                                : "vehicles still move";
     const auto left = awaited(team);
@@ -176,7 +176,7 @@ class Stopping : public TeamCommand {
 
   int conclude(const MonitoredRun& team) const {
     // A mission that never started has moved no vehicle.
-    if (options_.at_once && !team.world_heard() && team.tick() > 0) {
+    if (options_.at_once && !team.world_seen() && team.tick() > 0) {
       return fail(team,
                   "nobody is heard any more, but no world or driver was heard "
                   "before either: whether the vehicles stand still is not known: "
@@ -218,9 +218,9 @@ int stop_at_once(const std::vector<StopOptions>& teams, int code) {
   }
   bool interrupted = false;
   while (!stoppings.empty() && !interrupted) {
-    for (const auto& one : stoppings) one->speak();
+    for (const auto& one : stoppings) one->send_stops();
     std::erase_if(stoppings, [&](const auto& one) {
-      const auto ended = one->hear();
+      const auto ended = one->judge_answers();
       code = std::max(code, ended.value_or(code));
       interrupted = interrupted || one->was_interrupted();
       return ended.has_value();

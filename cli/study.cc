@@ -90,8 +90,8 @@ class StudyRunner {
   void fail(const Run& run, const std::string& how) {
     if (++failed_ > kMostFailuresNamed) return;
     const studies::Study& study = points_.identity.study;
-    progress_.say(name_of(study.points[run.first], study) + ", seed " + std::to_string(run.second) +
-                  ": " + how);
+    progress_.print(name_of(study.points[run.first], study) + ", seed " +
+                    std::to_string(run.second) + ": " + how);
   }
 
   void show() {
@@ -181,7 +181,7 @@ int study(const StudyOptions& options) {
                                    options.seeds.first, options.out});
   }
   if (problem) {
-    tell(*problem + "; the same command goes on");
+    print_message(*problem + "; the same command goes on");
     return kExitFailed;
   }
   say_how_it_went(runner, directory, options);

@@ -32,7 +32,7 @@ constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
 constexpr std::size_t kMostIdentityBytes = std::size_t{64} << 20;
 constexpr std::size_t kMostIdentityValues = 4'000'000;
 
-std::string said(const fs::path& path, const std::string& problem) {
+std::string problem_with(const fs::path& path, const std::string& problem) {
   return "--out " + path.string() + ": " + problem;
 }
 
@@ -116,12 +116,13 @@ std::optional<std::string> objection(const fs::path& folder, const StudyIdentity
   std::error_code error;
   const fs::path file = folder / kIdentityFile;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
-    return said(folder, "is a file; give a folder");
+    return problem_with(folder, "is a file; give a folder");
   }
   if (!fs::exists(file, error)) {
     const bool taken = fs::exists(folder, error) && !fs::is_empty(folder, error);
     if (taken)
-      return said(folder, "is not empty and no study; give a new folder, or empty this one");
+      return problem_with(folder,
+                          "is not empty and no study; give a new folder, or empty this one");
     return std::nullopt;
   }
   const auto read = read_identity(folder);
@@ -131,7 +132,7 @@ std::optional<std::string> objection(const fs::path& folder, const StudyIdentity
     why = "its study is " + name_of(theirs->shard) + ", this one " + name_of(ours.shard);
   }
   if (why.empty()) return std::nullopt;
-  return said(folder, why + "; give a new folder");
+  return problem_with(folder, why + "; give a new folder");
 }
 
 bool before(const studies::StudyRow& a, const studies::StudyRow& b) {
@@ -189,7 +190,7 @@ std::variant<std::unique_ptr<StudyDirectory>, std::string> StudyDirectory::open(
   if (auto problem = objection(folder, identity)) return *problem;
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) return said(folder, error.message() + "; give another folder");
+  if (error) return problem_with(folder, error.message() + "; give another folder");
   if (!fs::exists(folder / kIdentityFile)) {
     if (auto problem = write_file(folder / kIdentityFile, to_json(identity).dump(2) + '\n'))
       return *problem;
@@ -197,7 +198,7 @@ std::variant<std::unique_ptr<StudyDirectory>, std::string> StudyDirectory::open(
   const int lock = ::open((folder / kIdentityFile).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (lock < 0 || flock(lock, LOCK_EX | LOCK_NB) != 0) {
     if (lock >= 0) close(lock);
-    return said(folder, "another ergocast study is at work there; wait for it");
+    return problem_with(folder, "another ergocast study is at work there; wait for it");
   }
   std::unique_ptr<StudyDirectory> directory(new StudyDirectory(folder, identity, lock));
   if (auto problem = directory->read_rows()) return *problem;

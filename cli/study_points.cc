@@ -81,7 +81,7 @@ class Complaints {
       ++found->second.times;
     }
   }
-  void say(std::size_t points, Problems& out) const {
+  void add_to(std::size_t points, Problems& out) const {
     for (const std::string& text : order_) {
       const Seen& seen = first_.at(text);
       const bool clear = seen.times == points || text.starts_with("--");
@@ -132,7 +132,7 @@ class Compiler {
         complaints.add(std::get<std::vector<Problem>>(loaded), words_of(varied));
       }
     }
-    complaints.say(combinations_, problems_);
+    complaints.add_to(combinations_, problems_);
   }
 
   void add(const Scenario& scenario, const std::vector<FieldValue>& fields,

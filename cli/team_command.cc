@@ -26,7 +26,7 @@ std::optional<int> TeamCommand::open() {
   auto opened = listen_to_teams(
       options_,
       [this](const Message& message, Bus bus, AgentId transmitter) {
-        hear(message, bus, transmitter);
+        receive(message, bus, transmitter);
       },
       [this](const Message& message, Bus, AgentId) { replay_ = header_of(message).run; });
   if (const auto* problem = std::get_if<std::string>(&opened))
@@ -36,7 +36,7 @@ std::optional<int> TeamCommand::open() {
   return std::nullopt;
 }
 
-void TeamCommand::hear(const Message& message, Bus bus, AgentId transmitter) {
+void TeamCommand::receive(const Message& message, Bus bus, AgentId transmitter) {
   const RunId run = header_of(message).run;
   if (run == 0) return;
   if (runs_.size() < kMostRuns || runs_.contains(run)) {

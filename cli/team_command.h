@@ -58,7 +58,7 @@ class TeamCommand {
   Instant since_{};
 
  private:
-  void hear(const Message& message, Bus bus, AgentId transmitter);
+  void receive(const Message& message, Bus bus, AgentId transmitter);
 
   const BusOptions& options_;
   StopSignals signals_;

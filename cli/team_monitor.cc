@@ -26,10 +26,11 @@ std::string name_of(AgentId sender) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
-                                                                      Hear hear, Hear hear_replay) {
-  return Transport::open(options.url, options.run, options.authenticator,
-                         subscriptions_of(Role::kMonitor),
-                         {.on_message = std::move(hear), .on_replayed = std::move(hear_replay)});
+                                                                      OnMessage on_message,
+                                                                      OnMessage on_replayed) {
+  return Transport::open(
+      options.url, options.run, options.authenticator, subscriptions_of(Role::kMonitor),
+      {.on_message = std::move(on_message), .on_replayed = std::move(on_replayed)});
 }
 
 MonitoredRun::MonitoredRun(RunId run, Instant since)
@@ -85,7 +86,7 @@ void MonitoredRun::note_end(const Arrival& arrival, bool ended) {
 bool MonitoredRun::unheard() const {
   return agents_.empty() && !over_ &&
          std::none_of(std::begin(kProcesses), std::end(kProcesses),
-                      [this](AgentId process) { return heard(process); });
+                      [this](AgentId process) { return seen(process); });
 }
 
 bool MonitoredRun::stands_still() const {
@@ -100,7 +101,7 @@ bool MonitoredRun::silent(const Author& agent, Instant now) const {
 /// Whether it is heard and has not reported its end. A coordinator that has reported the mission's
 /// end leaves by itself.
 bool MonitoredRun::there(AgentId process, Instant now) const {
-  if (!heard(process) || me_.silent(process, now)) return false;
+  if (!seen(process) || me_.silent(process, now)) return false;
   if (process == kCoordinator) return !over_;
   return std::any_of(processes_.begin(), processes_.end(), [process](const auto& one) {
     return one.first.agent == process && !one.second;

@@ -24,12 +24,13 @@ namespace ergocast::cli {
 inline constexpr std::size_t kMostRuns = 16;
 
 /// Called with each message, its bus and its transmitter.
-using Hear = std::function<void(const Message&, Bus, AgentId transmitter)>;
+using OnMessage = std::function<void(const Message&, Bus, AgentId transmitter)>;
 
 /// Receives all messages about the state of teams, and those of replays. An error tells why LCM
 /// cannot be used.
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
-                                                                      Hear hear, Hear hear_replay);
+                                                                      OnMessage on_message,
+                                                                      OnMessage on_replayed);
 
 /// The messages received of one run.
 class MonitoredRun {
@@ -60,8 +61,8 @@ class MonitoredRun {
   /// See core/hold.h. @pre knows_mission()
   std::span<const Hold> holds() const { return me_.follower().holds(); }
   bool unheard() const;
-  bool coordinator_heard() const { return heard(kCoordinator); }
-  bool world_heard() const { return !vehicles_.empty(); }
+  bool coordinator_seen() const { return seen(kCoordinator); }
+  bool world_seen() const { return !vehicles_.empty(); }
   /// Whether the whole roster is known.
   bool knows_roster() const { return me_.follower().revision() >= 0; }
   /// Whether no vehicle moved in the newest state that names it; true if none was received.
@@ -83,9 +84,7 @@ class MonitoredRun {
   void on(const WorldState& world, const Arrival& arrival);
   void on(const RecordAck& ack, const Arrival& arrival);
   void note_end(const Arrival& arrival, bool ended);
-  bool heard(AgentId process) const {
-    return me_.liveness().last_sign_of_kind(process).has_value();
-  }
+  bool seen(AgentId process) const { return me_.liveness().last_sign_of_kind(process).has_value(); }
   bool silent(const Author& agent, Instant now) const;
   bool there(AgentId process, Instant now) const;
   std::vector<std::string> agents_there(Instant now) const;

@@ -202,7 +202,7 @@ void TeamView::add_forgotten(TeamPicture& picture) const {
 }
 
 /// Whether a process of that kind must send at this stage of the mission.
-bool TeamView::should_speak(AgentId sender) const {
+bool TeamView::should_report(AgentId sender) const {
   if (over() || !follower().mission()) return sender == kCoordinator && !over();
   if (sender == kWorld) return follower().state() == MissionState::kRunning;
   // A team that does not wait for a logger may fly without one.
@@ -221,7 +221,7 @@ void TeamView::add_process(TeamPicture& picture, AgentId sender, Instant now) co
     row.tick = me_.counted(heard->second.tick);
   }
   if (sender == kCoordinator) row.host = coordinator_host_;
-  row.trouble = !replay_ && should_speak(sender) && me_.silent(sender, now, since_);
+  row.trouble = !replay_ && should_report(sender) && me_.silent(sender, now, since_);
   picture.trouble |= row.trouble;
   picture.processes.push_back(std::move(row));
 }
@@ -261,7 +261,7 @@ TeamPicture TeamView::picture(Instant now) const {
 bool TeamView::complete() const {
   if (!follower().mission()) return false;
   for (const AgentId sender : {kCoordinator, kWorld, kLogger}) {
-    if (should_speak(sender) && !processes_.contains(sender)) return false;
+    if (should_report(sender) && !processes_.contains(sender)) return false;
   }
   const auto incarnations = newest_incarnations();
   return std::all_of(incarnations.begin(), incarnations.end(), [this](const auto& one) {

@@ -113,7 +113,7 @@ class TeamView {
   void add_agents(TeamPicture& picture, Instant now) const;
   void add_forgotten(TeamPicture& picture) const;
   void add_process(TeamPicture& picture, AgentId sender, Instant now) const;
-  bool should_speak(AgentId sender) const;
+  bool should_report(AgentId sender) const;
 
   bool silent(const Author& author, const Seen& seen, Instant now) const;
 

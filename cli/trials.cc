@@ -90,8 +90,8 @@ class Desk {
     }
     if (report.verdict != Verdict::kViolated && report.verdict != Verdict::kDied) return;
     if (totals_.failed > kMostFailuresShown) return;
-    progress_.say("seed " + std::to_string(report.figures.seed) + ": " + report.what +
-                  "\n  again: " + replay_of(options_, report.figures.seed));
+    progress_.print("seed " + std::to_string(report.figures.seed) + ": " + report.what +
+                    "\n  again: " + replay_of(options_, report.figures.seed));
   }
 
   void show() {

@@ -223,8 +223,8 @@ int verify(const fs::path& run_dir) {
   Json& summary = std::get<Json>(read);
   Repetition repetition(*mission, recorded_holds(run_dir, summary));
   if (!summary.is_object()) {
-    tell(run_dir.string() + ": no " + kSummaryFile +
-         ", so nothing is known of restarts; comparing all the same");
+    print_message(run_dir.string() + ": no " + kSummaryFile +
+                  ", so nothing is known of restarts; comparing all the same");
     summary = Json::object();
   } else if (!is_simulated(summary, repetition.simulation.recorder())) {
     const auto reason = why_not_repeatable(summary, *mission);

@@ -184,7 +184,7 @@ RosterEntry* Coordinator::straggler(Instant now) {
 }
 
 void Coordinator::check_admission(Instant now) {
-  if (now - *said_.first < seconds(timing().admission_timeout_s)) return;
+  if (now - *schedule_.first < seconds(timing().admission_timeout_s)) return;
   std::string missing;
   for (AgentId id = 0; id < static_cast<AgentId>(led_.mission->starts_m.size()); ++id) {
     const RosterEntry* entry = active_entry(id);
@@ -228,11 +228,11 @@ void Coordinator::note_silences(Instant now) {
     if (entry.active_until >= 0) continue;
     Member& member = members_[entry.author];
     const bool silent = !alive(entry, now);
-    if (silent && !member.silence_said) {
-      say_anew();
+    if (silent && !member.silence_reported) {
+      publish_anew();
       member.silence_revision = revisions_.current;
     }
-    member.silence_said = silent;
+    member.silence_reported = silent;
   }
 }
 
@@ -289,7 +289,7 @@ void Coordinator::advance(Instant now, Outbox& out) {
 }
 
 void Coordinator::lead(Instant now, Outbox& out) {
-  if (!said_.first) said_.first = now;
+  if (!schedule_.first) schedule_.first = now;
   note_silences(now);
   supersede_dead_coordinator(now);
   if (state_ == MissionState::kRunning) review_coverage(now);
@@ -301,14 +301,15 @@ void Coordinator::lead(Instant now, Outbox& out) {
     change();
   }
   // First, so that a coordinator that yields to our mission knows that we are alive.
-  if (now >= said_.next_team_status) {
+  if (now >= schedule_.next_team_status) {
     publish_team_status(now, out);
-    said_.next_team_status = now + kTeamStatusPeriod;
+    schedule_.next_team_status = now + kTeamStatusPeriod;
   }
-  if (now >= said_.next_mission) {
+  if (now >= schedule_.next_mission) {
     publish_mission(out);
-    said_.last_mission = now;
-    said_.next_mission = now + (ending_.since || pages_.behind() ? kMissionGap : kMissionPeriod);
+    schedule_.last_mission = now;
+    schedule_.next_mission =
+        now + (ending_.since || pages_.behind() ? kMissionGap : kMissionPeriod);
   }
   if (!ending_.since) return;
   const bool all_left = everybody_left(now);
@@ -337,7 +338,7 @@ bool Coordinator::everybody_left(Instant now) const {
 /// A process lacks the newest revision. kMissionGap limits the repetitions, so that HELLO messages
 /// cannot flood the bus.
 void Coordinator::repeat_mission_soon() {
-  said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
+  schedule_.next_mission = std::min(schedule_.next_mission, schedule_.last_mission + kMissionGap);
 }
 
 std::vector<MissionPart> Coordinator::mission_parts() const {
@@ -415,8 +416,8 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
 
 Instant Coordinator::next_wakeup() const {
   if (looking()) return next_look();
-  if (!said_.first) return Instant{};
-  return std::min(said_.next_mission, said_.next_team_status);
+  if (!schedule_.first) return Instant{};
+  return std::min(schedule_.next_mission, schedule_.next_team_status);
 }
 
 }  // namespace ergocast

@@ -120,7 +120,7 @@ class Coordinator {
   };
   struct Member {
     std::optional<AgentStatus> status;
-    bool silence_said = false;
+    bool silence_reported = false;
     std::int64_t silence_revision = -1;  // of the revision that reports its last silence
   };
   struct Newcomers {
@@ -142,7 +142,7 @@ class Coordinator {
     AgentId unheard = kUnassigned;  // … the agent that it waited for in that question, …
     Instant asked{};                // … and the time of the question
   };
-  struct Said {
+  struct Schedule {
     std::optional<Instant> first;  // when it began to lead
     Instant next_mission{}, last_mission{}, next_team_status{};
   };
@@ -199,8 +199,8 @@ class Coordinator {
   void check_tick(Instant now);
   AgentId waits_for(const RosterEntry& entry) const;
   RosterEntry* straggler(Instant now);
-  void announce() { say_anew(), revisions_.who_may_join = revisions_.current; }
-  void say_anew() { ++revisions_.current, said_.next_mission = Instant{}; }
+  void announce() { publish_anew(), revisions_.who_may_join = revisions_.current; }
+  void publish_anew() { ++revisions_.current, schedule_.next_mission = Instant{}; }
   /// Any change but an admission: newcomers must know the new revision, so that no recording is
   /// admitted.
   void change() { announce(), revisions_.admits_from = revisions_.current; }
@@ -226,7 +226,7 @@ class Coordinator {
   WorldSeen world_;
   Tick team_tick_ = 0;    // the newest of any agent
   Instant deaf_until_{};  // it received no message
-  Said said_;
+  Schedule schedule_;
   Ending ending_;
 };
 

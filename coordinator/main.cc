@@ -132,7 +132,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   UnknownKindLog unknown_kinds;
   MissionLog mission;
   const auto stop = [&] { coordinator.end(false, "the coordinator was told to stop", now()); };
-  live(coordinator, transport, signals, stop, [&] {
+  run_core(coordinator, transport, signals, stop, [&] {
     transport.set_run(coordinator.run());
     if (const Mission* flown = coordinator.mission()) {
       transport.limit_agents(rate_budget_of(*flown, coordinator.roster().size()),

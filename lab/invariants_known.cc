@@ -26,7 +26,7 @@ void Invariants::received(const TableView& listener, const Message& message) {
   if (mission_.law.anticipation <= 0) return;
   const bool is_block = std::holds_alternative<Contribution>(message);
   if (!is_block && !std::holds_alternative<WorldState>(message)) return;
-  shadows_.at(listener.self).hear(mission_, listener, message);
+  shadows_.at(listener.self).receive(mission_, listener, message);
 }
 
 void Invariants::answered(double t_s, const TableView& holder) {
@@ -257,7 +257,7 @@ void Invariants::check_neighbours(double t_s, const std::vector<TableView>& livi
 /// Whom `self` has heard for so long without a break, through at most so many others less one.
 std::set<Author> Invariants::within(int hops, const Author& self, double heard_for_s, double t_s,
                                     const std::vector<TableView>& living) const {
-  const auto hears = [&](const Author& a, const Author& b) {
+  const auto receives = [&](const Author& a, const Author& b) {
     const auto apart = last_apart_t_s_.find(std::minmax(a.agent, b.agent));
     return apart == last_apart_t_s_.end() || t_s - apart->second > heard_for_s;
   };
@@ -265,7 +265,7 @@ std::set<Author> Invariants::within(int hops, const Author& self, double heard_f
   for (int hop = 0; hop < hops; ++hop) {
     const std::set<Author> inner = reached;
     for (const TableView& holder : living) {
-      const auto heard = [&](const Author& one) { return hears(one, holder.self); };
+      const auto heard = [&](const Author& one) { return receives(one, holder.self); };
       if (std::any_of(inner.begin(), inner.end(), heard)) reached.insert(holder.self);
     }
   }

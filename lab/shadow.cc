@@ -203,7 +203,7 @@ bool has_forecast(const Mission& mission, const TableView& agent, const RosterEn
 
 // ---- what was heard ----
 
-void Shadow::hear(const Mission& mission, const TableView& agent, const Message& message) {
+void Shadow::receive(const Mission& mission, const TableView& agent, const Message& message) {
   if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);
   if (const auto* world = std::get_if<WorldState>(&message)) note_places(mission, agent, *world);
 }

@@ -31,7 +31,7 @@ class Shadow {
   Tick active_from() const { return active_from_; }
 
   /// A message has reached the agent, which now is as `agent` says.
-  void hear(const Mission& mission, const TableView& agent, const Message& message);
+  void receive(const Mission& mission, const TableView& agent, const Message& message);
 
   /// The agent has answered a tick. To be called for each, as each adds places to the rows.
   void answer(const Mission& mission, const TableView& agent);

@@ -120,7 +120,7 @@ bool Simulation::step(Instant until) {
   if (next == Instant::max()) return false;
   now_ = std::max(now_, next);
   do_faults();
-  tell_coordinator();
+  send_to_coordinator();
   deliver_due();
   advance_due();
   supervise_coordinator();
@@ -135,14 +135,14 @@ Instant Simulation::next_event() const {
 
 void Simulation::advance_due() {
   for (NodeId node = 0; node < node_count(); ++node) {
-    if (at(node).up && (at(node).heard || at(node).wakeup <= now_)) advance(node);
+    if (at(node).up && (at(node).received || at(node).wakeup <= now_)) advance(node);
   }
 }
 
 void Simulation::advance(NodeId id) {
   Node& node = at(id);
   const Instant local = node.clock.local(now_);
-  node.heard = false;
+  node.received = false;
   const Instant next = std::visit(
       [&](auto& core) {
         core->advance(local, outbox_);
@@ -159,17 +159,17 @@ void Simulation::advance(NodeId id) {
 
 void Simulation::publish(NodeId from) {
   if (outbox_.empty()) return;
-  if (observer_ != nullptr) observer_->says(from, outbox_);
-  for (const Outgoing& said : outbox_) {
-    encode(said.message, bytes_);
+  if (observer_ != nullptr) observer_->sends(from, outbox_);
+  for (const Outgoing& sent : outbox_) {
+    encode(sent.message, bytes_);
     auto decoded = read(bytes_);
     if (observer_ != nullptr) observer_->decoded(*decoded, false);
     if (std::holds_alternative<Refusal>(*decoded)) continue;
-    note(from, said);
-    const AgentId sender = header_of(said.message).sender;
+    note(from, sent);
+    const AgentId sender = header_of(sent.message).sender;
     const int corrupted =
-        network_.send(now_, from, on_bus_[static_cast<std::size_t>(said.bus)], said.bus,
-                      said.relayer != kUnassigned ? said.relayer : sender, std::move(decoded));
+        network_.send(now_, from, on_bus_[static_cast<std::size_t>(sent.bus)], sent.bus,
+                      sent.relayer != kUnassigned ? sent.relayer : sender, std::move(decoded));
     for (int i = 0; i < corrupted; ++i) {
       damaged_ = bytes_;
       damage(damaged_, mission_.seed, static_cast<std::uint64_t>(network_.counted().corrupted - i));
@@ -190,19 +190,19 @@ std::shared_ptr<Decoded> Simulation::read(std::span<const std::byte> bytes) {
 }
 
 /// What the faults and the counts go by.
-void Simulation::note(NodeId from, const Outgoing& said) {
+void Simulation::note(NodeId from, const Outgoing& sent) {
   ++counts_.messages;
-  counts_.relayed += said.relayer != kUnassigned;
-  counts_.contributions += std::holds_alternative<Contribution>(said.message);
-  counts_.digests += std::holds_alternative<Digest>(said.message);
-  if (const auto* world = std::get_if<WorldState>(&said.message)) {
+  counts_.relayed += sent.relayer != kUnassigned;
+  counts_.contributions += std::holds_alternative<Contribution>(sent.message);
+  counts_.digests += std::holds_alternative<Digest>(sent.message);
+  if (const auto* world = std::get_if<WorldState>(&sent.message)) {
     last_tick_ = std::max(last_tick_, world->header.tick);
     counted_ = std::max(counted_, world->header.tick - world->uncounted_ticks);
   }
-  if (const auto* part = std::get_if<MissionPart>(&said.message)) {
-    end_said_ |= part->state == MissionState::kEnded || part->state == MissionState::kFailed;
+  if (const auto* part = std::get_if<MissionPart>(&sent.message)) {
+    end_announced_ |= part->state == MissionState::kEnded || part->state == MissionState::kFailed;
   }
-  const auto* command = std::get_if<Command>(&said.message);
+  const auto* command = std::get_if<Command>(&sent.message);
   at(from).answered |= command != nullptr && command->header.tick >= 0;
 }
 
@@ -227,7 +227,7 @@ void Simulation::deliver_due() {
 void Simulation::deliver(NodeId to, const Message& message, const Delivery& delivery) {
   if (options_.drop && options_.drop(message, to)) return;
   Node& node = at(to);
-  node.heard = true;
+  node.received = true;
   std::visit(
       [&](auto& core) {
         core->receive(message, delivery.bus, delivery.transmitter, node.clock.local(now_));

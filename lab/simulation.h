@@ -63,7 +63,7 @@ class SimulationObserver {
   /// `again`: in place of a process that crashed.
   virtual void started(NodeId, Incarnation, bool /*again*/) {}
   /// All that a process says at this moment, before any of it is encoded.
-  virtual void says(NodeId, const Outbox&) {}
+  virtual void sends(NodeId, const Outbox&) {}
   virtual void decoded(const Decoded&, bool /*damaged*/) {}
   /// Also what the process does not subscribe to, or what is dropped.
   virtual void arrives(NodeId, const Message&) {}
@@ -118,7 +118,7 @@ class Simulation {
   /// Of the world; −1 before its first.
   Tick last_tick() const { return last_tick_; }
   /// The last tick was published, or a coordinator has said the end.
-  bool mission_over() const { return end_said_ || counted_ >= mission_.timing.tick_count; }
+  bool mission_over() const { return end_announced_ || counted_ >= mission_.timing.tick_count; }
   /// The last moment at which a process was down or cut off, or messages were so late or so few
   /// that recovery cannot be judged.
   std::optional<Instant> hindered() const { return hindered_; }
@@ -132,7 +132,7 @@ class Simulation {
     SkewedClock clock;
     Instant wakeup{}, restart{};  // the latter while it is down
     std::uint32_t starts = 0;
-    bool up = false, heard = false;
+    bool up = false, received = false;
     bool answered = false;  // an agent that lives: a tick
   };
   struct FaultEnd {
@@ -157,7 +157,7 @@ class Simulation {
   void advance(NodeId node);
   void publish(NodeId from);
   std::shared_ptr<Decoded> read(std::span<const std::byte> bytes);
-  void note(NodeId from, const Outgoing& said);
+  void note(NodeId from, const Outgoing& sent);
 
   // What is done to processes and links.
   void set_up_faults();
@@ -173,7 +173,7 @@ class Simulation {
   bool crash(NodeId node, double lasts_s);
   void heal();
   void supervise_coordinator();
-  void tell_coordinator();
+  void send_to_coordinator();
 
   SimulationOptions options_;
   std::ostream &trajectory_, &metrics_;
@@ -188,7 +188,7 @@ class Simulation {
 
   Instant now_{};
   Tick last_tick_ = -1, counted_ = -1;  // the latter of ticks before it that count
-  bool end_said_ = false;               // by a coordinator
+  bool end_announced_ = false;          // by a coordinator
   Outbox outbox_;
   std::vector<std::byte> bytes_, damaged_;
   std::vector<std::shared_ptr<Decoded>> spare_;  // to use again
@@ -198,7 +198,7 @@ class Simulation {
   std::size_t next_fault_ = 0;
   std::vector<FaultEnd> fault_ends_;
   std::optional<Instant> paused_until_;  // an operator wants the mission to be paused
-  std::int64_t told_ = 0;                // messages of that operator
+  std::int64_t operator_messages_ = 0;   // messages of that operator
   double faulty_s_;                      // of progress_s(), until all is healed
   bool healed_ = false;
   bool hinders_;  // even what happens to messages alone

@@ -116,13 +116,14 @@ void Simulation::cut(const FaultEvent& event, bool join) {
 }
 
 /// What an operator who wants the mission to be paused, or to go on, says until it is named.
-void Simulation::tell_coordinator() {
+void Simulation::send_to_coordinator() {
   const NodeId node = coordinator_node();
-  if (told_ == 0 && !paused_until_) return;
+  if (operator_messages_ == 0 && !paused_until_) return;
   if (!up(node) || finished(node) || coordinator().looking() || mission_over()) return;
   const auto& holds = coordinator().holds();
   if (is_open(holds) == paused_until_.has_value()) return;
-  const Pause pause{{run_, kOperator, 1, ++told_, coordinator().tick()}, named_changes(holds), {}};
+  const Pause pause{
+      {run_, kOperator, 1, ++operator_messages_, coordinator().tick()}, named_changes(holds), {}};
   deliver(node, pause, Delivery{Bus::kSwarm, kOperator, {}, nullptr});
 }
 

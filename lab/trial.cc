@@ -45,7 +45,7 @@ class Trial : SimulationObserver {
   };
 
   void started(NodeId node, Incarnation incarnation, bool again) override;
-  void says(NodeId node, const Outbox& outbox) override;
+  void sends(NodeId node, const Outbox& outbox) override;
   void decoded(const Decoded& result, bool damaged) override {
     invariants_.decoded(t_s(), result, damaged);
   }
@@ -102,13 +102,13 @@ void Trial::started(NodeId node, Incarnation incarnation, bool again) {
   }
 }
 
-void Trial::says(NodeId node, const Outbox& outbox) {
+void Trial::sends(NodeId node, const Outbox& outbox) {
   if (is_agent(node)) note_tick(node);
   // Once for all: c_k is added up for who holds it.
   const TableView view = is_agent(node) ? view_of(node) : TableView();
-  for (const Outgoing& said : outbox) {
-    invariants_.sent(t_s(), said, view.table != nullptr ? &view : nullptr);
-    const auto* command = std::get_if<Command>(&said.message);
+  for (const Outgoing& sent : outbox) {
+    invariants_.sent(t_s(), sent, view.table != nullptr ? &view : nullptr);
+    const auto* command = std::get_if<Command>(&sent.message);
     if (command != nullptr && is_agent(node)) note_answer(node, *command, view);
   }
 }

@@ -25,13 +25,13 @@ std::uint64_t fingerprint() {
 
 /// The only allowed sender of some message types; other types allow any.
 template <class Plain>
-AgentId speaker_of(const Plain& m) {
+AgentId sender_of(const Plain& m) {
   return m.header.sender;
 }
-AgentId speaker_of(const WorldState&) { return kWorld; }
-AgentId speaker_of(const RecordAck&) { return kLogger; }
-AgentId speaker_of(const MissionPart&) { return kCoordinator; }
-AgentId speaker_of(const TeamStatus&) { return kCoordinator; }
+AgentId sender_of(const WorldState&) { return kWorld; }
+AgentId sender_of(const RecordAck&) { return kLogger; }
+AgentId sender_of(const MissionPart&) { return kCoordinator; }
+AgentId sender_of(const TeamStatus&) { return kCoordinator; }
 
 /// Decodes the message into the return value: a contribution is a kilobyte and should not be
 /// copied.
@@ -45,7 +45,7 @@ std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
   Fields<Form>::list(reader, plain);
   if constexpr (std::is_same_v<Form, Averages> || std::is_same_v<Form, LowAverages>)
     plain.encoding = ContributionEncoding::kFixed16;
-  const bool can_be_true = reader.plausible() && plain.header.sender == speaker_of(plain);
+  const bool can_be_true = reader.plausible() && plain.header.sender == sender_of(plain);
   if (!reader.complete()) {
     result = Refusal::kSize;
   } else if (!can_be_true) {

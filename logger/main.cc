@@ -125,8 +125,8 @@ class RunLogger {
     if (auto lost = events_.flush(); !problem) problem = lost;
     if (!problem) problem = write_mission();
     note(problem);
-    if (events_.removed() > 0 && !removal_said_) {
-      removal_said_ = true;
+    if (events_.removed() > 0 && !removal_reported_) {
+      removal_reported_ = true;
       spdlog::warn(
           "the event log has reached its limit: from now on its oldest segment goes for each new "
           "one");
@@ -216,7 +216,7 @@ class RunLogger {
   RunRecord& record_;
   EventLog events_;
   const bool resumed_;
-  bool stuck_ = false, plan_written_ = false, removal_said_ = false;
+  bool stuck_ = false, plan_written_ = false, removal_reported_ = false;
   int interruptions_ = 0;
   std::vector<Hold> holds_written_;
   std::vector<std::byte> plan_of_record_;  // of the record that it continues; empty: any
@@ -259,7 +259,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
   spdlog::info("recording {} into {}", node.url.base(), folder.string());
 
   const auto stop = [&] { recorder.stop("the logger was told to stop"); };
-  live(recorder, transport, signals, stop, [&] {
+  run_core(recorder, transport, signals, stop, [&] {
     transport.set_run(recorder.run());
     if (const auto& mission = recorder.follower().mission()) {
       transport.limit_agents(rate_budget_of(*mission, recorder.follower().roster().size()),

@@ -55,7 +55,7 @@ void Recorder::resume(RunData past, std::vector<std::byte> plan) {
 
 void Recorder::go_on(Instant now) {
   me_.set_incarnation(me_.incarnation() + 1);
-  heard_.lost_before = std::max(heard_.lost_before, heard_.newest);
+  received_.lost_before = std::max(received_.lost_before, received_.newest);
   progress_ = now;
   acked_.next = now;
 }
@@ -154,11 +154,11 @@ void Recorder::on(const WorldState& world, const Arrival& arrival) {
   const Tick tick = world.header.tick;
   if (me_.knows_mission()) {
     if (tick - world.uncounted_ticks > mission().timing.tick_count) return;
-    heard_.newest = std::max(heard_.newest, tick);
+    received_.newest = std::max(received_.newest, tick);
     if (arrival.fresh) meet(world.header, arrival.now);
-    if (arrival.fresh) heard_.world_left = world.last;
+    if (arrival.fresh) received_.world_left = world.last;
   }
-  const Tick horizon = std::max(next_row_, heard_.lost_before) + kLeadTicks;
+  const Tick horizon = std::max(next_row_, received_.lost_before) + kLeadTicks;
   if (tick < next_row_ || (is_lockstep() && tick > horizon)) return;
   facts_.missed_deadlines = std::max(facts_.missed_deadlines, world.missed_deadlines);
   facts_.skipped_ticks = std::max(facts_.skipped_ticks, world.skipped_ticks);
@@ -181,11 +181,11 @@ void Recorder::on(const WorldState& world, const Arrival& arrival) {
 }
 
 void Recorder::meet(const Header& world, Instant now) {
-  if (world.incarnation == heard_.world) return;
-  const bool from_the_start = heard_.world == 0 && !former_.resumed;
-  heard_.world = world.incarnation;
+  if (world.incarnation == received_.world) return;
+  const bool from_the_start = received_.world == 0 && !former_.resumed;
+  received_.world = world.incarnation;
   if (from_the_start) return;
-  heard_.lost_before = std::max(heard_.lost_before, world.tick);
+  received_.lost_before = std::max(received_.lost_before, world.tick);
   progress_ = now;
 }
 
@@ -212,8 +212,8 @@ void Recorder::advance(Instant now, Outbox& out) {
 
 /// Whether nothing more can arrive that the record lacks.
 bool Recorder::everybody_left(Instant now) const {
-  if (!ending_.since || !follower().over() || !heard_.world_left) return false;
-  if (next_row_ < heard_.newest) return false;
+  if (!ending_.since || !follower().over() || !received_.world_left) return false;
+  if (next_row_ < received_.newest) return false;
   return me_.team_has_left(
       follower().roster(),
       [&](const Author& author) {
@@ -272,7 +272,7 @@ void Recorder::close() {
   while (has_drivers() && write_next_row()) {
   }
   // The last chance to write the rows after a gap.
-  heard_.lost_before = std::max(heard_.lost_before, heard_.newest);
+  received_.lost_before = std::max(received_.lost_before, received_.newest);
   while (writing() && gap_ahead() && next_pair() != states_.end()) {
     skip_gap();
     while (write_next_row()) {
@@ -320,7 +320,7 @@ bool Recorder::write_next_row() {
 bool Recorder::gap_ahead() const {
   if (!me_.knows_mission() || all_rows_written() || states_.empty()) return false;
   const Tick missing = holds(next_row_) ? next_row_ + 1 : next_row_;
-  return states_.rbegin()->first > missing && (!is_lockstep() || missing < heard_.lost_before);
+  return states_.rbegin()->first > missing && (!is_lockstep() || missing < received_.lost_before);
 }
 
 bool Recorder::gap_is_final(Instant now) const {
@@ -331,8 +331,8 @@ bool Recorder::gap_is_final(Instant now) const {
 /// acknowledgement for half of the time-out. The recorder was then disconnected, and no process
 /// repeats the states of that time.
 bool Recorder::given_up(Instant now) const {
-  const Tick expected = std::max(next_row_, heard_.lost_before) + kRecordWindowTicks;
-  return is_lockstep() && writing() && heard_.newest > expected &&
+  const Tick expected = std::max(next_row_, received_.lost_before) + kRecordWindowTicks;
+  return is_lockstep() && writing() && received_.newest > expected &&
          now - progress_ > seconds(mission().timing.lockstep_timeout_s / 2);
 }
 
@@ -346,7 +346,7 @@ std::map<Tick, Recorder::State>::const_iterator Recorder::next_pair() const {
 void Recorder::skip_gap() {
   const auto pair = next_pair();
   Tick resume = pair == states_.end() ? std::prev(states_.end())->first : pair->first;
-  if (is_lockstep()) resume = std::min(resume, heard_.lost_before);
+  if (is_lockstep()) resume = std::min(resume, received_.lost_before);
   facts_.gaps += resume - std::max(next_row_, former_.end.first + 1);
   next_row_ = resume;
   uncounted_ =

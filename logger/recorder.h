@@ -105,7 +105,7 @@ class Recorder {
   Blocks blocks() const;
   Tick next_row() const { return next_row_; }
   /// The newest tick with a received state.
-  Tick newest() const { return heard_.newest; }
+  Tick newest() const { return received_.newest; }
 
  private:
   struct State {
@@ -117,7 +117,7 @@ class Recorder {
   };
 
   /// The messages received of the world.
-  struct Heard {
+  struct Received {
     Incarnation world = 0;    // the last one received
     Tick newest = 0;          // of the states received
     Tick lost_before = 0;     // states of earlier ticks may be gone for good
@@ -193,7 +193,7 @@ class Recorder {
   Tick uncounted_ = 0;      // ticks before it that do not count, …
   bool row_counts_ = true;  // … and whether it does itself: as the world says
   Instant progress_{};      // last row, or first message of a new world
-  Heard heard_;
+  Received received_;
   Acknowledged acked_;
   Ending ending_;
   Former former_;

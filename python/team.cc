@@ -99,8 +99,8 @@ int merge(Coverage& mine, const Coverage& theirs) {
   int newer = 0;
   for (std::size_t row = 0; row < theirs.table.row_count(); ++row) {
     for (int block = 0; block < theirs.table.block_count(); ++block) {
-      const Contribution said = theirs.table.block(theirs.table.author(row), block);
-      newer += mine.table.merge(said, kAnySteps) == Merge::kNewer ? 1 : 0;
+      const Contribution sent = theirs.table.block(theirs.table.author(row), block);
+      newer += mine.table.merge(sent, kAnySteps) == Merge::kNewer ? 1 : 0;
     }
   }
   return newer;

@@ -177,7 +177,7 @@ void Plot::curve(const Polyline& points, std::string_view attributes) {
   svg_.end_clip();
 }
 
-void Plot::say(std::string_view message) {
+void Plot::show_message(std::string_view message) {
   svg_.text({area_.left + area_.width / 2, area_.top + area_.height / 2}, "class=\"note middle\"",
             message);
 }

@@ -62,7 +62,7 @@ class Plot {
   /// A curve over ascending x, cut off at the area's edge. Logarithms of values ≤ 0 are left out.
   void curve(const Polyline& points, std::string_view attributes);
   /// Writes in the middle of the area why nothing is drawn.
-  void say(std::string_view message);
+  void show_message(std::string_view message);
 
  private:
   Svg& svg_;

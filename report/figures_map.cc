@@ -296,7 +296,7 @@ Figure coefficients_figure(const Coefficients& coverage, const Mission& mission,
             mode_axis("m (half waves along " + view.across_name() + ')', mission.basis.modes_x),
             mode_axis("n (half waves along " + view.up_name() + ')', mission.basis.modes_y));
   if (coverage[0] == 0) {
-    plot.say("no position was recorded");
+    plot.show_message("no position was recorded");
   } else {
     plot.image(log_levels(difference, colors), viridis(), false);
   }

@@ -154,7 +154,7 @@ void draw_panel(Svg& svg, const Area& area, const Axis& time, const Panel& panel
   Plot plot(svg, area, time, amount_axis("", panel.unit, largest(panel.points)));
   plot.grid();
   plot.curve(panel.points, "class=\"curve main\"");
-  if (panel.points.empty()) plot.say(kNothing);
+  if (panel.points.empty()) plot.show_message(kNothing);
   plot.frame();
 }
 
@@ -178,7 +178,8 @@ Figure metric_figure(const RunData& run, const Mission& mission) {
   plot.curve(metric.points, "class=\"curve main\"");
   const std::optional<PowerLaw> law = fit_last_decade(run);
   if (law) draw_fit(svg, plot, *law);
-  if (metric.points.size() < 2) plot.say(run.metrics.empty() ? kNothing : "too short for a curve");
+  if (metric.points.size() < 2)
+    plot.show_message(run.metrics.empty() ? kNothing : "too short for a curve");
   plot.frame();
   svg.text({kRoomLeft, kTop - 10}, "class=\"note\"", conventions_line(mission.basis));
   return {"ergodic_metric", svg.str()};
@@ -196,7 +197,7 @@ Figure speeds_figure(const RunData& run, const Mission& mission) {
   draw_band(svg, plot, speeds);
   draw_means(plot, speeds);
   draw_limit(svg, plot, mission);
-  if (run.empty()) plot.say(kNothing);
+  if (run.empty()) plot.show_message(kNothing);
   plot.frame();
   return {"speeds", svg.str()};
 }

@@ -19,8 +19,8 @@ constexpr std::size_t kMostBufferBytes = 4608;
 
 }  // namespace
 
-BusReader::BusReader(Bus bus, MessageTypes hears, bool replays)
-    : bus_(bus), hears_(hears), replays_(replays), socket_(AF_INET, SOCK_DGRAM) {
+BusReader::BusReader(Bus bus, MessageTypes types, bool replays)
+    : bus_(bus), types_(types), replays_(replays), socket_(AF_INET, SOCK_DGRAM) {
   for (std::size_t i = 0; i < kBatch; ++i) {
     parts_[i] = {space_[i].data(), space_[i].size()};
     messages_[i].msg_hdr.msg_iov = &parts_[i];
@@ -29,14 +29,14 @@ BusReader::BusReader(Bus bus, MessageTypes hears, bool replays)
 }
 
 std::variant<std::unique_ptr<BusReader>, std::string> BusReader::open(const LcmUrl& url, Bus bus,
-                                                                      MessageTypes hears,
+                                                                      MessageTypes types,
                                                                       bool replays) {
-  std::unique_ptr<BusReader> reader(new BusReader(bus, hears, replays));
+  std::unique_ptr<BusReader> reader(new BusReader(bus, types, replays));
   const auto failed = [&url, bus](const std::string& why) { return url.of(bus) + ": " + why; };
   if (reader->fd() < 0) return failed(no_socket(errno));
   reader->set_receive_buffer(url);
   // Before the socket has a port, so that nothing passes by.
-  reader->filtered_ = admit_only(reader->fd(), hears, {}, replays);
+  reader->filtered_ = admit_only(reader->fd(), types, {}, replays);
   if (const auto problem =
           listen_to_group(reader->socket_, url.group, url.base_port + static_cast<int>(bus))) {
     return failed(*problem);
@@ -69,7 +69,7 @@ bool BusReader::has_room_for(std::size_t datagrams) const {
 }
 
 void BusReader::drop_repeats(std::span<const Repeated> flooded) {
-  while (!admit_only(fd(), hears_, flooded, replays_) && !flooded.empty()) {
+  while (!admit_only(fd(), types_, flooded, replays_) && !flooded.empty()) {
     flooded = flooded.first(flooded.size() / 2);
   }
   drops_repeats_ = !flooded.empty();

@@ -24,10 +24,10 @@ namespace ergocast {
 
 class BusReader {
  public:
-  /// Opens the socket. The kernel passes on the channels of `hears` only, with `replays` also those
+  /// Opens the socket. The kernel passes on the channels of `types` only, with `replays` also those
   /// of `ergocast replay`. An error names its cause.
   static std::variant<std::unique_ptr<BusReader>, std::string> open(const LcmUrl& url, Bus bus,
-                                                                    MessageTypes hears,
+                                                                    MessageTypes types,
                                                                     bool replays = false);
 
   int fd() const { return socket_.fd(); }
@@ -64,12 +64,12 @@ class BusReader {
   static constexpr std::size_t kBatch = 32;
   using Space = std::array<std::byte, kMaxLcmBytes + 1>;
 
-  BusReader(Bus bus, MessageTypes hears, bool replays);
+  BusReader(Bus bus, MessageTypes types, bool replays);
   void set_receive_buffer(const LcmUrl& url);
   void look_at_drops();
 
   Bus bus_;
-  MessageTypes hears_;
+  MessageTypes types_;
   bool replays_;
   Socket socket_;
   bool filtered_ = false, drops_repeats_ = false;

@@ -49,7 +49,7 @@ void take_streams(const char* log, int kept) {
   close_range(static_cast<unsigned>(kFirst + kept), ~0U, 0);
 }
 
-void say(const char* text) {
+void write_error(const char* text) {
   if (write(STDERR_FILENO, text, std::strlen(text)) < 0) _exit(kCannotExecute);
 }
 
@@ -84,7 +84,7 @@ struct Start {
   execve(arguments[0], arguments, start.environment);
   const char* reason = strerrordesc_np(errno);
   const char* const complaint[]{arguments[0], ": cannot be executed: ", reason, "\n"};
-  for (const char* part : complaint) say(part);
+  for (const char* part : complaint) write_error(part);
   _exit(kCannotExecute);
 }
 

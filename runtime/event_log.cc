@@ -177,10 +177,10 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes,
 }
 
 std::optional<std::string> EventLog::flush() {
-  if (error_ && told_) open_next();
+  if (error_ && error_reported_) open_next();
   if (compressor_) compressor_->work(kCompressedPerFlush);
   if (!error_ && std::fflush(log_.get()) != 0) fail();
-  told_ = error_.has_value();
+  error_reported_ = error_.has_value();
   return error_;
 }
 

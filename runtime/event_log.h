@@ -69,7 +69,7 @@ class EventLog {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_{nullptr, &std::fclose};
   std::optional<SegmentCompressor> compressor_;  // if they are to be compressed
   std::optional<std::string> error_;
-  bool told_ = false;  // the caller has received the error
+  bool error_reported_ = false;  // the caller has received the error
 };
 
 /// The number of a segment's file, or nothing for other names.

@@ -48,9 +48,9 @@ std::unique_ptr<Transport> connect(Core& core, const NodeOptions& node,
 /// @param each_turn  called in every turn, for the work that only this process has
 /// @param lag        measures every turn
 template <class Core>
-void live(Core& core, Transport& transport, StopSignals& signals,
-          const std::function<void()>& on_signal, const std::function<void()>& each_turn,
-          LoopLag& lag) {
+void run_core(Core& core, Transport& transport, StopSignals& signals,
+              const std::function<void()>& on_signal, const std::function<void()>& each_turn,
+              LoopLag& lag) {
   Outbox out;
   const auto act = [&] {
     core.advance(now(), out);
@@ -70,11 +70,11 @@ void live(Core& core, Transport& transport, StopSignals& signals,
 }
 
 template <class Core>
-void live(
+void run_core(
     Core& core, Transport& transport, StopSignals& signals, const std::function<void()>& on_signal,
     const std::function<void()>& each_turn = [] {}) {
   LoopLag nobody_asks;
-  live(core, transport, signals, on_signal, each_turn, nobody_asks);
+  run_core(core, transport, signals, on_signal, each_turn, nobody_asks);
 }
 
 }  // namespace ergocast

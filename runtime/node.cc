@@ -207,9 +207,9 @@ int parse_command_line(CLI::App& app, int argc, char** argv) {
     if (stop.get_exit_code() == 0) return app.exit(stop);
     std::string problem = unknown_word(app, argc, argv);
     if (problem.empty()) {
-      std::ostringstream said;
-      app.exit(stop, said, said);
-      problem = said.str();
+      std::ostringstream output;
+      app.exit(stop, output, output);
+      problem = output.str();
     } else {
       problem += "\nRun with --help for more information.\n";
     }

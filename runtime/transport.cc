@@ -35,7 +35,7 @@ class BusTransport final : public Transport {
   BusTransport(RunId run, const MessageAuthenticator& authenticator, Handlers handlers)
       : run_(run), authenticator_(authenticator), handlers_(std::move(handlers)) {}
 
-  std::optional<std::string> connect(const LcmUrl& url, const Subscriptions& hears);
+  std::optional<std::string> connect(const LcmUrl& url, const Subscriptions& subscriptions);
 
   void set_run(RunId run) override { run_ = run; }
   void publish(std::span<const Outgoing> outgoing) override;
@@ -53,7 +53,7 @@ class BusTransport final : public Transport {
   /// A bus with subscriptions.
   struct Line {
     std::unique_ptr<BusReader> reader;
-    MessageTypes hears = 0;
+    MessageTypes subscriptions = 0;
     RepeatGuard guard;
     bool is_cut = false;  // the kernel drops repeats
   };
@@ -93,13 +93,14 @@ class BusTransport final : public Transport {
   std::vector<std::byte> bytes_;
 };
 
-std::optional<std::string> BusTransport::connect(const LcmUrl& url, const Subscriptions& hears) {
+std::optional<std::string> BusTransport::connect(const LcmUrl& url,
+                                                 const Subscriptions& subscriptions) {
   auto writer = BusWriter::open(url);
   if (const auto* problem = std::get_if<std::string>(&writer)) return *problem;
   writer_ = std::get<0>(std::move(writer));
   std::vector<int> sockets;
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
-    const MessageTypes types = hears[static_cast<std::size_t>(bus)];
+    const MessageTypes types = subscriptions[static_cast<std::size_t>(bus)];
     if (types == 0) continue;
     auto opened = BusReader::open(url, bus, types, handlers_.on_replayed != nullptr);
     if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
@@ -160,10 +161,10 @@ void BusTransport::take(Line& line, const LcmDatagram& datagram, bool is_replay)
   const Message& message = std::get<Message>(decoded);
   const auto transmitter = transmitter_of(message, channel);
   if (!transmitter) return refuse(Refusal::kType);
-  const Instant heard = now();
-  const bool is_new = line.guard.is_new(header_of(message), heard);
-  if (line.guard.count(header_of(message), is_new, heard)) cut_repeats(line);
-  if (!rates_.admit(*transmitter, is_new, heard)) {
+  const Instant received_at = now();
+  const bool is_new = line.guard.is_new(header_of(message), received_at);
+  if (line.guard.count(header_of(message), is_new, received_at)) cut_repeats(line);
+  if (!rates_.admit(*transmitter, is_new, received_at)) {
     if (is_new) rate_offender_ = *transmitter, ++over_rate_;
     return refuse(Refusal::kRate);
   }
@@ -182,7 +183,8 @@ void BusTransport::take(Line& line, std::span<const std::byte> bytes) noexcept {
     const auto original =
         handlers_.on_replayed ? without_replay(datagram->channel) : std::optional<std::string>();
     if (original) datagram->channel = *original;
-    if (is_channel_of(line.hears, datagram->channel)) take(line, *datagram, original.has_value());
+    if (is_channel_of(line.subscriptions, datagram->channel))
+      take(line, *datagram, original.has_value());
   } catch (...) {  // for want of memory
     refuse(Refusal::kLimit);
   }
@@ -241,10 +243,10 @@ Instant BusTransport::deliver_until(Instant deadline, int wake_fd) {
 
 std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
     const LcmUrl& url, RunId run, const MessageAuthenticator& authenticator,
-    const Subscriptions& hears, Handlers handlers) {
+    const Subscriptions& subscriptions, Handlers handlers) {
   if (const auto problem = why_unreachable(url)) return *problem;
   auto transport = std::make_unique<BusTransport>(run, authenticator, std::move(handlers));
-  if (const auto problem = transport->connect(url, hears)) return *problem;
+  if (const auto problem = transport->connect(url, subscriptions)) return *problem;
   return std::unique_ptr<Transport>(std::move(transport));
 }
 

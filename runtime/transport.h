@@ -37,13 +37,13 @@ class Transport {
     std::function<void(const Message&, Bus, AgentId transmitter)> on_replayed = {};
   };
 
-  /// Opens every bus for publishing and listens where `hears` has a message. An error names its
-  /// remedy.
+  /// Opens every bus for publishing and listens where `subscriptions` has a message. An error names
+  /// its remedy.
   /// @param run  the only run accepted; 0 accepts any until set_run()
   /// @param seal  signs and tags published messages; messages that it does not verify are refused
   static std::variant<std::unique_ptr<Transport>, std::string> open(
       const LcmUrl& url, RunId run, const MessageAuthenticator& authenticator,
-      const Subscriptions& hears, Handlers handlers);
+      const Subscriptions& subscriptions, Handlers handlers);
   virtual ~Transport() = default;
 
   virtual void set_run(RunId run) = 0;

@@ -29,9 +29,9 @@ struct Target {
 class FirstError : public google::protobuf::io::ErrorCollector {
  public:
   void AddError(int, int, const std::string& message) override {
-    if (!said) said = message;
+    if (!error_text) error_text = message;
   }
-  std::optional<std::string> said;
+  std::optional<std::string> error_text;
 };
 
 class Assignment {
@@ -140,7 +140,7 @@ class Assignment {
     google::protobuf::TextFormat::Parser parser;
     parser.RecordErrorsTo(&error);
     if (parser.ParseFieldValueFromString(field_.value, target.field, target.message)) return;
-    const std::string message = error.said.value_or("Expected the value to end");
+    const std::string message = error.error_text.value_or("Expected the value to end");
     BrokenField broken{};
     broken.text = field_.value;
     Problem explanation = explained(message, broken);

@@ -59,8 +59,8 @@ class BlockReader : public FieldVisitor {
   template <class Number>
   void number_unless(int, const char* name, Number& value, const Limits&, double usual) {
     const auto [block, field] = find_field(block_, name);
-    const bool said = block.GetReflection()->HasField(block, &field);
-    value = static_cast<Number>(said ? number_in(block, field) : usual);
+    const bool is_set = block.GetReflection()->HasField(block, &field);
+    value = static_cast<Number>(is_set ? number_in(block, field) : usual);
   }
   template <class Number>
   void height(int number, const char* name, Number& value, const Limits& limits, double in_plane) {

@@ -43,8 +43,8 @@ class RecordWindow {
   void for_each_lacking(Tick tick, const F& repeat) const {
     if (!recorded_) return;
     for (const auto& states : history_) {
-      const Tick said = states.front().header.tick;
-      if (said > *recorded_ && said <= *recorded_ + kHelpTicks && said < tick) repeat(states);
+      const Tick sent = states.front().header.tick;
+      if (sent > *recorded_ && sent <= *recorded_ + kHelpTicks && sent < tick) repeat(states);
     }
   }
 

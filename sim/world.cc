@@ -248,7 +248,7 @@ void World::advance(Instant now, Outbox& out) {
   if (over_since_ && now - std::max(*over_since_, record_.progress()) > kLinger) {
     finish(why_over());
   }
-  if (finished_) return say_farewell(out);
+  if (finished_) return publish_final_state(out);
   if (!started_) return ask_for_mission(now, out);
   if (!over_since_ && me_.cut_off(tick_, now)) {
     return finish("the mission must be over: no agent and no coordinator is heard");
@@ -440,12 +440,12 @@ Instant World::next_wakeup() const {
 void World::finish(std::string reason) {
   finished_ = true;
   reason_ = std::move(reason);
-  farewell_due_ = (over_since_ || follower().over()) && !record_.empty();
+  final_state_due_ = (over_since_ || follower().over()) && !record_.empty();
 }
 
 /// Coordinator and logger need not wait for a world that has left.
-void World::say_farewell(Outbox& out) {
-  if (!std::exchange(farewell_due_, false)) return;
+void World::publish_final_state(Outbox& out) {
+  if (!std::exchange(final_state_due_, false)) return;
   WorldState farewell = record_.newest().front();
   farewell.last = true;
   me_.publish(Bus::kWorld, farewell, farewell.header.tick, out);

@@ -153,10 +153,10 @@ class World {
   void send_zero_velocity(Instant now, Outbox& out);
   std::string why_over() const;
   void finish(std::string reason);
-  void say_farewell(Outbox& out);
+  void publish_final_state(Outbox& out);
 
   Participant me_;
-  bool started_ = false, finished_ = false, farewell_due_ = false;
+  bool started_ = false, finished_ = false, final_state_due_ = false;
   std::string reason_;
   Tick tick_ = 0;
   std::map<AgentId, VehicleSlot> vehicles_;

@@ -92,7 +92,7 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
 
   bool logger_lost = false, begun = false;
   const auto stop = [&] { world.stop("the world was told to stop"); };
-  live(world, transport, signals, stop, [&] {
+  run_core(world, transport, signals, stop, [&] {
     transport.set_run(world.run());
     if (const auto& mission = world.follower().mission()) {
       const std::size_t members = world.follower().roster().size();
@@ -115,7 +115,8 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
       "{} ticks skipped",
       world.tick(), world.reason(), world.missed_deadlines(), world.clamped_commands(),
       world.refused(), world.skipped_ticks());
-  if (const std::string said = world.physics_summary(); !said.empty()) spdlog::info("{}", said);
+  if (const std::string output = world.physics_summary(); !output.empty())
+    spdlog::info("{}", output);
   return kExitDone;
 }
 

@@ -124,7 +124,8 @@ std::string NetcdfFile::text(Variable variable, const char* attribute) const {
   return text.substr(0, text.find('\0'));
 }
 
-std::optional<double> NetcdfFile::number_said(Variable variable, const char* attribute) const {
+std::optional<double> NetcdfFile::numeric_attribute(Variable variable,
+                                                    const char* attribute) const {
   int type = 0;
   std::size_t length = 0;
   double value = 0;

@@ -41,7 +41,7 @@ class NetcdfFile {
   std::optional<MapProblem> objection(Variable variable) const;
 
   std::string text(Variable variable, const char* attribute) const;
-  std::optional<double> number_said(Variable variable, const char* attribute) const;
+  std::optional<double> numeric_attribute(Variable variable, const char* attribute) const;
 
   /// The numbers as they are stored, from `start` on, `count` along each dimension.
   std::optional<MapProblem> read(Variable variable, std::span<const std::size_t> start,

@@ -44,10 +44,10 @@ class Grid : public NetcdfGrid {
     for (int axis = 0; axis < 2; ++axis) {
       if (auto problem = lay_out(axis)) return problem;
     }
-    scale_ = file_->number_said(variable_, "scale_factor").value_or(1);
-    offset_ = file_->number_said(variable_, "add_offset").value_or(0);
+    scale_ = file_->numeric_attribute(variable_, "scale_factor").value_or(1);
+    offset_ = file_->numeric_attribute(variable_, "add_offset").value_or(0);
     for (const char* attribute : {"_FillValue", "missing_value"}) {
-      if (const auto fill = file_->number_said(variable_, attribute)) fills_.push_back(*fill);
+      if (const auto fill = file_->numeric_attribute(variable_, attribute)) fills_.push_back(*fill);
     }
     return std::nullopt;
   }

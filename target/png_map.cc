@@ -63,7 +63,7 @@ class PngMap : public MapFile {
  private:
   static void on_error(png_structp png, png_const_charp message) {
     auto* self = static_cast<PngMap*>(png_get_error_ptr(png));
-    std::snprintf(self->said_, sizeof self->said_, "%s", message);
+    std::snprintf(self->error_, sizeof self->error_, "%s", message);
     png_longjmp(png, 1);
   }
   static void on_warning(png_structp, png_const_charp) {}
@@ -108,7 +108,7 @@ class PngMap : public MapFile {
   // NOLINTEND(cert-err52-cpp)
 
   MapProblem damaged() const {
-    return {file_.string() + " is damaged or cut short: " + said_, "write it again"};
+    return {file_.string() + " is damaged or cut short: " + error_, "write it again"};
   }
 
   std::optional<MapProblem> check_kind() const {
@@ -141,7 +141,7 @@ class PngMap : public MapFile {
   std::vector<png_byte> line_;
   bool wide_ = false, masked_ = false;
   int read_ = 0;
-  char said_[128] = "";
+  char error_[128] = "";
 };
 
 }  // namespace

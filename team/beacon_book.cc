@@ -85,7 +85,7 @@ std::optional<std::int64_t> BeaconBook::count_of(std::uint16_t echo) {
   return kept ? count : -1;
 }
 
-void BeaconBook::hear(const Beacon& beacon, bool fresh, const Moment& now) {
+void BeaconBook::receive(const Beacon& beacon, bool fresh, const Moment& now) {
   const auto id = static_cast<std::size_t>(beacon.header.sender);
   if (id >= bodies_.size() || bodies_[id].member != beacon.header.incarnation ||
       beacon.header.sender == self_.agent)
@@ -139,12 +139,12 @@ void BeaconBook::measured(Tick answered, std::int64_t revision, const Eigen::Vec
   if (!waits_ || answered < waiting_.until.tick || revision < admitted_revision_) return;
   answered_ = waiting_;
   waits_ = false;
-  may_say_ = true;
+  may_send_ = true;
 }
 
 std::optional<Beacon> BeaconBook::next(std::int64_t revision, const Moment& now) {
   const Tick period = anybody_near_ ? 1 : rare_ticks_;
-  if (!may_say_ || (last_sent_ && elapsed_ticks(*last_sent_, now) < period)) return std::nullopt;
+  if (!may_send_ || (last_sent_ && elapsed_ticks(*last_sent_, now) < period)) return std::nullopt;
   Beacon beacon;
   beacon.roster_revision = revision;
   beacon.position_m = position_m_;

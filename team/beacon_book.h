@@ -56,7 +56,7 @@ class BeaconBook {
   /// Takes in a beacon. One of nobody in the roster has no effect. One that came after a later one,
   /// or that echoes a number which was never sent, has none either, and is counted.
   /// @param fresh  no later message of its sender came before
-  void hear(const Beacon& beacon, bool fresh, const Moment& now);
+  void receive(const Beacon& beacon, bool fresh, const Moment& now);
   /// Beacons that came after a later one of their sender.
   std::int64_t late() const { return late_; }
   /// Beacons that echo what was not sent yet.
@@ -123,7 +123,7 @@ class BeaconBook {
   std::int64_t count_ = 0;  // of own beacons
   std::optional<Moment> last_sent_;
   Echoes waiting_, answered_;
-  bool waits_ = false, may_say_ = false;
+  bool waits_ = false, may_send_ = false;
   Eigen::Vector3d position_m_{0, 0, 0}, velocity_mps_{0, 0, 0};
   std::vector<Neighbour> neighbours_;
   std::int64_t late_ = 0, from_the_future_ = 0;

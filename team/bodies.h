@@ -24,11 +24,11 @@ class Bodies {
       tick_ = world.header.tick;
       world_ = world.header.incarnation;
       parts_.assign(parts, {});
-      heard_.assign(parts, false);
+      received_.assign(parts, false);
     }
     parts_[part] = world;
-    heard_[part] = true;
-    if (std::find(heard_.begin(), heard_.end(), false) == heard_.end()) whole_ = parts_;
+    received_[part] = true;
+    if (std::find(received_.begin(), received_.end(), false) == received_.end()) whole_ = parts_;
   }
 
   /// Whether all parts of exactly this tick have been heard, and no newer ones.
@@ -58,7 +58,7 @@ class Bodies {
   Tick tick_ = -1;
   Incarnation world_ = 0;
   std::vector<WorldState> parts_, whole_;
-  std::vector<bool> heard_;
+  std::vector<bool> received_;
   std::vector<Neighbour> neighbours_;
 };
 

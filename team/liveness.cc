@@ -48,11 +48,11 @@ Liveness::Seen* Liveness::find_or_add(const Author& author) {
 bool Liveness::record(const Header& from, Bus bus, Instant now, bool is_sign) {
   Seen* const seen = find_or_add({from.sender, from.incarnation});
   if (seen == nullptr) return false;
-  Heard& heard = seen->on_bus[static_cast<std::size_t>(bus)];
-  const bool fresh = heard.count == 0 || from.sequence > heard.newest;
-  if (heard.count++ == 0) heard.first = from.sequence;
+  Received& received = seen->on_bus[static_cast<std::size_t>(bus)];
+  const bool fresh = received.count == 0 || from.sequence > received.newest;
+  if (received.count++ == 0) received.first = from.sequence;
   if (!fresh) return false;
-  heard.newest = from.sequence;
+  received.newest = from.sequence;
   if (is_sign) seen->sign = kinds_[kind_of(from.sender)] = now;
   return true;
 }
@@ -66,24 +66,24 @@ std::optional<Instant> Liveness::last_sign(const Author& author) const {
   return known == nullptr ? std::nullopt : known->sign;
 }
 
-const Liveness::Heard* Liveness::heard_of(const Author& author, Bus bus) const {
+const Liveness::Received* Liveness::received_from(const Author& author, Bus bus) const {
   const Seen* const known = incarnations_.find(author);
   if (known == nullptr) return nullptr;
-  const Heard& heard = known->on_bus[static_cast<std::size_t>(bus)];
-  return heard.count == 0 ? nullptr : &heard;
+  const Received& received = known->on_bus[static_cast<std::size_t>(bus)];
+  return received.count == 0 ? nullptr : &received;
 }
 
 std::int64_t Liveness::newest(const Author& author, Bus bus) const {
-  const Heard* const heard = heard_of(author, bus);
-  return heard == nullptr ? -1 : heard->newest;
+  const Received* const received = received_from(author, bus);
+  return received == nullptr ? -1 : received->newest;
 }
 
 std::int64_t Liveness::lost(const Author& author, Bus bus) const {
-  const Heard* const heard = heard_of(author, bus);
-  if (heard == nullptr) return 0;
+  const Received* const received = received_from(author, bus);
+  if (received == nullptr) return 0;
   // Messages before the first one, or repeats, may compensate for lost ones; the result is at least
   // 0.
-  return std::max<std::int64_t>(0, heard->newest - heard->first + 1 - heard->count);
+  return std::max<std::int64_t>(0, received->newest - received->first + 1 - received->count);
 }
 
 }  // namespace ergocast

@@ -74,11 +74,11 @@ class Liveness {
   static constexpr std::size_t kMaxIncarnations = 2 * kMaxRosterEntries;
 
  private:
-  struct Heard {
+  struct Received {
     std::int64_t first = 0, newest = 0, count = 0;
   };
   struct Seen {
-    std::array<Heard, kBusCount> on_bus;
+    std::array<Received, kBusCount> on_bus;
     std::optional<Instant> sign;
   };
 
@@ -86,7 +86,7 @@ class Liveness {
     return sender >= 0 ? 0 : static_cast<std::size_t>(-std::max(sender, kOperator));
   }
   Seen* find_or_add(const Author& author);
-  const Heard* heard_of(const Author& author, Bus bus) const;
+  const Received* received_from(const Author& author, Bus bus) const;
 
   AuthorMap<Seen> incarnations_;
   std::array<std::optional<Instant>, 1 - kOperator> kinds_;  // agents, then from kUnassigned down

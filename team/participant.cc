@@ -9,7 +9,7 @@ namespace ergocast {
 std::optional<Arrival> Participant::accept(const Message& message, Bus bus, AgentId transmitter,
                                            Instant now) {
   const Header& from = header_of(message);
-  if (!hears(subscriptions_of(role_), bus, message)) return std::nullopt;
+  if (!subscribes(subscriptions_of(role_), bus, message)) return std::nullopt;
   // Multicast returns our own messages to us.
   if (self_.incarnation != 0 && from.incarnation == self_.incarnation) return std::nullopt;
   if (self_.run != 0 && from.run != self_.run) {

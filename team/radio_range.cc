@@ -13,7 +13,7 @@ void RadioRange::on(const WorldState& world) {
   }
 }
 
-bool RadioRange::hears(AgentId listener, AgentId transmitter) const {
+bool RadioRange::receives(AgentId listener, AgentId transmitter) const {
   if (!limited()) return true;
   const auto here = positions_m_.find(listener);
   const auto there = positions_m_.find(transmitter);

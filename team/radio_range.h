@@ -18,7 +18,7 @@ class RadioRange {
 
   bool limited() const { return range_m_ > 0; }
   void on(const WorldState& world);
-  bool hears(AgentId listener, AgentId transmitter) const;
+  bool receives(AgentId listener, AgentId transmitter) const;
 
  private:
   double range_m_;

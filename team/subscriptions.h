@@ -54,23 +54,23 @@ using SubscriptionTable = std::array<Subscriptions, kRoleCount>;
 // clang-format off
 inline constexpr SubscriptionTable kSubscriptions = [] {
   SubscriptionTable table{};
-  const auto hears = [&table](Role role, Bus bus, MessageTypes types) {
+  const auto subscribes = [&table](Role role, Bus bus, MessageTypes types) {
     table[static_cast<std::size_t>(role)][static_cast<std::size_t>(bus)] = types;
   };
-  hears(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop, Beacon>);
-  hears(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
-  hears(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop, Pause>);
-  hears(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState, RecordAck>);
-  hears(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, WorldState, Command, RecordAck, Stop>);
-  hears(Role::kDriver,      Bus::kWorld,   kTypes<WorldState>);
-  hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
-  for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) hears(Role::kLogger, bus, kEveryType);
-  hears(Role::kLauncher,    Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
+  subscribes(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop, Beacon>);
+  subscribes(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
+  subscribes(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop, Pause>);
+  subscribes(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState, RecordAck>);
+  subscribes(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, WorldState, Command, RecordAck, Stop>);
+  subscribes(Role::kDriver,      Bus::kWorld,   kTypes<WorldState>);
+  subscribes(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
+  for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) subscribes(Role::kLogger, bus, kEveryType);
+  subscribes(Role::kLauncher,    Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
   // A replayed event log has the messages of all buses on the first, because LCM's player knows one
   // URL.
-  hears(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);
-  hears(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState, RecordAck>);
-  hears(Role::kMonitor,     Bus::kCommand, kTypes<RecordAck>);
+  subscribes(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);
+  subscribes(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState, RecordAck>);
+  subscribes(Role::kMonitor,     Bus::kCommand, kTypes<RecordAck>);
   return table;
 }();
 // clang-format on
@@ -80,7 +80,7 @@ constexpr const Subscriptions& subscriptions_of(Role role,
   return table[static_cast<std::size_t>(role)];
 }
 
-inline bool hears(const Subscriptions& subscriptions, Bus bus, const Message& message) {
+inline bool subscribes(const Subscriptions& subscriptions, Bus bus, const Message& message) {
   return (subscriptions[static_cast<std::size_t>(bus)] >> message.index() & 1) != 0;
 }
 

@@ -300,15 +300,15 @@ TEST(Sources, BeginWithTheirLicenceAndASentenceOfTheirOwn) {
 }
 
 /// The checker's report on one line in a file.
-std::string said_of(const std::string& path, const std::string& line) {
+std::string problem_of(const std::string& path, const std::string& line) {
   const auto found = violations_in(path, "// first\n" + line + "\n");
   return found.empty() ? "" : found.front();
 }
 
 TEST(LayeringChecker, NamesFileAndLineOfEveryPlantedViolation) {
-  EXPECT_EQ(said_of("core/basis.cc", "#include \"agent/agent.h\""),
+  EXPECT_EQ(problem_of("core/basis.cc", "#include \"agent/agent.h\""),
             "core/basis.cc:2: core must not know agent/");
-  EXPECT_EQ(said_of("agent/agent.h", "  #  include  \"sim/world.h\"  // why not"),
+  EXPECT_EQ(problem_of("agent/agent.h", "  #  include  \"sim/world.h\"  // why not"),
             "agent/agent.h:2: agent must not know sim/");
   const std::pair<const char*, const char*> planted[] = {
       {"coordinator/coordinator.cc", "#include \"agent/agent.h\""},
@@ -366,7 +366,7 @@ TEST(LayeringChecker, NamesFileAndLineOfEveryPlantedViolation) {
       {"hosts/new.cc", "int x;"},
   };
   for (const auto& [path, line] : planted)
-    EXPECT_NE(said_of(path, line), "") << path << ": " << line;
+    EXPECT_NE(problem_of(path, line), "") << path << ": " << line;
 }
 
 TEST(LayeringChecker, LetsThroughWhatTheArchitectureAllows) {
@@ -386,7 +386,7 @@ TEST(LayeringChecker, LetsThroughWhatTheArchitectureAllows) {
       {"cli/simulate.cc", "#include \"lab/simulation.h\""},
       {"agent/agent.cc", "  // the coordinator/coordinator.h side of it"},
   };
-  for (const auto& [path, line] : honest) EXPECT_EQ(said_of(path, line), "");
+  for (const auto& [path, line] : honest) EXPECT_EQ(problem_of(path, line), "");
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ void Driver::catch_up(Tick team_tick) {
 void Driver::on(const WorldState& other, const Arrival& arrival) {
   const bool begins = !running_ || arrival.now < begun_ + kListening;
   if (!arrival.fresh || !begins) return;
-  if (said_ && other.header.incarnation > me_.incarnation()) return;
+  if (published_ && other.header.incarnation > me_.incarnation()) return;
   for (int i = 0; i < other.vehicle_count; ++i) {
     const AgentId id = other.vehicles[static_cast<std::size_t>(i)].id;
     if (only_ && id != *only_) continue;
@@ -163,13 +163,13 @@ void Driver::advance(Instant now, Outbox& out) {
   if (emergency_stopped_) {  // the last state: no robot is driven any more
     emergency_stopped_ = false;
     pass_tick();
-    return say_where(out);
+    return publish_position(out);
   }
   if (!running_ || finished_ || now < next_tick_) return;
   const Timing& timing = me_.mission().timing;
-  if (said_ && !me_.is_over(tick_)) pass_tick();
-  say_where(out);
-  said_ = true;
+  if (published_ && !me_.is_over(tick_)) pass_tick();
+  publish_position(out);
+  published_ = true;
   // At the end the last state is repeated until the coordinator has ended the mission.
   const auto period = seconds(timing.dt_s / timing.realtime_factor);
   next_tick_ = std::max(next_tick_ + period, now);  // what was missed is not made up for
@@ -195,7 +195,7 @@ void Driver::pass_tick() {
   ++tick_;
 }
 
-void Driver::say_where(Outbox& out) {
+void Driver::publish_position(Outbox& out) {
   const Box& domain = me_.mission().domain;
   const bool apart = me_.mission().separation.distance_m > 0;
   const auto parts = (drives_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;

@@ -75,14 +75,14 @@ class Driver {
   static bool drives_unicycle(const Motion& motion) {
     return motion.vehicle.kind == VehicleKind::kUnicycle;
   }
-  void say_where(Outbox& out);
+  void publish_position(Outbox& out);
 
   Participant me_;
   double speed_limit_mps_;
   std::optional<AgentId> only_;
   std::map<AgentId, VehicleSlot> drives_;
   std::optional<SeparationFilter> guard_;
-  bool running_ = false, said_ = false, finished_ = false, failed_ = false;
+  bool running_ = false, published_ = false, finished_ = false, failed_ = false;
   bool emergency_stopped_ = false;  // by a STOP at once: the last state is still to be said
   std::string reason_;
   Tick tick_ = 0;

@@ -21,7 +21,7 @@ int run(const NodeOptions& node, double speed_limit_mps, std::optional<AgentId> 
   Transport& transport = *connected;
   spdlog::info("waiting for a mission on {}", node.url.base());
 
-  live(
+  run_core(
       driver, transport, signals, [&] { driver.stop("the driver was told to stop"); },
       [&] {
         transport.set_run(driver.run());

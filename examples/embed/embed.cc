@@ -28,12 +28,12 @@ static pollfd listen_to(int bus) {
   return {fd, POLLIN, 0};
 }
 
-static void send(int fd, const Outgoing& said) {  // "LC02", a number, the channel, 0, the message
+static void send(int fd, const Outgoing& sent) {  // "LC02", a number, the channel, 0, the message
   std::vector<std::byte> bytes;
-  encode(said.message, bytes);
-  std::string datagram = std::string("LC02\0\0\0\0", 8) + channel_of(said.message, said.relayer);
+  encode(sent.message, bytes);
+  std::string datagram = std::string("LC02\0\0\0\0", 8) + channel_of(sent.message, sent.relayer);
   datagram.append(1, '\0').append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const sockaddr_in to = address_of(static_cast<int>(said.bus));
+  const sockaddr_in to = address_of(static_cast<int>(sent.bus));
   sendto(fd, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),
          sizeof to);
 }
@@ -56,7 +56,7 @@ int main() {
   char in[65536];
   for (Outbox out;; out.clear()) {
     agent.advance(now(), out);
-    for (const Outgoing& said : out) send(buses[0].fd, said);
+    for (const Outgoing& sent : out) send(buses[0].fd, sent);
     if (agent.finished()) break;
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(agent.next_wakeup() - now());
     poll(buses, kBusCount, static_cast<int>(std::clamp<long>(wait.count(), 0, 1000)));

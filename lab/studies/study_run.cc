@@ -67,7 +67,7 @@ class Observer : public lab::SimulationObserver {
   void received(lab::NodeId node, const Message& message) override {
     if (node != logger_) return;
     if (std::holds_alternative<Contribution>(message)) ++contributions_;
-    if (const auto* world = std::get_if<WorldState>(&message)) hear(*world);
+    if (const auto* world = std::get_if<WorldState>(&message)) receive(*world);
   }
 
   StudyFigures figures() const {
@@ -77,7 +77,7 @@ class Observer : public lab::SimulationObserver {
   }
 
  private:
-  void hear(const WorldState& world) {
+  void receive(const WorldState& world) {
     if (world.header.tick <= tick_) return;  // said again
     if (world.header.tick != gathering_) {
       gathering_ = world.header.tick;

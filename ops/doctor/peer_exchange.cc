@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 constexpr std::chrono::nanoseconds kPeriod = std::chrono::nanoseconds(1s) / kProbesPerSecond;
 
 /// Reads the datagrams that have arrived; a limit lets us send also during a flood.
-void hear(const Socket& listener, PeerLedger& ledger) {
+void receive_probes(const Socket& listener, PeerLedger& ledger) {
   std::array<std::byte, 2048> buffer;
   for (int i = 0; i < 256; ++i) {
     sockaddr_in from{};
@@ -42,7 +42,7 @@ void hear_until(Instant deadline, const Socket& listener, PeerLedger& ledger) {
   for (Instant at = now(); at < deadline; at = now()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - at);
     pollfd ready{listener.fd(), POLLIN, 0};
-    if (poll(&ready, 1, static_cast<int>(left.count())) > 0) hear(listener, ledger);
+    if (poll(&ready, 1, static_cast<int>(left.count())) > 0) receive_probes(listener, ledger);
   }
 }
 
@@ -76,7 +76,7 @@ PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& authenticator,
   // A single failure counts as an ordinary loss.
   if (unsent == count) test.error = problem;
   test.peers = ledger.peers();
-  test.only_heard_by_others = ledger.only_heard_by_others();
+  test.only_received_by_others = ledger.only_received_by_others();
   test.sent = ledger.sent();
   return test;
 }

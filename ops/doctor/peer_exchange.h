@@ -15,7 +15,7 @@ namespace ergocast::doctor {
 
 struct PeerTest {
   std::vector<Peer> peers;
-  int only_heard_by_others = 0;
+  int only_received_by_others = 0;
   std::uint32_t sent = 0;
   std::string error;  ///< why the test failed; empty: it succeeded
 };

@@ -121,10 +121,10 @@ Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::strin
   if (test.peers.empty()) return {nobody(url, test)};
   Findings findings;
   for (const Peer& peer : test.peers) findings.push_back(peer_finding(url, peer, version, key));
-  if (test.only_heard_by_others > 0) {
+  if (test.only_received_by_others > 0) {
     findings.push_back(
         {"peers", Level::kProblem,
-         std::to_string(test.only_heard_by_others) + " more heard by others, but not here",
+         std::to_string(test.only_received_by_others) + " more heard by others, but not here",
          "One-way towards this host: other hosts hear somebody whom it does not.",
          "tcpdump -ni any udp port " + std::to_string(url.base_port) + "   # here: what arrives?"});
   }

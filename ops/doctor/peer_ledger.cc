@@ -20,8 +20,8 @@ constexpr std::size_t kMostRumours = 4 * kMaxPeers;
 
 }  // namespace
 
-double Loss::percent(std::uint32_t expected, std::uint32_t heard) {
-  return expected == 0 ? 0.0 : 100.0 * (1.0 - static_cast<double>(heard) / expected);
+double Loss::percent(std::uint32_t expected, std::uint32_t received) {
+  return expected == 0 ? 0.0 : 100.0 * (1.0 - static_cast<double>(received) / expected);
 }
 
 double Peer::round_trip_s(double quantile) const {
@@ -39,7 +39,7 @@ Probe PeerLedger::next(Instant now) {
   Probe probe{nonce_, sent(), host_, version_, {}, key_};
   for (const auto& [nonce, row] : rows_) {
     if (now - row.last_at > kForgotten) continue;
-    probe.echoes.push_back({nonce, row.first, row.last, row.peer.from_it.heard,
+    probe.echoes.push_back({nonce, row.first, row.last, row.peer.from_it.received,
                             static_cast<std::uint64_t>((now - row.last_at).count())});
   }
   sent_at_.push_back(now);
@@ -83,13 +83,13 @@ void PeerLedger::count(const Probe& probe, Instant now, Row& row) {
     row.last_at = now;
   }
   Loss& loss = row.peer.from_it;
-  ++(is_large(probe.sequence) ? loss.heard.large : loss.heard.small);
+  ++(is_large(probe.sequence) ? loss.received.large : loss.received.small);
   loss.expected = probes_between(row.first, row.last);
 }
 
 void PeerLedger::take_echo(const Echo& echo, Instant now, Row& row) {
   if (echo.last >= sent()) return;  // of probes we have not sent
-  const Loss claim{probes_between(echo.first, echo.last), echo.heard};
+  const Loss claim{probes_between(echo.first, echo.last), echo.received};
   auto& known = row.peer.to_it;
   if (!known || claim.expected.all() >= known->expected.all()) known = claim;
   if (row.last_timed && echo.last <= *row.last_timed) return;
@@ -110,7 +110,7 @@ std::vector<Peer> PeerLedger::peers() const {
   return all;
 }
 
-int PeerLedger::only_heard_by_others() const {
+int PeerLedger::only_received_by_others() const {
   return static_cast<int>(std::count_if(rumours_.begin(), rumours_.end(), [this](const auto& one) {
     const auto& [nonce, rumour] = one;
     return !rows_.contains(nonce) && rumour.last - rumour.first >= kProbesPerSecond;

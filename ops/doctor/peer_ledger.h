@@ -14,13 +14,13 @@
 namespace ergocast::doctor {
 
 struct Loss {
-  ProbeCount expected, heard;
-  double small_percent() const { return percent(expected.small, heard.small); }
-  double large_percent() const { return percent(expected.large, heard.large); }
-  double percent() const { return percent(expected.all(), heard.all()); }
+  ProbeCount expected, received;
+  double small_percent() const { return percent(expected.small, received.small); }
+  double large_percent() const { return percent(expected.large, received.large); }
+  double percent() const { return percent(expected.all(), received.all()); }
 
  private:
-  static double percent(std::uint32_t expected, std::uint32_t heard);
+  static double percent(std::uint32_t expected, std::uint32_t received);
 };
 
 /// One test on another host; a host may run several.
@@ -33,7 +33,7 @@ struct Peer {
   std::uint64_t key = 0;  ///< the fingerprint of its mission key; 0 without one
 
   /// Whether it sent for long enough (half a second) to report what it receives.
-  bool judged() const { return from_it.heard.all() >= kProbesPerSecond / 2; }
+  bool judged() const { return from_it.received.all() >= kProbesPerSecond / 2; }
   /// @pre there are round trips
   double round_trip_s(double quantile) const;
 };
@@ -51,7 +51,7 @@ class PeerLedger {
   /// Sorted by host.
   std::vector<Peer> peers() const;
   /// Tests that another host received for at least a second and this host never received.
-  int only_heard_by_others() const;
+  int only_received_by_others() const;
 
  private:
   struct Row {

@@ -53,7 +53,8 @@ bool possible(const Echo& echo) {
     return false;
   }
   const ProbeCount most = probes_between(echo.first, echo.last);
-  return echo.heard.small <= most.small && echo.heard.large <= most.large && echo.heard.all() > 0;
+  return echo.received.small <= most.small && echo.received.large <= most.large &&
+         echo.received.all() > 0;
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ void write(const Probe& probe, std::vector<std::byte>& out) {
   for (std::size_t i = 0; i < count; ++i) {
     const Echo& echo = probe.echoes[i];
     put(echo.nonce, out);
-    for (const auto number : {echo.first, echo.last, echo.heard.small, echo.heard.large}) {
+    for (const auto number : {echo.first, echo.last, echo.received.small, echo.received.large}) {
       put(number, out);
     }
     put(echo.held_ns, out);
@@ -104,7 +105,7 @@ std::optional<Probe> read(std::span<const std::byte> bytes) {
   for (std::size_t i = 0; i < count; ++i) {
     Echo echo;
     echo.nonce = take<std::uint64_t>(bytes);
-    for (auto* number : {&echo.first, &echo.last, &echo.heard.small, &echo.heard.large}) {
+    for (auto* number : {&echo.first, &echo.last, &echo.received.small, &echo.received.large}) {
       *number = take<std::uint32_t>(bytes);
     }
     echo.held_ns = take<std::uint64_t>(bytes);

@@ -35,7 +35,7 @@ ProbeCount probes_between(std::uint32_t first, std::uint32_t last);
 struct Echo {
   std::uint64_t nonce = 0;            ///< the sender of the probes
   std::uint32_t first = 0, last = 0;  ///< sequence numbers
-  ProbeCount heard;                   ///< from first to last, each once
+  ProbeCount received;                ///< from first to last, each once
   std::uint64_t held_ns = 0;          ///< from receiving `last` to sending this
 };
 

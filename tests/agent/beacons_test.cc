@@ -36,12 +36,12 @@ class Pair {
     for (AgentId id = 0; id < 2; ++id) {
       WorldState state = world_state(tick_, {places_m_[static_cast<std::size_t>(id)]}, tick_ - 1);
       state.vehicles[0].id = id;
-      const Outbox said = tell(agents_[static_cast<std::size_t>(id)], state, now);
-      const auto commands = only<Command>(said);
+      const Outbox sent = deliver(agents_[static_cast<std::size_t>(id)], state, now);
+      const auto commands = only<Command>(sent);
       EXPECT_EQ(commands.size(), 1u);
       velocities_mps.push_back(commands.empty() ? Eigen::Vector3d(kNan, 0, 0)
                                                 : commands[0].velocity_mps);
-      for (const Beacon& beacon : only<Beacon>(said)) {
+      for (const Beacon& beacon : only<Beacon>(sent)) {
         if (id == 1 || first_is_heard) give(agents_[static_cast<std::size_t>(1 - id)], beacon, now);
       }
     }
@@ -99,7 +99,7 @@ TEST(AgentsWithBeacons, StandWhileTheirRosterIsOld) {
   const auto commanded = [&](Tick tick, std::int64_t revision) {
     WorldState state = world_state(tick, {{500, 500, 0}}, tick - 1);
     state.roster_revision = revision;
-    const auto commands = only<Command>(tell(agent, state, at(tick * 100ms)));
+    const auto commands = only<Command>(deliver(agent, state, at(tick * 100ms)));
     return commands.empty() ? kNan : commands[0].velocity_mps.norm();
   };
   EXPECT_GT(commanded(0, 0), 5);
@@ -113,9 +113,9 @@ TEST(AgentsWithBeacons, SayNoneWhereTheWorldSaysAllPlaces) {
   mission.separation.lease_s = 0;
   Agent agent = running_agent(mission);
   for (Tick tick = 0; tick < 9; ++tick) {
-    const Outbox said =
-        tell(agent, world_state(tick, {{500, 500, 0}, {900, 900, 0}}, tick - 1), at(tick * 100ms));
-    EXPECT_TRUE(only<Beacon>(said).empty());
+    const Outbox sent = deliver(agent, world_state(tick, {{500, 500, 0}, {900, 900, 0}}, tick - 1),
+                                at(tick * 100ms));
+    EXPECT_TRUE(only<Beacon>(sent).empty());
   }
 }
 

@@ -22,14 +22,14 @@ Mission apart(int agents, Pace pace) {
 }
 
 std::vector<Command> commands(Agent& agent, const WorldState& state, Instant now = at(0s)) {
-  return only<Command>(tell(agent, state, now));
+  return only<Command>(deliver(agent, state, now));
 }
 
 Eigen::Vector3d command_among(const Mission& mission,
                               const std::vector<Eigen::Vector3d>& places_m) {
   Agent agent = running_agent(mission);
-  const auto said = commands(agent, world_state(0, places_m));
-  return said.empty() ? Eigen::Vector3d(kNan, 0, 0) : said[0].velocity_mps;
+  const auto sent = commands(agent, world_state(0, places_m));
+  return sent.empty() ? Eigen::Vector3d(kNan, 0, 0) : sent[0].velocity_mps;
 }
 
 TEST(AgentKeepsApart, FromWhereItWantsToGo) {
@@ -59,9 +59,9 @@ TEST(AgentKeepsApart, AnswersOnlyOnceAllPartsOfATickAreThere) {
     second.parts = 2;
     EXPECT_TRUE(commands(agent, first).empty());
     EXPECT_EQ(status_after(agent, at(1s)).waiting_for, kWorld);
-    const auto said = commands(agent, second, at(2s));
-    ASSERT_EQ(said.size(), 1u);
-    EXPECT_LE(said[0].velocity_mps.x(), 0.5);
+    const auto sent = commands(agent, second, at(2s));
+    ASSERT_EQ(sent.size(), 1u);
+    EXPECT_LE(sent[0].velocity_mps.x(), 0.5);
     // A part of another tick does not stand in for it.
     first.header.tick = 1;
     first.header.sequence = next_sequence();
@@ -72,7 +72,7 @@ TEST(AgentKeepsApart, AnswersOnlyOnceAllPartsOfATickAreThere) {
     EXPECT_TRUE(commands(other, second).empty());
     const auto turned_round = commands(other, first);
     ASSERT_EQ(turned_round.size(), 1u);
-    EXPECT_EQ(turned_round[0].velocity_mps, said[0].velocity_mps) << "whatever their order";
+    EXPECT_EQ(turned_round[0].velocity_mps, sent[0].velocity_mps) << "whatever their order";
   }
 }
 
@@ -104,12 +104,12 @@ TEST(AgentKeepsApart, TellsARestartedWorldWhereAllBodiesWere) {
   commands(agent, state);
   Hello question;
   question.header = {kRun, kWorld, kWorldLife + 1, next_sequence(), 0};
-  const Outbox said = tell(agent, question, at(1s));
-  const auto states = only<WorldState>(said);
+  const Outbox sent = deliver(agent, question, at(1s));
+  const auto states = only<WorldState>(sent);
   ASSERT_EQ(states.size(), 1u);
   EXPECT_EQ(states[0].header.tick, 4);
   EXPECT_EQ(states[0].vehicles[1].position_m, Eigen::Vector3d(900, 900, 0));
-  EXPECT_EQ(only<Command>(said).size(), 2u);
+  EXPECT_EQ(only<Command>(sent).size(), 2u);
 }
 
 /// A robot that has overshot is beside the domain; where it is counts, not where it should be.

@@ -18,15 +18,15 @@ using namespace test;
 TEST(AgentTick, FirstSampleIsWhereItStandsAtTheStart) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0].steps, 1);
-  EXPECT_EQ(said[0].elapsed_s, 0.1);
-  EXPECT_EQ(said[0].mode_count, 20);
-  EXPECT_EQ(said[0].author(), author_of(0));
+  const auto sent = only<Contribution>(deliver(agent, world_state(0, {{100, 500, 0}})));
+  ASSERT_EQ(sent.size(), 1u);
+  EXPECT_EQ(sent[0].steps, 1);
+  EXPECT_EQ(sent[0].elapsed_s, 0.1);
+  EXPECT_EQ(sent[0].mode_count, 20);
+  EXPECT_EQ(sent[0].author(), author_of(0));
   const Contribution expected = block_of(mission, 0, {{100, 500, 0}}, 1);
-  EXPECT_EQ(said[0].sums, expected.sums);
-  EXPECT_EQ(said[0].next_broadcast_tick, 1);
+  EXPECT_EQ(sent[0].sums, expected.sums);
+  EXPECT_EQ(sent[0].next_broadcast_tick, 1);
 }
 
 TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
@@ -37,7 +37,8 @@ TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
   Agent agent = running_agent(mission);
   const Contribution theirs = block_of(mission, 1, {{700, 900, 0}}, 1);
   give(agent, theirs, at(0s));
-  const auto commands = only<Command>(tell(agent, world_state(0, {{100, 500, 0}, {700, 900, 0}})));
+  const auto commands =
+      only<Command>(deliver(agent, world_state(0, {{100, 500, 0}, {700, 900, 0}})));
   ASSERT_EQ(commands.size(), 1u);
 
   CoverageTable table(mission.basis, mission.timing.dt_s);
@@ -59,7 +60,7 @@ TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
 
 TEST(AgentTick, SpeaksOnTheBusesOfTheProtocol) {
   Agent agent = running_agent(small_mission(1));
-  for (const Outgoing& outgoing : tell(agent, world_state(0, {{100, 500, 0}}))) {
+  for (const Outgoing& outgoing : deliver(agent, world_state(0, {{100, 500, 0}}))) {
     const bool command = std::holds_alternative<Command>(outgoing.message);
     EXPECT_EQ(outgoing.bus, command ? Bus::kCommand : Bus::kSwarm);
   }
@@ -71,10 +72,10 @@ TEST(AgentTick, ContributionsAreCumulative) {
   std::vector<Eigen::Vector3d> path;
   for (Tick tick = 0; tick < 5; ++tick) {
     path.push_back({100.0 + 7 * static_cast<double>(tick), 500, 0});
-    const auto said = only<Contribution>(tell(agent, world_state(tick, {path.back()})));
-    ASSERT_EQ(said.size(), 1u);
-    EXPECT_EQ(said[0].steps, tick + 1);
-    EXPECT_EQ(said[0].sums, block_of(mission, 0, path, 0).sums);
+    const auto sent = only<Contribution>(deliver(agent, world_state(tick, {path.back()})));
+    ASSERT_EQ(sent.size(), 1u);
+    EXPECT_EQ(sent[0].steps, tick + 1);
+    EXPECT_EQ(sent[0].sums, block_of(mission, 0, path, 0).sums);
   }
 }
 
@@ -85,16 +86,16 @@ TEST(AgentTick, WhereAveragesTravelSaysWhatItHasGainedSinceItLastSpoke) {
   Agent agent = running_agent(mission);
   Contribution last;
   for (Tick tick = 0; tick < 12; ++tick) {
-    const auto said = only<Contribution>(
-        tell(agent, world_state(tick, {{100 + 50 * static_cast<double>(tick), 500, 0}})));
-    if (said.empty()) continue;
-    ASSERT_EQ(said.size(), 1u) << "all 144 modes in one";
-    EXPECT_EQ(said[0].encoding, ContributionEncoding::kFixed16);
-    EXPECT_EQ(said[0].gained_steps, said[0].steps - last.steps);
+    const auto sent = only<Contribution>(
+        deliver(agent, world_state(tick, {{100 + 50 * static_cast<double>(tick), 500, 0}})));
+    if (sent.empty()) continue;
+    ASSERT_EQ(sent.size(), 1u) << "all 144 modes in one";
+    EXPECT_EQ(sent[0].encoding, ContributionEncoding::kFixed16);
+    EXPECT_EQ(sent[0].gained_steps, sent[0].steps - last.steps);
     for (std::size_t k = 0; k < 144; ++k) {
-      ASSERT_EQ(said[0].gains[k], said[0].sums[k] - last.sums.data()[k]) << k;
+      ASSERT_EQ(sent[0].gains[k], sent[0].sums[k] - last.sums.data()[k]) << k;
     }
-    last = said[0];
+    last = sent[0];
   }
   EXPECT_GT(last.steps, 6);
 }
@@ -108,16 +109,16 @@ TEST(AgentTick, BroadcastsOncePerPeriodAndNamesTheNextTimeTruthfully) {
     Agent agent = running_agent(mission, id);
     Tick announced = 0;
     for (Tick tick = 0; tick < 40; ++tick) {
-      const auto said = only<Contribution>(
-          tell(agent, world_state(tick, {{1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {4, 4, 0}})));
-      ASSERT_EQ(said.size(), tick == announced ? 1u : 0u) << "agent " << id << " at " << tick;
-      if (said.empty()) continue;
-      if (tick == 0) second_broadcast.push_back(said[0].next_broadcast_tick);
-      EXPECT_LE(said[0].next_broadcast_tick, tick + 4);
+      const auto sent = only<Contribution>(
+          deliver(agent, world_state(tick, {{1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {4, 4, 0}})));
+      ASSERT_EQ(sent.size(), tick == announced ? 1u : 0u) << "agent " << id << " at " << tick;
+      if (sent.empty()) continue;
+      if (tick == 0) second_broadcast.push_back(sent[0].next_broadcast_tick);
+      EXPECT_LE(sent[0].next_broadcast_tick, tick + 4);
       if (tick > 0) {
-        EXPECT_EQ(said[0].next_broadcast_tick, tick + 4);
+        EXPECT_EQ(sent[0].next_broadcast_tick, tick + 4);
       }
-      announced = said[0].next_broadcast_tick;
+      announced = sent[0].next_broadcast_tick;
     }
   }
   std::sort(second_broadcast.begin(), second_broadcast.end());
@@ -125,19 +126,20 @@ TEST(AgentTick, BroadcastsOncePerPeriodAndNamesTheNextTimeTruthfully) {
 }
 
 /// The blocks that an agent says at each tick, and when it says them again.
-struct Said {
+struct Sent {
   int block;
   Tick next;
-  bool operator==(const Said&) const = default;
+  bool operator==(const Sent&) const = default;
 };
-std::map<Tick, std::vector<Said>> said_of(const Mission& mission, AgentId id, Tick ticks) {
+std::map<Tick, std::vector<Sent>> sent_by(const Mission& mission, AgentId id, Tick ticks) {
   Agent agent = running_agent(mission, id);
-  std::map<Tick, std::vector<Said>> all;
+  std::map<Tick, std::vector<Sent>> all;
   for (Tick tick = 0; tick < ticks; ++tick) {
-    const Outbox out = tell(agent, world_state(tick, {{1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {4, 4, 0}}));
-    for (const Contribution& said : only<Contribution>(out)) {
-      all[tick].push_back({said.block, said.next_broadcast_tick});
-      EXPECT_EQ(said.steps, tick + 1);
+    const Outbox out =
+        deliver(agent, world_state(tick, {{1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {4, 4, 0}}));
+    for (const Contribution& sent : only<Contribution>(out)) {
+      all[tick].push_back({sent.block, sent.next_broadcast_tick});
+      EXPECT_EQ(sent.steps, tick + 1);
     }
   }
   return all;
@@ -151,7 +153,7 @@ TEST(AgentTick, SaysHighModesEverySoManyPeriodsAndNamesTheirNextTimeTruthfully) 
   std::vector<Tick> second_broadcast;
   for (AgentId id = 0; id < 4; ++id) {
     std::map<int, Tick> announced;
-    for (const auto& [tick, blocks] : said_of(mission, id, 60)) {
+    for (const auto& [tick, blocks] : sent_by(mission, id, 60)) {
       ASSERT_EQ(blocks.front().block, 0) << "high modes go along with low ones";
       for (const auto& [block, next] : blocks) {
         EXPECT_EQ(announced[block], tick);
@@ -174,7 +176,7 @@ TEST(AgentTick, SaysAllModesAsOftenWhereThereAreOnlyLowOnes) {
   rare.timing.broadcast_period_ticks = 4;
   Mission usual = rare;
   rare.timing.high_mode_period_factor = 3;
-  EXPECT_EQ(said_of(rare, 2, 40), said_of(usual, 2, 40));
+  EXPECT_EQ(sent_by(rare, 2, 40), sent_by(usual, 2, 40));
 }
 
 TEST(AgentInRealTime, WithoutNewTicksSaysAllModes) {
@@ -183,18 +185,18 @@ TEST(AgentInRealTime, WithoutNewTicksSaysAllModes) {
   mission.timing.high_mode_period_factor = 3;
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  for (Tick tick = 0; tick < 6; ++tick) tell(agent, world_state(tick, {{1, 1, 0}}));
-  const auto said = only<Contribution>(advance(agent, at(2s)));
-  ASSERT_EQ(said.size(), 2u);
-  for (const Contribution& block : said) EXPECT_EQ(block.steps, 6);
-  EXPECT_EQ(said[0].next_broadcast_tick, 8);
-  EXPECT_EQ(said[1].next_broadcast_tick, 12);
+  for (Tick tick = 0; tick < 6; ++tick) deliver(agent, world_state(tick, {{1, 1, 0}}));
+  const auto sent = only<Contribution>(advance(agent, at(2s)));
+  ASSERT_EQ(sent.size(), 2u);
+  for (const Contribution& block : sent) EXPECT_EQ(block.steps, 6);
+  EXPECT_EQ(sent[0].next_broadcast_tick, 8);
+  EXPECT_EQ(sent[1].next_broadcast_tick, 12);
 }
 
 TEST(AgentTick, EndsByItselfAtThePlansLastTick) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  const Outbox out = tell(agent, world_state(mission.timing.tick_count, {{100, 500, 0}}));
+  const Outbox out = deliver(agent, world_state(mission.timing.tick_count, {{100, 500, 0}}));
   EXPECT_TRUE(agent.finished());
   EXPECT_FALSE(agent.failed());
   EXPECT_EQ(agent.reason(), "mission complete");
@@ -210,17 +212,18 @@ TEST(AgentInLockstep, WaitsForHighModesOnlyWhenTheyAreDue) {
   Agent agent = running_agent(mission), other = running_agent(mission, 1);
   for (Tick tick = 0; tick < 9; ++tick) {
     const WorldState world = world_state(tick, {{100, 500, 0}, {200, 500, 0}});
-    const auto said = only<Contribution>(tell(other, world));
-    bool answered = !only<Command>(tell(agent, world)).empty();
+    const auto sent = only<Contribution>(deliver(other, world));
+    bool answered = !only<Command>(deliver(agent, world)).empty();
     ASSERT_FALSE(answered) << "low ones are due at " << tick;
-    ASSERT_EQ(said.size(), tick == 0 || tick % 3 == 1 ? 2u : 1u) << tick;
-    for (const Contribution& block : said) {
+    ASSERT_EQ(sent.size(), tick == 0 || tick % 3 == 1 ? 2u : 1u) << tick;
+    for (const Contribution& block : sent) {
       EXPECT_FALSE(answered) << tick;
-      answered = !only<Command>(tell(agent, block)).empty();
-      tell(other, world);  // it answers, too
+      answered = !only<Command>(deliver(agent, block)).empty();
+      deliver(other, world);  // it answers, too
     }
     EXPECT_TRUE(answered) << tick;
-    for (const Contribution& block : only<Contribution>(tell(agent, world))) tell(other, block);
+    for (const Contribution& block : only<Contribution>(deliver(agent, world)))
+      deliver(other, block);
   }
 }
 
@@ -232,27 +235,27 @@ TEST(AgentInLockstep, AnswersOnlyWhenEveryDueBlockOfEveryTeammateIsThere) {
   const auto two = blocks_of(mission, author_of(2), {places[2]}, 1);
   ASSERT_EQ(one.size(), 2u);
 
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(0, places))).empty());
-  EXPECT_TRUE(only<Command>(tell(agent, two[1])).empty());
-  EXPECT_TRUE(only<Command>(tell(agent, one[0])).empty());
-  EXPECT_TRUE(only<Command>(tell(agent, two[0])).empty());
-  const auto answer = only<Command>(tell(agent, one[1]));
+  EXPECT_TRUE(only<Command>(deliver(agent, world_state(0, places))).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, two[1])).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, one[0])).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, two[0])).empty());
+  const auto answer = only<Command>(deliver(agent, one[1]));
   ASSERT_EQ(answer.size(), 1u);
   EXPECT_EQ(answer[0].header.tick, 0);
 
   // The next tick needs their next blocks.
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(1, places))).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, world_state(1, places))).empty());
 }
 
 TEST(AgentInLockstep, StatusNamesTheTeammateItWaitsFor) {
   const Mission mission = small_mission(3);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, {{200, 500, 0}}, 1), at(0s));
-  tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}, {300, 500, 0}}));
+  deliver(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}, {300, 500, 0}}));
   const AgentStatus waiting = status_after(agent, at(0s));
   EXPECT_EQ(waiting.waiting_for, 2);
   EXPECT_EQ(waiting.answered_tick, -1);
-  tell(agent, block_of(mission, 2, {{300, 500, 0}}, 1), at(500ms));
+  deliver(agent, block_of(mission, 2, {{300, 500, 0}}, 1), at(500ms));
   const AgentStatus answered = status_after(agent, at(500ms));
   EXPECT_EQ(answered.waiting_for, kUnassigned);
   EXPECT_EQ(answered.answered_tick, 0);
@@ -262,13 +265,13 @@ TEST(AgentInLockstep, StatusNamesTheWorldOnceItHasBeenSilentForThreeSeconds) {
   Agent agent = running_agent(small_mission(2));
   const auto world = [] { return world_state(0, {{100, 500, 0}, {200, 500, 0}}); };
   const WorldState first = world();
-  tell(agent, first, at(5s));
+  deliver(agent, first, at(5s));
   EXPECT_EQ(status_after(agent, at(5s)).waiting_for, 1) << "whose block the tick waits for";
   EXPECT_EQ(status_after(agent, at(7499ms)).waiting_for, 1) << "not yet";
   EXPECT_EQ(status_after(agent, at(8s)).waiting_for, kWorld) << "whatever else is missing";
-  tell(agent, first, at(8900ms));
+  deliver(agent, first, at(8900ms));
   EXPECT_EQ(status_after(agent, at(9s)).waiting_for, kWorld) << "anybody may have recorded it";
-  tell(agent, world(), at(10s));
+  deliver(agent, world(), at(10s));
   EXPECT_EQ(status_after(agent, at(10s)).waiting_for, 1) << "a repeat of its own is a word, too";
 }
 
@@ -277,9 +280,9 @@ TEST(AgentInLockstep, DoesNotWaitForWhatIsNotDue) {
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, {{200, 500, 0}}, 3), at(0s));
   for (Tick tick = 0; tick < 3; ++tick) {
-    EXPECT_EQ(only<Command>(tell(agent, world_state(tick, {{100, 500, 0}}))).size(), 1u) << tick;
+    EXPECT_EQ(only<Command>(deliver(agent, world_state(tick, {{100, 500, 0}}))).size(), 1u) << tick;
   }
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(3, {{100, 500, 0}}))).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, world_state(3, {{100, 500, 0}}))).empty());
 }
 
 TEST(AgentInLockstep, DoesNotWaitForMembersWhoHaveLeftOrAreYetToCome) {
@@ -290,24 +293,25 @@ TEST(AgentInLockstep, DoesNotWaitForMembersWhoHaveLeftOrAreYetToCome) {
   roster[1].active_until = 0;
   roster[2].active_from = 5;
   give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
-  EXPECT_EQ(only<Command>(tell(agent, world_state(0, {{100, 500, 0}}))).size(), 1u);
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(5, {{100, 500, 0}}))).empty());
+  EXPECT_EQ(only<Command>(deliver(agent, world_state(0, {{100, 500, 0}}))).size(), 1u);
+  EXPECT_TRUE(only<Command>(deliver(agent, world_state(5, {{100, 500, 0}}))).empty());
 }
 
 TEST(AgentInLockstep, GoesOnWhenARosterRevisionRemovesTheOneItWaitedFor) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(0, {{100, 500, 0}}))).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, world_state(0, {{100, 500, 0}}))).empty());
   std::vector<RosterEntry> roster = roster_of(2);
   roster[1].active_until = 0;
-  EXPECT_EQ(only<Command>(tell(agent, mission_part(1, MissionState::kRunning, roster))).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(agent, mission_part(1, MissionState::kRunning, roster))).size(),
+            1u);
 }
 
 TEST(AgentInLockstep, ARepeatedTickIsAnsweredAgainWithTheSameBlocksAndCommand) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  const Outbox first = tell(agent, world_state(0, {{100, 500, 0}}));
-  const Outbox again = tell(agent, world_state(0, {{100, 500, 0}}), at(20ms));
+  const Outbox first = deliver(agent, world_state(0, {{100, 500, 0}}));
+  const Outbox again = deliver(agent, world_state(0, {{100, 500, 0}}), at(20ms));
   ASSERT_EQ(only<Command>(again).size(), 1u);
   EXPECT_EQ(only<Command>(again)[0].velocity_mps, only<Command>(first)[0].velocity_mps);
   EXPECT_EQ(only<Command>(again)[0].header.tick, 0);
@@ -322,9 +326,10 @@ TEST(AgentInLockstep, BetweenBroadcastsARepeatSaysWhatTheLastBroadcastSaid) {
   Mission mission = small_mission(1);
   mission.timing.broadcast_period_ticks = 4;
   Agent agent = running_agent(mission);
-  const auto broadcast = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));
-  tell(agent, world_state(1, {{150, 500, 0}}));
-  const auto repeated = only<Contribution>(tell(agent, world_state(1, {{150, 500, 0}}), at(20ms)));
+  const auto broadcast = only<Contribution>(deliver(agent, world_state(0, {{100, 500, 0}})));
+  deliver(agent, world_state(1, {{150, 500, 0}}));
+  const auto repeated =
+      only<Contribution>(deliver(agent, world_state(1, {{150, 500, 0}}), at(20ms)));
   ASSERT_EQ(repeated.size(), 1u);
   EXPECT_EQ(repeated[0].steps, 1) << "newer sums would make a tick depend on what was lost";
   EXPECT_EQ(repeated[0].sums, broadcast[0].sums);
@@ -333,26 +338,26 @@ TEST(AgentInLockstep, BetweenBroadcastsARepeatSaysWhatTheLastBroadcastSaid) {
 TEST(AgentInLockstep, AReplayedTickIsNotAnsweredAgain) {
   Agent agent = running_agent(small_mission(1));
   const WorldState world = world_state(0, {{100, 500, 0}});
-  EXPECT_FALSE(only<Command>(tell(agent, world)).empty());
+  EXPECT_FALSE(only<Command>(deliver(agent, world)).empty());
   for (int i = 0; i < 10; ++i) {
-    const Outbox again = tell(agent, world, at(20ms));
+    const Outbox again = deliver(agent, world, at(20ms));
     EXPECT_TRUE(only<Command>(again).empty() && only<Contribution>(again).empty());
   }
 }
 
 TEST(AgentInLockstep, ARepeatedTickThatWaitsRepeatsOnlyTheBlocks) {
   Agent agent = running_agent(small_mission(2));
-  tell(agent, world_state(0, {{100, 500, 0}}));
-  const Outbox again = tell(agent, world_state(0, {{100, 500, 0}}), at(20ms));
+  deliver(agent, world_state(0, {{100, 500, 0}}));
+  const Outbox again = deliver(agent, world_state(0, {{100, 500, 0}}), at(20ms));
   EXPECT_EQ(only<Contribution>(again).size(), 1u);
   EXPECT_TRUE(only<Command>(again).empty());
 }
 
 TEST(AgentInLockstep, OldTicksOfTheWorldHaveNoEffect) {
   Agent agent = running_agent(small_mission(1));
-  tell(agent, world_state(0, {{100, 500, 0}}));
-  tell(agent, world_state(1, {{110, 500, 0}}));
-  const Outbox out = tell(agent, world_state(0, {{1900, 500, 0}}));
+  deliver(agent, world_state(0, {{100, 500, 0}}));
+  deliver(agent, world_state(1, {{110, 500, 0}}));
+  const Outbox out = deliver(agent, world_state(0, {{1900, 500, 0}}));
   EXPECT_TRUE(only<Command>(out).empty());
   EXPECT_TRUE(only<Contribution>(out).empty());
   EXPECT_EQ(agent.tick(), 1);
@@ -375,17 +380,17 @@ TEST(AgentInRealTime, AnswersWithWhatItHas) {
   Mission mission = small_mission(4);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  EXPECT_EQ(only<Command>(tell(agent, world_state(0, {{100, 500, 0}}))).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(agent, world_state(0, {{100, 500, 0}}))).size(), 1u);
 }
 
 TEST(AgentInRealTime, CountsTheTicksThatWentByWithoutIt) {
   Mission mission = small_mission(1);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(3, {{100, 500, 0}}));
+  deliver(agent, world_state(3, {{100, 500, 0}}));
   EXPECT_EQ(status_after(agent, at(0s)).missed_ticks, 0) << "it was not there before";
-  tell(agent, world_state(4, {{100, 500, 0}}));
-  tell(agent, world_state(9, {{100, 500, 0}}));
+  deliver(agent, world_state(4, {{100, 500, 0}}));
+  deliver(agent, world_state(9, {{100, 500, 0}}));
   EXPECT_EQ(status_after(agent, at(2h)).missed_ticks, 4);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 3) << "and covers only what it saw";
 }

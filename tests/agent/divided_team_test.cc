@@ -32,15 +32,15 @@ Mission realtime(int agents) {
 
 /// The world's ticks [from, until), 0.1 s each; returns all messages of the team.
 Outbox run_ticks(LiveTeam& team, int agents, Tick from, Tick until) {
-  Outbox said;
+  Outbox sent;
   for (Tick tick = from; tick < until; ++tick) {
     std::vector<Eigen::Vector3d> places;
     for (AgentId id = 0; id < agents; ++id) places.push_back(place(id, tick));
-    for (Outgoing& word : team.tell(world_state(tick, places), at(tick * 100ms))) {
-      said.push_back(std::move(word));
+    for (Outgoing& word : team.deliver(world_state(tick, places), at(tick * 100ms))) {
+      sent.push_back(std::move(word));
     }
   }
-  return said;
+  return sent;
 }
 
 Coefficients average_of(const Mission& mission, const CoverageTable& table) {
@@ -63,7 +63,7 @@ Coefficients average_of(
 TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
-  team.hear_by([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
+  team.set_receives([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
   run_ticks(team, 3, 0, 30);
   team.wait(at(3s), 3s);
   EXPECT_GT(status_after(team[1], at(6s)).contributions_relayed, 0);
@@ -83,9 +83,9 @@ TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
 TEST(Chain, NewsKeepUpWithAMissionThatIsFasterThanTheClock) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
-  team.hear_by([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
+  team.set_receives([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
   for (Tick tick = 0; tick < 200; ++tick) {
-    team.tell(world_state(tick, {place(0, tick), place(1, tick), place(2, tick)}), at(0s));
+    team.deliver(world_state(tick, {place(0, tick), place(1, tick), place(2, tick)}), at(0s));
     if (tick < 25) continue;
     // A digest each 10 ticks, two to begin with, an answer within 3.
     EXPECT_GE(team[0].coverage()->steps_held(author_of(2)).value_or(0), tick - 15) << tick;
@@ -95,12 +95,12 @@ TEST(Chain, NewsKeepUpWithAMissionThatIsFasterThanTheClock) {
 TEST(Chain, WhatIsPassedOnIsWhatItsAuthorSaidByteForByte) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
-  team.hear_by([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
-  Outbox said = run_ticks(team, 3, 0, 30);
-  for (Outgoing& word : team.wait(at(3s), 3s)) said.push_back(std::move(word));
+  team.set_receives([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
+  Outbox sent = run_ticks(team, 3, 0, 30);
+  for (Outgoing& word : team.wait(at(3s), 3s)) sent.push_back(std::move(word));
   std::map<std::pair<std::int64_t, std::int32_t>, std::vector<std::byte>> original;
   int passed_on = 0;
-  for (const Outgoing& word : said) {
+  for (const Outgoing& word : sent) {
     const auto* block = std::get_if<Contribution>(&word.message);
     if (block == nullptr || block->header.sender != 2) continue;
     const auto key = std::pair(block->steps, block->block);
@@ -120,15 +120,15 @@ TEST(Chain, WhatIsPassedOnIsWhatItsAuthorSaidByteForByte) {
 TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   const Mission mission = realtime(4);
   LiveTeam team(mission);
-  team.hear_by([](AgentId a, AgentId b) { return a / 2 == b / 2; });
+  team.set_receives([](AgentId a, AgentId b) { return a / 2 == b / 2; });
   run_ticks(team, 4, 0, 20);
   EXPECT_EQ(team[0].coverage()->row_count(), 2u) << "its half";
   // 3 dies after only 2 has received its blocks; then the halves meet.
   team.kill(3);
   auto roster = roster_of(4);
   roster[3].active_until = 20;
-  team.tell(mission_part(1, MissionState::kRunning, roster), at(2s));
-  team.hear_by([](AgentId, AgentId) { return true; });
+  team.deliver(mission_part(1, MissionState::kRunning, roster), at(2s));
+  team.set_receives([](AgentId, AgentId) { return true; });
   run_ticks(team, 4, 20, 22);
   team.wait(at(2200ms), 3s);
 
@@ -154,7 +154,7 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
   AgentIdentity identity = identity_of(0);
   identity.incarnation = restarted.incarnation;
   team.revive(0, Agent(identity));
-  team.tell(news, at(2s));
+  team.deliver(news, at(2s));
   EXPECT_EQ(team[0].coverage()->steps_held(former), std::nullopt);
   run_ticks(team, 2, 20, 25);
   team.wait(at(2500ms), 3s);
@@ -175,13 +175,13 @@ TEST(LostBroadcast, IsMendedByATeammateWhoHeardIt) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   run_ticks(team, 3, 0, 10);
-  team.hear_by(
+  team.set_receives(
       [](AgentId listener, AgentId transmitter) { return listener != 0 || transmitter != 2; });
   run_ticks(team, 3, 10, 11);
   team.kill(2);
   auto roster = roster_of(3);
   roster[2].active_until = 11;
-  team.tell(mission_part(1, MissionState::kRunning, roster), at(1100ms));
+  team.deliver(mission_part(1, MissionState::kRunning, roster), at(1100ms));
   EXPECT_EQ(team[0].coverage()->steps_held(author_of(2)), 10);
   team.wait(at(1100ms), 3s);
   EXPECT_EQ(team[0].coverage()->steps_held(author_of(2)), 11);

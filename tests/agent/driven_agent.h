@@ -62,7 +62,7 @@ inline Contribution block_of(const Mission& mission, AgentId id,
   return blocks_of(mission, author_of(id), path_m, next_broadcast_tick).front();
 }
 
-inline Outbox tell(Agent& agent, const Message& message, Instant now = at(0s)) {
+inline Outbox deliver(Agent& agent, const Message& message, Instant now = at(0s)) {
   give(agent, message, now);
   return advance(agent, now);
 }

@@ -45,8 +45,8 @@ std::vector<Contribution> words_of(const Mission& mission, AgentId id, Tick tick
   for (Tick before = 0; before <= tick; ++before) path_m.push_back(whereabouts(id, before));
   return blocks_of(mission, author_of(id), path_m, tick + period);
 }
-void hear(Agent& agent, const std::vector<Contribution>& said) {
-  for (const Contribution& block : said) give(agent, block, at(0s));
+void receive(Agent& agent, const std::vector<Contribution>& sent) {
+  for (const Contribution& block : sent) give(agent, block, at(0s));
 }
 
 // ---- what it answers to ----
@@ -71,7 +71,7 @@ TEST(AgentForesees, ItsCommandAnswersToWhatItForeseesAndItsStatusTellsWhatItKnow
       const BasisAt here(whereabouts(0, tick), mission.domain, mission.basis);
       table.add_sample(author_of(0), here);
       for (const AgentId id : {1, 2}) forecast.see(id, tick, whereabouts(id, tick));
-      const auto commands = only<Command>(tell(agent, world_of(3, tick)));
+      const auto commands = only<Command>(deliver(agent, world_of(3, tick)));
       forecast.look_ahead(table, roster_of(3), tick, foreseen);
       table.average(known);
       ASSERT_EQ(agent.foreseen_coverage(), foreseen) << tick;
@@ -90,8 +90,8 @@ TEST(AgentForesees, NothingWithoutAnticipation) {
   Mission mission = looking_ahead(2, true);
   mission.law.anticipation = 0;
   Agent agent = running_agent(mission);
-  hear(agent, words_of(mission, 1, 0));
-  const auto commands = only<Command>(tell(agent, world_of(2, 1)));
+  receive(agent, words_of(mission, 1, 0));
+  const auto commands = only<Command>(deliver(agent, world_of(2, 1)));
   Controller controller(mission);
   controller.set_coverage(agent.team_coverage());
   const BasisAt here(whereabouts(0, 1), mission.domain, mission.basis);
@@ -108,23 +108,23 @@ TEST(AgentForesees, TheSameOfARepeatAsOfTheBroadcast) {
   Agent author = running_agent(mission, 1);
   std::vector<Contribution> broadcast, repeated;
   for (Tick tick = 0; tick < 7; ++tick) {
-    hear(author, words_of(mission, 0, tick, 8));
-    const auto said = only<Contribution>(tell(author, world_of(2, tick)));
-    if (!said.empty()) broadcast = said;
+    receive(author, words_of(mission, 0, tick, 8));
+    const auto sent = only<Contribution>(deliver(author, world_of(2, tick)));
+    if (!sent.empty()) broadcast = sent;
   }
   const Tick spoke = broadcast.at(0).header.tick;
   ASSERT_LT(spoke, 6);
-  repeated = only<Contribution>(tell(author, world_of(2, 6), at(20ms)));
+  repeated = only<Contribution>(deliver(author, world_of(2, 6), at(20ms)));
   ASSERT_EQ(repeated.size(), 2u);
   for (const Contribution& block : repeated) {
     EXPECT_EQ(block.header.tick, spoke);
     EXPECT_GT(block.header.sequence, broadcast.back().header.sequence) << "a message of its own";
   }
   Coefficients foreseen[2];
-  for (const auto& [said, of_it] : {std::pair(broadcast, &foreseen[0]), {repeated, &foreseen[1]}}) {
+  for (const auto& [sent, of_it] : {std::pair(broadcast, &foreseen[0]), {repeated, &foreseen[1]}}) {
     Agent listener = running_agent(mission, 0);
-    hear(listener, said);
-    EXPECT_EQ(only<Command>(tell(listener, world_of(2, 6))).size(), 1u);
+    receive(listener, sent);
+    EXPECT_EQ(only<Command>(deliver(listener, world_of(2, 6))).size(), 1u);
     *of_it = listener.foreseen_coverage();
     EXPECT_NE(*of_it, listener.team_coverage());
   }
@@ -140,10 +140,10 @@ TEST(AgentForesees, NothingFromWhatATeammateHasGainedSinceBeforeItTookPart) {
     announce(mission);
     Agent agent(identity_of(0));
     give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
-    tell(agent, world_of(3, 4));
-    if (knows_more) hear(agent, words_of(mission, 1, 3));
-    hear(agent, words_of(mission, 1, 6));
-    tell(agent, world_of(3, 7));
+    deliver(agent, world_of(3, 4));
+    if (knows_more) receive(agent, words_of(mission, 1, 3));
+    receive(agent, words_of(mission, 1, 6));
+    deliver(agent, world_of(3, 7));
     return agent.foreseen_coverage();
   };
   EXPECT_EQ(foreseen(true), foreseen(false));
@@ -159,7 +159,7 @@ std::vector<Eigen::Vector3d> commands_in_lockstep(Mission mission, int period, i
   const auto agents = static_cast<int>(mission.starts_m.size());
   for (Tick tick = 0; tick < ticks; ++tick) {
     std::map<AgentId, Eigen::Vector3d> by_agent;
-    for (const Command& command : only<Command>(team.tell(world_of(agents, tick), at(0s)))) {
+    for (const Command& command : only<Command>(team.deliver(world_of(agents, tick), at(0s)))) {
       EXPECT_EQ(command.header.tick, tick);
       by_agent[command.header.sender] = command.velocity_mps;
     }
@@ -187,8 +187,8 @@ TEST(AgentReckons, NotByAVehicleOutsideTheDomain) {
   const auto foreseen = [](bool dead_reckoning, const Eigen::Vector3d& x_m) {
     const Mission mission = looking_ahead(3, dead_reckoning);
     Agent agent = running_agent(mission);
-    hear(agent, words_of(mission, 1, 2));
-    tell(agent, with_vehicle_1(6, x_m));
+    receive(agent, words_of(mission, 1, 2));
+    deliver(agent, with_vehicle_1(6, x_m));
     return agent.foreseen_coverage();
   };
   const Coefficients blind = foreseen(false, {1900, 300, 0});
@@ -207,12 +207,12 @@ TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
     announce(mission);
     Agent agent(identity_of(0));
     give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
-    hear(agent, words_of(mission, 1, 2));
-    for (Tick tick = 3; tick < 5; ++tick) tell(agent, with_vehicle_1(tick, before_m));
+    receive(agent, words_of(mission, 1, 2));
+    for (Tick tick = 3; tick < 5; ++tick) deliver(agent, with_vehicle_1(tick, before_m));
     auto words = blocks_of(mission, restarted, {{700, 300, 0}}, 15);
     for (Contribution& block : words) block.header.tick = 5;
-    hear(agent, words);
-    for (Tick tick = 5; tick < 8; ++tick) tell(agent, with_vehicle_1(tick, {700, 300, 0}));
+    receive(agent, words);
+    for (Tick tick = 5; tick < 8; ++tick) deliver(agent, with_vehicle_1(tick, {700, 300, 0}));
     return agent.foreseen_coverage();
   };
   EXPECT_EQ(foreseen({1900, 900, 0}), foreseen({700, 300, 0}));
@@ -222,8 +222,8 @@ TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
   const Mission mission = looking_ahead(3, true);
   Agent agent = running_agent(mission);
   const auto words = words_of(mission, 1, 2, 1);
-  hear(agent, words);
-  Outbox said;
+  receive(agent, words);
+  Outbox sent;
   std::int64_t sequence = 0;
   for (Tick tick = 3; tick < 60; ++tick) {
     // Agent 2 sends each second a digest that has nothing of agent 1.
@@ -234,12 +234,12 @@ TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
       digest.entries[0] = {author_of(1), 0};
       give(agent, digest, at(tick * 100ms));
     }
-    for (Outgoing& word : tell(agent, world_of(3, tick), at(tick * 100ms)))
-      said.push_back(std::move(word));
+    for (Outgoing& word : deliver(agent, world_of(3, tick), at(tick * 100ms)))
+      sent.push_back(std::move(word));
     ASSERT_NE(agent.foreseen_coverage(), agent.team_coverage());
   }
   int relayed = 0;
-  for (const Contribution& block : only<Contribution>(said)) {
+  for (const Contribution& block : only<Contribution>(sent)) {
     if (block.header.sender == 0) {
       EXPECT_EQ(block.steps, block.header.tick - 2) << "its own, from where it was";
       continue;
@@ -248,7 +248,7 @@ TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
     EXPECT_EQ(bytes_of(block), bytes_of(words[static_cast<std::size_t>(block.block)]));
   }
   EXPECT_GT(relayed, 1);
-  for (const Digest& digest : only<Digest>(said)) EXPECT_EQ(digest.entries[1].steps, 3);
+  for (const Digest& digest : only<Digest>(sent)) EXPECT_EQ(digest.entries[1].steps, 3);
 }
 
 // ---- when a tick may be answered ----
@@ -276,19 +276,19 @@ TEST(AgentInLockstep, AnswersOnceAllPartsOfTheWorldsStateAreThere) {
   const auto foreseen = [&](AgentId self, std::vector<int> order) {
     Agent agent = running_agent(mission, self);
     for (AgentId id = 0; id < 20; ++id) {
-      if (id != self) hear(agent, words_of(mission, id, 0, 3));
+      if (id != self) receive(agent, words_of(mission, id, 0, 3));
     }
     for (Tick tick = 0; tick < 3; ++tick) {
       const Instant now = at(tick * 1s);
       const auto parts = parts_of_twenty(tick), repeated = parts_of_twenty(tick);
       const auto first = static_cast<std::size_t>(order[static_cast<std::size_t>(tick)]);
-      EXPECT_TRUE(only<Command>(tell(agent, parts[first], now)).empty()) << self << ' ' << tick;
-      EXPECT_TRUE(only<Command>(tell(agent, repeated[first], now)).empty())
+      EXPECT_TRUE(only<Command>(deliver(agent, parts[first], now)).empty()) << self << ' ' << tick;
+      EXPECT_TRUE(only<Command>(deliver(agent, repeated[first], now)).empty())
           << "the same is no other";
       if (static_cast<std::size_t>(self / 16) == first) {
         EXPECT_EQ(status_after(agent, now).waiting_for, kWorld);
       }
-      EXPECT_EQ(only<Command>(tell(agent, parts[1 - first], now + 600ms)).size(), 1u);
+      EXPECT_EQ(only<Command>(deliver(agent, parts[1 - first], now + 600ms)).size(), 1u);
     }
     return agent.foreseen_coverage();
   };
@@ -303,8 +303,8 @@ TEST(AgentInLockstep, WaitsForNoPartThatItDoesNotNeed) {
     Mission mission = looking_ahead(20, !anticipates, Pace::kLockstep);
     if (!anticipates) mission.law.anticipation = 0;
     Agent agent = running_agent(mission);
-    for (AgentId id = 1; id < 20; ++id) hear(agent, words_of(mission, id, 0, 3));
-    EXPECT_EQ(only<Command>(tell(agent, parts_of_twenty(0)[0])).size(), 1u);
+    for (AgentId id = 1; id < 20; ++id) receive(agent, words_of(mission, id, 0, 3));
+    EXPECT_EQ(only<Command>(deliver(agent, parts_of_twenty(0)[0])).size(), 1u);
   }
 }
 
@@ -320,11 +320,11 @@ TEST(AgentForesees, NothingOfATeammateThatHasBeenSilentForLongerThanItLooksAhead
     ASSERT_GT(horizon_s, 8 * 0.1) << "the longer of the two caps";
     Agent agent = running_agent(mission);
     for (Tick tick = 0; tick < 100; ++tick) {
-      if (tick <= 20) hear(agent, words_of(mission, 1, tick, 1));
+      if (tick <= 20) receive(agent, words_of(mission, 1, tick, 1));
       WorldState world = world_of(2, tick);
       world.vehicles[1].answered_tick =
           std::min<Tick>(tick - 1, 20);  // it died; its vehicle drifts
-      tell(agent, world);
+      deliver(agent, world);
       // Its vehicle was seen driven until 25.
       const double silent_s = 0.1 * static_cast<double>(tick - (dead_reckoning ? 25 : 20));
       const double ahead =

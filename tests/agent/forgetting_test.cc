@@ -42,7 +42,7 @@ TEST(AgentForgets, FromTheNamedTickOn) {
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
   give(agent, forgetting_from(3), at(0s));
   for (Tick tick = 0; tick < 6; ++tick) {
-    EXPECT_EQ(only<Command>(tell(agent, world_at(tick))).size(), 1u);
+    EXPECT_EQ(only<Command>(deliver(agent, world_at(tick))).size(), 1u);
     EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 3) << tick;
   }
 }
@@ -52,9 +52,9 @@ TEST(AgentForgets, WhatComesOnlyAfterwardsToo) {
   Agent agent = running_agent(mission);
   give(agent, forgetting_from(0), at(0s));
   // While the tick waits for another revision, a teammate relays a block of 1.
-  EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 2))).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, world_at(0, 2))).empty());
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
-  EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0, 2))).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(agent, forgetting_from(0, 2))).size(), 1u);
   EXPECT_TRUE(steered_alone(agent, mission, 1));
 }
 
@@ -63,8 +63,8 @@ TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
-  EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 1))).empty()) << "the world knows more";
-  EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0))).size(), 1u);
+  EXPECT_TRUE(only<Command>(deliver(agent, world_at(0, 1))).empty()) << "the world knows more";
+  EXPECT_EQ(only<Command>(deliver(agent, forgetting_from(0))).size(), 1u);
   EXPECT_TRUE(steered_alone(agent, mission, 1));
 }
 
@@ -77,7 +77,7 @@ TEST(AgentForgets, NotBeforeTheWorldFliesByTheRosterThatSaysSo) {
   news.roster[1].since_revision = 8;
   give(agent, news, at(0s));
   for (Tick tick = 0; tick < 6; ++tick) {
-    EXPECT_EQ(only<Command>(tell(agent, world_at(tick, tick < 3 ? 7 : 8))).size(), 1u);
+    EXPECT_EQ(only<Command>(deliver(agent, world_at(tick, tick < 3 ? 7 : 8))).size(), 1u);
     EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 3) << tick;
   }
 }
@@ -91,7 +91,7 @@ TEST(AgentForgets, UntilTheNamedTickAtWhichItCountsAgain) {
   again.roster[1].forgotten = false;
   for (Tick tick = 0; tick < 7; ++tick) {
     if (tick == 3) give(agent, again, at(0s));
-    EXPECT_EQ(only<Command>(tell(agent, world_at(tick, 2 * (tick >= 3)))).size(), 1u);
+    EXPECT_EQ(only<Command>(deliver(agent, world_at(tick, 2 * (tick >= 3)))).size(), 1u);
     EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 1 && tick < 4) << tick;
   }
 }
@@ -101,11 +101,11 @@ TEST(AgentForgets, NobodyWhoseAdmissionDiedWithTheCoordinator) {
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
   give(agent, forgetting_from(0), at(0s));
-  tell(agent, world_at(0));
+  deliver(agent, world_at(0));
   EXPECT_TRUE(steered_alone(agent, mission, 1));
   // The successor's roster, 1000 revisions on, has never heard of agent 1.
   give(agent, mission_part(1001, MissionState::kRunning, {{author_of(0), 0, -1}}), at(0s));
-  EXPECT_EQ(only<Command>(tell(agent, world_at(1, 1001))).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(agent, world_at(1, 1001))).size(), 1u);
   EXPECT_FALSE(steered_alone(agent, mission, 2)) << "as for who was admitted since";
 }
 
@@ -122,7 +122,7 @@ TEST(AgentForgets, AndRemembersWhileTheMissionIsPaused) {
   again.holds = gone.holds;
   for (Tick tick = 0; tick < 6; ++tick) {
     if (tick == 3) give(agent, again, at(0s));
-    EXPECT_EQ(only<Command>(tell(agent, world_at(tick, 2 * (tick >= 3)))).size(), 1u);
+    EXPECT_EQ(only<Command>(deliver(agent, world_at(tick, 2 * (tick >= 3)))).size(), 1u);
     EXPECT_EQ(agent.held(), tick >= 1);
     EXPECT_EQ(steered_alone(agent, mission, 1), tick >= 2 && tick < 4) << tick;
   }
@@ -135,7 +135,7 @@ TEST(AgentForgets, NeverItself) {
        mission_part(1, MissionState::kRunning,
                     {{author_of(0), 0, -1, true, 0}, {author_of(1), 0, 0}}),
        at(0s));
-  EXPECT_EQ(only<Command>(tell(agent, world_at(0))).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(agent, world_at(0))).size(), 1u);
   EXPECT_EQ(agent.team_coverage()[0], 1) << "it lives, whatever the coordinator has heard";
 }
 
@@ -144,7 +144,7 @@ TEST(AgentForgets, ButPassesItOn) {
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
   give(agent, forgetting_from(0), at(0s));
-  tell(agent, world_at(0));
+  deliver(agent, world_at(0));
   EXPECT_EQ(agent.coverage()->block(author_of(1), 0).sums, block_of(mission, 1, kGone, 100).sums);
   EXPECT_EQ(only<Digest>(advance(agent, at(5s))).at(0).entries[1].steps, 2);
 }

@@ -19,8 +19,8 @@ void expect_refused(const Contribution& lie, Refusal why) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500, 0}}));
-  tell(agent, lie);
+  deliver(agent, world_state(0, {{100, 500, 0}}));
+  deliver(agent, lie);
   EXPECT_EQ(agent.coverage()->row_count(), 1u) << "only its own";
   RefusalCounts expected{};
   expected[static_cast<std::size_t>(why)] = 1;
@@ -63,9 +63,9 @@ TEST(AgentRefuses, CoverageFromTheFuture) {
   claim(std::numeric_limits<std::int64_t>::max());
   expect_refused(future, Refusal::kRange);
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500, 0}}));
+  deliver(agent, world_state(0, {{100, 500, 0}}));
   claim(601);
-  tell(agent, future);
+  deliver(agent, future);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 601);
 }
 
@@ -76,18 +76,18 @@ TEST(AgentRefuses, NothingForItsStepsBeforeItKnowsTheTick) {
   mission.timing.tick_count = 1000;
   const auto row_of_1 = block_of(mission, 1, std::vector<Eigen::Vector3d>(700, {200, 500, 0}), 700);
   Agent agent = running_agent(mission);
-  tell(agent, row_of_1);
+  deliver(agent, row_of_1);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), std::nullopt)
       << "it may be from the future";
   EXPECT_EQ(agent.refused(), RefusalCounts{}) << "or not";
-  tell(agent, world_state(699, {{100, 500, 0}}));
-  tell(agent, row_of_1);
+  deliver(agent, world_state(699, {{100, 500, 0}}));
+  deliver(agent, row_of_1);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 700);
 }
 
 TEST(AgentRefuses, APlaceOutsideTheDomain) {
   Agent agent = running_agent(small_mission(1));
-  const Outbox out = tell(agent, world_state(0, {{-1, 500, 0}}));
+  const Outbox out = deliver(agent, world_state(0, {{-1, 500, 0}}));
   EXPECT_TRUE(only<Command>(out).empty());
   EXPECT_EQ(agent.tick(), -1);
   EXPECT_EQ(status_after(agent, at(0s)).refused[static_cast<std::size_t>(Refusal::kRange)], 1);
@@ -108,8 +108,8 @@ TEST(AgentRefuses, ItsOwnEcho) {
   // Multicast returns an agent's own messages to it.
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));
-  tell(agent, said.at(0));
+  const auto sent = only<Contribution>(deliver(agent, world_state(0, {{100, 500, 0}})));
+  deliver(agent, sent.at(0));
   const AgentStatus status = status_after(agent, at(0s));
   EXPECT_EQ(status.contributions_received, 0);
   EXPECT_EQ(agent.coverage()->row_count(), 1u);
@@ -134,10 +134,10 @@ TEST(AgentStatusReport, MeasuresStalenessByTheOldestTeammate) {
   Mission mission = small_mission(3);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500, 0}}));
+  deliver(agent, world_state(0, {{100, 500, 0}}));
   give(agent, block_of(mission, 1, {{200, 500, 0}}, 1), at(0s));
   give(agent, block_of(mission, 2, {{300, 500, 0}}, 1), at(0s));
-  tell(agent, world_state(9, {{100, 500, 0}}));
+  deliver(agent, world_state(9, {{100, 500, 0}}));
   give(agent, block_of(mission, 1, {{200, 500, 0}, {200, 500, 0}, {200, 500, 0}}, 3), at(0s));
   // Teammate 2 was last heard of at tick 0. How many samples the others gave does not matter: a
   // teammate that was held up once is not out of date for ever.
@@ -147,7 +147,7 @@ TEST(AgentStatusReport, MeasuresStalenessByTheOldestTeammate) {
 TEST(AgentStatusReport, ShowsPhiSquaredOfTheTeamAsItKnowsIt) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500, 0}}));
+  deliver(agent, world_state(0, {{100, 500, 0}}));
   const double expected =
       Controller(mission).metric(basis_values({100, 500, 0}, mission.domain, mission.basis));
   EXPECT_NEAR(status_after(agent, at(0s)).ergodic_metric, expected, 1e-14 * expected);
@@ -162,7 +162,7 @@ TEST(AgentStatusReport, ComesTwiceASecondAndOnceAMissionSecond) {
   int statuses = 0;
   for (Tick tick = 0; tick < 40; ++tick) {
     statuses += static_cast<int>(
-        only<AgentStatus>(tell(agent, world_state(tick, {{100, 500, 0}}), at(501ms))).size());
+        only<AgentStatus>(deliver(agent, world_state(tick, {{100, 500, 0}}), at(501ms))).size());
   }
   EXPECT_EQ(statuses, 4) << "40 ticks of 0.1 s without any time on the clock";
 }
@@ -170,8 +170,8 @@ TEST(AgentStatusReport, ComesTwiceASecondAndOnceAMissionSecond) {
 TEST(AgentStatusReport, CountsItsOwnMessages) {
   Agent agent = running_agent(small_mission(1));
   std::size_t sent = advance(agent, at(0s)).size();
-  sent += tell(agent, world_state(0, {{100, 500, 0}})).size();
-  sent += tell(agent, world_state(0, {{100, 500, 0}})).size();
+  sent += deliver(agent, world_state(0, {{100, 500, 0}})).size();
+  sent += deliver(agent, world_state(0, {{100, 500, 0}})).size();
   const AgentStatus status = status_after(agent, at(0s));
   EXPECT_EQ(status.messages_sent, static_cast<std::int64_t>(sent));
   EXPECT_EQ(status.messages_received, 3) << "the mission and two states";
@@ -182,7 +182,7 @@ TEST(AgentStatusReport, SequencesGrowByOneOnEachBus) {
   std::int64_t last[kBusCount] = {0, 0, 0};
   for (Tick tick = 0; tick < 20; ++tick) {
     for (const Outgoing& out :
-         tell(agent, world_state(tick / 2, {{100, 500, 0}}), at(tick * 200ms))) {
+         deliver(agent, world_state(tick / 2, {{100, 500, 0}}), at(tick * 200ms))) {
       EXPECT_EQ(header_of(out.message).sequence, ++last[static_cast<std::size_t>(out.bus)]);
     }
   }

@@ -29,12 +29,12 @@ TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
 
   // A roster without us changes nothing.
   EXPECT_EQ(
-      only<Hello>(tell(agent, mission_part(0, MissionState::kWaiting, roster_of(3)), at(500ms)))
+      only<Hello>(deliver(agent, mission_part(0, MissionState::kWaiting, roster_of(3)), at(500ms)))
           .size(),
       1u);
   EXPECT_EQ(agent.phase(), AgentPhase::kJoining);
 
-  tell(agent, mission_part(1, MissionState::kWaiting, roster_of(4)), at(600ms));
+  deliver(agent, mission_part(1, MissionState::kWaiting, roster_of(4)), at(600ms));
   EXPECT_EQ(agent.phase(), AgentPhase::kWaiting);
   EXPECT_TRUE(only<Hello>(advance(agent, at(10s))).empty());
 }
@@ -98,11 +98,11 @@ TEST(AgentJoining, DoesNothingInTheWorldBeforeTheMissionRuns) {
   announce(mission);
   Agent agent(identity_of(0));
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
-  const Outbox waiting = tell(agent, world_state(0, {{100, 500, 0}}));
+  const Outbox waiting = deliver(agent, world_state(0, {{100, 500, 0}}));
   EXPECT_TRUE(only<Command>(waiting).empty());
   EXPECT_TRUE(only<Contribution>(waiting).empty());
   EXPECT_EQ(agent.tick(), -1);
-  const Outbox running = tell(agent, mission_part(1, MissionState::kRunning, roster_of(1)));
+  const Outbox running = deliver(agent, mission_part(1, MissionState::kRunning, roster_of(1)));
   EXPECT_EQ(only<Command>(running).size(), 1u);
 }
 
@@ -213,9 +213,9 @@ TEST(Agent, IgnoresAndCountsAPlanThatIsNotItsRuns) {
 TEST(Agent, TellsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
   Agent agent = running_agent(small_mission(2));
   for (const double lag_s : {0.1, 0.7, 0.2}) agent.note_loop_lag(lag_s);
-  const auto told = only<AgentStatus>(advance(agent, at(10s)));
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].loop_lag_s, 0.7);
+  const auto sent = only<AgentStatus>(advance(agent, at(10s)));
+  ASSERT_EQ(sent.size(), 1u);
+  EXPECT_EQ(sent[0].loop_lag_s, 0.7);
   EXPECT_EQ(only<AgentStatus>(advance(agent, at(20s))).at(0).loop_lag_s, 0);
 }
 
@@ -233,7 +233,7 @@ TEST(AgentHears, CoverageOfMembersOnly) {
   // A member's name with another's life is nobody's either.
   give(agent, blocks_of(mission, {0, incarnation_of(1)}, {{900, 900, 0}}, 1).front(), at(0s));
   EXPECT_EQ(agent.coverage()->row_count(), 1u) << "its own";
-  tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
+  deliver(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
 }
 
@@ -243,16 +243,16 @@ TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
   give(agent,
        mission_part(5, MissionState::kRunning, {{author_of(0), 0, -1}, {author_of(1), 0, 2}}),
        at(0s));
-  tell(agent, world_state(9, {{100, 500, 0}, {200, 500, 0}}));
-  const auto hear = [&](std::size_t steps) {
+  deliver(agent, world_state(9, {{100, 500, 0}, {200, 500, 0}}));
+  const auto receive = [&](std::size_t steps) {
     give(agent, block_of(mission, 1, std::vector<Eigen::Vector3d>(steps, {200, 500, 0}), 1),
          at(0s));
     return *agent.coverage()->steps_held(author_of(1));
   };
   // The ticks 0, 1 and 2, and the lead granted to all: the coordinator that evicted it may not have
   // received its last ticks. A member of tick 9 might have 610.
-  EXPECT_EQ(hear(603), 603) << "it still covers, but is no member";
-  EXPECT_EQ(hear(604), 603);
+  EXPECT_EQ(receive(603), 603) << "it still covers, but is no member";
+  EXPECT_EQ(receive(604), 603);
 }
 
 TEST(AgentInLockstep, WaitsForTheRosterThatTheWorldGoesBy) {
@@ -260,21 +260,22 @@ TEST(AgentInLockstep, WaitsForTheRosterThatTheWorldGoesBy) {
   Agent agent = running_agent(mission);
   WorldState world = world_state(0, {{100, 500, 0}});
   world.roster_revision = 3;
-  EXPECT_TRUE(only<Command>(tell(agent, world)).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, world)).empty());
   EXPECT_EQ(
-      only<Command>(tell(agent, mission_part(3, MissionState::kRunning, roster_of(1)))).size(), 1u);
+      only<Command>(deliver(agent, mission_part(3, MissionState::kRunning, roster_of(1)))).size(),
+      1u);
 }
 
 TEST(AgentInLockstep, BeginsNoTickBeforeItKnowsTheMissionThatTheWorldGoesBy) {
   Agent agent = running_agent(small_mission(1));
-  tell(agent, world_state(0, {{100, 500, 0}}));
+  deliver(agent, world_state(0, {{100, 500, 0}}));
   WorldState world = world_state(1, {{100, 500, 0}});
   world.roster_revision = 3;
-  EXPECT_TRUE(only<Contribution>(tell(agent, world)).empty());
+  EXPECT_TRUE(only<Contribution>(deliver(agent, world)).empty());
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1) << "the tick may not count";
   MissionPart paused = mission_part(3, MissionState::kRunning, roster_of(1));
   paused.holds = {{1, -1}};
-  const auto answers = only<Command>(tell(agent, paused));
+  const auto answers = only<Command>(deliver(agent, paused));
   ASSERT_EQ(answers.size(), 1u);
   EXPECT_TRUE(answers[0].velocity_mps.isZero(0));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
@@ -288,9 +289,9 @@ TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   roster.push_back({former, 0, 3});
   give(agent, mission_part(9, MissionState::kRunning, roster), at(0s));
   give(agent, blocks_of(mission, former, {{900, 900, 0}, {910, 900, 0}}, 2).front(), at(0s));
-  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0].steps, 1) << "the old sum is never added into the new";
+  const auto sent = only<Contribution>(deliver(agent, world_state(0, {{100, 500, 0}})));
+  ASSERT_EQ(sent.size(), 1u);
+  EXPECT_EQ(sent[0].steps, 1) << "the old sum is never added into the new";
   EXPECT_EQ(agent.coverage()->row_count(), 2u);
   EXPECT_EQ(agent.coverage()->steps_held(former), 2);
 }
@@ -334,7 +335,7 @@ TEST(AgentRestarted, DoesNotCoverAgainWhatTheWorldOnlyRepeatsForTheLogger) {
   Agent agent = successor_from_7(mission);
   WorldState repeated = world_state(6, {{100, 500, 0}}, 5);
   repeated.roster_revision = 8;
-  EXPECT_TRUE(only<Command>(tell(agent, repeated)).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, repeated)).empty());
   EXPECT_EQ(agent.tick(), -1);
 }
 
@@ -343,11 +344,11 @@ TEST(AgentRestarted, CoversNothingOfATickBeforeItsFirstThatARestartedWorldStands
   Agent agent = successor_from_7(mission);
   WorldState behind = world_state(6, {{100, 500, 0}});
   behind.roster_revision = 9;
-  const Outbox said = tell(agent, behind);
-  EXPECT_EQ(only<Command>(said).size(), 1u) << "the world waits for it";
-  EXPECT_TRUE(only<Contribution>(said).empty()) << "its predecessor has covered the tick";
+  const Outbox sent = deliver(agent, behind);
+  EXPECT_EQ(only<Command>(sent).size(), 1u) << "the world waits for it";
+  EXPECT_TRUE(only<Contribution>(sent).empty()) << "its predecessor has covered the tick";
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 0);
-  const auto covered = only<Contribution>(tell(agent, world_state(7, {{100, 500, 0}})));
+  const auto covered = only<Contribution>(deliver(agent, world_state(7, {{100, 500, 0}})));
   ASSERT_EQ(covered.size(), 1u);
   EXPECT_EQ(covered[0].steps, 1);
 }
@@ -358,7 +359,7 @@ TEST(AgentRestarted, SaysNothingOfACoverageThatHasNotBegunWhileTheWorldIsSilent)
   Agent agent = successor_from_7(mission);
   WorldState behind = world_state(6, {{100, 500, 0}});
   behind.roster_revision = 9;
-  tell(agent, behind);
+  deliver(agent, behind);
   EXPECT_TRUE(only<Contribution>(advance(agent, at(10s))).empty());
 }
 
@@ -367,13 +368,13 @@ TEST(AgentEnd, AStopAtOnceEndsItAndTheLastStatusSaysSoOnce) {
     Agent agent = running_agent(small_mission(1));
     advance(agent, at(0s));
     const auto last = only<AgentStatus>(
-        tell(agent, Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough", true}, at(1ms)));
+        deliver(agent, Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough", true}, at(1ms)));
     EXPECT_TRUE(agent.finished());
     EXPECT_EQ(agent.failed(), failed);
     EXPECT_EQ(agent.reason(), "enough");
     ASSERT_EQ(last.size(), 1u);
     EXPECT_EQ(last[0].phase, AgentPhase::kFinished);
-    EXPECT_TRUE(tell(agent, world_state(0, {{100, 500, 0}}), at(1h)).empty()) << "final";
+    EXPECT_TRUE(deliver(agent, world_state(0, {{100, 500, 0}}), at(1h)).empty()) << "final";
   }
 }
 
@@ -393,17 +394,17 @@ TEST(AgentEnd, ItsLastCommandAfterAStopAtOnceIsToStandStill) {
   for (const bool had_answered : {false, true}) {
     Agent agent = running_agent(small_mission(2));
     advance(agent, at(0s));
-    tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
+    deliver(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
     if (had_answered) {
       Agent teammate = running_agent(small_mission(2), 1);
       advance(teammate, at(0s));
       for (const Contribution& block :
-           only<Contribution>(tell(teammate, world_state(0, {{100, 500, 0}, {200, 500, 0}})))) {
-        tell(agent, block);
+           only<Contribution>(deliver(teammate, world_state(0, {{100, 500, 0}, {200, 500, 0}})))) {
+        deliver(agent, block);
       }
     }
     const auto last = only<Command>(
-        tell(agent, Stop{{kRun, kOperator, 1, 1, 0}, false, "enough", true}, at(1ms)));
+        deliver(agent, Stop{{kRun, kOperator, 1, 1, 0}, false, "enough", true}, at(1ms)));
     ASSERT_EQ(last.size(), 1u) << had_answered;
     EXPECT_EQ(last[0].velocity_mps, Eigen::Vector3d(0, 0, 0));
     EXPECT_EQ(last[0].position_m, Eigen::Vector3d(100, 500, 0));
@@ -437,8 +438,8 @@ TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   mission.timing.pace = Pace::kRealtime;
   mission.timing.realtime_factor = 2;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(40, {{100, 500, 0}}), at(5s));  // 60 ticks of 0.05 s are left
-  give(agent, status_of(1, 1), at(37s));                  // a teammate may be cut off as we are
+  deliver(agent, world_state(40, {{100, 500, 0}}), at(5s));  // 60 ticks of 0.05 s are left
+  give(agent, status_of(1, 1), at(37s));                     // a teammate may be cut off as we are
   advance(agent, at(38s));
   EXPECT_FALSE(agent.finished());
   const auto last = only<AgentStatus>(advance(agent, at(38s + 1ms)));
@@ -471,7 +472,7 @@ TEST(AgentEnd, ComesByItselfInLockstepOnceNoTickCouldHaveWaitedForIt) {
   Mission mission = small_mission(1);
   mission.timing.lockstep_timeout_s = 600;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500, 0}}), at(5s));
+  deliver(agent, world_state(0, {{100, 500, 0}}), at(5s));
   advance(agent, at(635s));
   EXPECT_FALSE(agent.finished());
   advance(agent, at(636s));
@@ -487,17 +488,17 @@ TEST(AgentEnd, AnEvictedAgentStopsAtTheNamedTick) {
   const MissionPart eviction = mission_part(1, MissionState::kRunning, roster);
 
   Agent there = running_agent(mission);
-  tell(there, world_state(3, {{100, 500, 0}}));
+  deliver(there, world_state(3, {{100, 500, 0}}));
   give(there, eviction, at(0s));
   EXPECT_TRUE(there.finished());
   EXPECT_TRUE(there.failed());
   EXPECT_EQ(there.reason(), "evicted from the roster at tick 3");
 
   Agent behind = running_agent(mission);
-  tell(behind, world_state(1, {{100, 500, 0}}));
+  deliver(behind, world_state(1, {{100, 500, 0}}));
   give(behind, eviction, at(0s));
-  EXPECT_EQ(only<Command>(tell(behind, world_state(2, {{100, 500, 0}}))).size(), 1u);
-  EXPECT_TRUE(only<Command>(tell(behind, world_state(3, {{100, 500, 0}}))).empty());
+  EXPECT_EQ(only<Command>(deliver(behind, world_state(2, {{100, 500, 0}}))).size(), 1u);
+  EXPECT_TRUE(only<Command>(deliver(behind, world_state(3, {{100, 500, 0}}))).empty());
   EXPECT_TRUE(behind.finished());
   EXPECT_EQ(behind.reason(), "evicted from the roster at tick 3");
 }

@@ -125,11 +125,11 @@ TEST(MissionRepeat, IsNeededIfSomebodyElseKnowsLess) {
 
 /// How often the mission is repeated in 3 s to a process that sends something each millisecond.
 template <class Say>
-std::size_t repeats_to(Say say) {
+std::size_t repeats_to(Say request) {
   Agent agent = informed_agent();
   std::size_t parts = 0;
   for (int ms = 0; ms < 3000; ++ms) {
-    give(agent, say(), at(10s + ms * 1ms));
+    give(agent, request(), at(10s + ms * 1ms));
     parts += only<MissionPart>(advance(agent, at(10s + ms * 1ms))).size();
   }
   return parts / 4;
@@ -161,33 +161,34 @@ TEST(WorldQuestion, GetsTheLastTwoCommandsWithTheirTicksAndPlaces) {
   std::vector<Command> given;
   for (Tick tick = 0; tick < 3; ++tick) {
     const double x_m = 100.0 + static_cast<double>(tick);
-    for (const Command& command : only<Command>(tell(agent, world_state(tick, {{x_m, 500, 0}})))) {
+    for (const Command& command :
+         only<Command>(deliver(agent, world_state(tick, {{x_m, 500, 0}})))) {
       given.push_back(command);
     }
   }
-  const Outbox out = tell(agent, question_of(kWorld, 0));
-  const auto told = only<Command>(out);
-  ASSERT_EQ(told.size(), 2u);
+  const Outbox out = deliver(agent, question_of(kWorld, 0));
+  const auto sent = only<Command>(out);
+  ASSERT_EQ(sent.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(told[i].header.tick, given[i + 1].header.tick);
-    EXPECT_EQ(told[i].position_m, given[i + 1].position_m);
-    EXPECT_EQ(told[i].velocity_mps, given[i + 1].velocity_mps);
+    EXPECT_EQ(sent[i].header.tick, given[i + 1].header.tick);
+    EXPECT_EQ(sent[i].position_m, given[i + 1].position_m);
+    EXPECT_EQ(sent[i].velocity_mps, given[i + 1].velocity_mps);
   }
   EXPECT_TRUE(only<Command>(advance(agent, at(1ms))).empty()) << "once for each question";
 }
 
 TEST(WorldQuestion, BeforeTheFirstTickIsAnsweredByNowhereYet) {
   Agent agent = running_agent(small_mission(1));
-  for (const Command& command : only<Command>(tell(agent, question_of(kWorld, 0)))) {
+  for (const Command& command : only<Command>(deliver(agent, question_of(kWorld, 0)))) {
     EXPECT_EQ(command.header.tick, -1);
     EXPECT_EQ(command.asked_by, kWorldLife);
   }
-  EXPECT_EQ(only<Command>(tell(agent, question_of(kWorld, 0))).size(), 2u);
+  EXPECT_EQ(only<Command>(deliver(agent, question_of(kWorld, 0))).size(), 2u);
 }
 
 TEST(WorldQuestion, IsNotForTheCoordinatorToAsk) {
   Agent agent = running_agent(small_mission(1));
-  EXPECT_TRUE(only<Command>(tell(agent, question_of(kCoordinator, 0))).empty());
+  EXPECT_TRUE(only<Command>(deliver(agent, question_of(kCoordinator, 0))).empty());
 }
 
 // ---- lost from the roster ----
@@ -196,7 +197,7 @@ TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500, 0}}), at(1s));
+  deliver(agent, world_state(0, {{100, 500, 0}}), at(1s));
   EXPECT_TRUE(only<Hello>(advance(agent, at(10s))).empty());
 
   // A coordinator that took over from a memory in which agent 0 was not yet a member.
@@ -208,7 +209,7 @@ TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   EXPECT_TRUE(only<Hello>(advance(agent, at(11s + 249ms))).empty());
   EXPECT_EQ(only<Hello>(advance(agent, at(11s + 250ms))).size(), 1u);
   EXPECT_LE(agent.next_wakeup(), at(11s + 500ms));
-  EXPECT_EQ(only<Command>(tell(agent, world_state(1, {{101, 500, 0}}), at(11s + 300ms))).size(),
+  EXPECT_EQ(only<Command>(deliver(agent, world_state(1, {{101, 500, 0}}), at(11s + 300ms))).size(),
             1u);
 
   auto roster = roster_of(2);

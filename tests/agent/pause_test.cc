@@ -11,7 +11,7 @@ namespace {
 using namespace test;
 
 /// The contributions of three seconds after tick 0, the only one that comes.
-std::vector<Contribution> said_in_silence(std::vector<Hold> holds) {
+std::vector<Contribution> sent_in_silence(std::vector<Hold> holds) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   announce(mission);
@@ -19,22 +19,22 @@ std::vector<Contribution> said_in_silence(std::vector<Hold> holds) {
   MissionPart part = mission_part(0, MissionState::kRunning, roster_of(2));
   part.holds = std::move(holds);
   give(agent, part, at(0s));
-  tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
-  Outbox said;
-  for (int i = 1; i <= 30; ++i) agent.advance(at(i * 100ms), said);
+  deliver(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
+  Outbox sent;
+  for (int i = 1; i <= 30; ++i) agent.advance(at(i * 100ms), sent);
   EXPECT_FALSE(agent.finished()) << agent.reason();
-  return only<Contribution>(said);
+  return only<Contribution>(sent);
 }
 
 TEST(AgentWithoutTicks, RepeatsOnceASecondWhatItHas) {
-  const auto said = said_in_silence({});
-  ASSERT_EQ(said.size(), 3u);
-  for (const Contribution& one : said) EXPECT_EQ(one.steps, 1);
+  const auto sent = sent_in_silence({});
+  ASSERT_EQ(sent.size(), 3u);
+  for (const Contribution& one : sent) EXPECT_EQ(one.steps, 1);
 }
 
 TEST(AgentWithoutTicks, SaysNothingWhileTheMissionIsPaused) {
   // It joined in the pause and has covered nothing: others would refuse a row of no steps.
-  EXPECT_TRUE(said_in_silence({{0, -1}}).empty());
+  EXPECT_TRUE(sent_in_silence({{0, -1}}).empty());
 }
 
 TEST(AgentThatLearnsLateOfAPause, DoesNotWaitForTheTickThatItAnnouncedMeanwhile) {
@@ -44,20 +44,20 @@ TEST(AgentThatLearnsLateOfAPause, DoesNotWaitForTheTickThatItAnnouncedMeanwhile)
   Agent agent(identity_of(0));
   MissionPart part = mission_part(0, MissionState::kRunning, roster_of(2));
   give(agent, part, at(0s));
-  const auto steps_said_at = [&](Tick tick) {
-    Outbox said;
+  const auto steps_sent_at = [&](Tick tick) {
+    Outbox sent;
     give(agent, world_state(tick, {{100, 500, 0}, {200, 500, 0}}), at(tick * 100ms));
-    agent.advance(at(tick * 100ms), said);
+    agent.advance(at(tick * 100ms), sent);
     std::vector<std::int64_t> steps;
-    for (const Contribution& one : only<Contribution>(said)) steps.push_back(one.steps);
+    for (const Contribution& one : only<Contribution>(sent)) steps.push_back(one.steps);
     return steps;
   };
-  for (Tick tick = 0; tick < 20; ++tick) EXPECT_EQ(steps_said_at(tick).size(), 1u) << tick;
+  for (Tick tick = 0; tick < 20; ++tick) EXPECT_EQ(steps_sent_at(tick).size(), 1u) << tick;
   ++part.revision;
   part.holds = {{2, 20}};
   give(agent, part, at(2s));
-  EXPECT_EQ(steps_said_at(20), std::vector<std::int64_t>{21}) << "nobody else can say it";
-  EXPECT_EQ(steps_said_at(21), std::vector<std::int64_t>{22});
+  EXPECT_EQ(steps_sent_at(20), std::vector<std::int64_t>{21}) << "nobody else can say it";
+  EXPECT_EQ(steps_sent_at(21), std::vector<std::int64_t>{22});
 }
 
 }  // namespace

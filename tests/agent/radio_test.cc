@@ -23,7 +23,7 @@ Mission short_range(Pace pace) {
 TEST(AgentRadio, DoesNotHearWhoIsTooFar) {
   const Mission mission = short_range(Pace::kRealtime);
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, kLine));
+  deliver(agent, world_state(0, kLine));
   give(agent, block_of(mission, 1, {kLine[1]}, 1), at(0s));
   give(agent, block_of(mission, 2, {kLine[2]}, 1), at(0s));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 1);
@@ -34,7 +34,7 @@ TEST(AgentRadio, DoesNotHearWhoIsTooFar) {
 TEST(AgentRadio, HearsItThroughATeammateInReach) {
   const Mission mission = short_range(Pace::kRealtime);
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, kLine));
+  deliver(agent, world_state(0, kLine));
   const Contribution far = block_of(mission, 2, {kLine[2]}, 1);
   give(agent, far, at(0s), 2);
   EXPECT_EQ(agent.coverage()->row_count(), 1u);
@@ -48,8 +48,8 @@ TEST(AgentRadio, HearsItThroughATeammateInReach) {
 TEST(AgentRadio, HearsAgainWhoComesCloser) {
   const Mission mission = short_range(Pace::kRealtime);
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, kLine));
-  tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500, 0}}));
+  deliver(agent, world_state(0, kLine));
+  deliver(agent, world_state(1, {kLine[0], kLine[1], {400, 500, 0}}));
   give(agent, block_of(mission, 2, {kLine[2]}, 1), at(0s));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), 1);
 }
@@ -57,19 +57,19 @@ TEST(AgentRadio, HearsAgainWhoComesCloser) {
 TEST(AgentRadio, LockstepDoesNotWaitForWhomItCannotHear) {
   const Mission mission = short_range(Pace::kLockstep);
   Agent agent = running_agent(mission);
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(0, kLine))).empty()) << "1 is in reach";
-  EXPECT_EQ(only<Command>(tell(agent, block_of(mission, 1, {kLine[1]}, 1))).size(), 1u);
+  EXPECT_TRUE(only<Command>(deliver(agent, world_state(0, kLine))).empty()) << "1 is in reach";
+  EXPECT_EQ(only<Command>(deliver(agent, block_of(mission, 1, {kLine[1]}, 1))).size(), 1u);
 }
 
 TEST(AgentRadio, LockstepWaitsForWhoHasComeIntoReach) {
   const Mission mission = short_range(Pace::kLockstep);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, {kLine[1]}, 9), at(0s));
-  EXPECT_EQ(only<Command>(tell(agent, world_state(0, kLine))).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(agent, world_state(0, kLine))).size(), 1u);
   EXPECT_TRUE(
-      only<Command>(tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500, 0}}))).empty());
+      only<Command>(deliver(agent, world_state(1, {kLine[0], kLine[1], {400, 500, 0}}))).empty());
   const Contribution theirs = block_of(mission, 2, {kLine[2], {400, 500, 0}}, 2);
-  EXPECT_EQ(only<Command>(tell(agent, theirs)).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(agent, theirs)).size(), 1u);
 }
 
 }  // namespace

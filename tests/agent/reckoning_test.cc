@@ -81,7 +81,7 @@ class Reckoning : public ::testing::Test {
   }
   /// Ticks `from` to `until`, without the last.
   void run_ticks(Tick from, Tick until) {
-    for (Tick tick = from; tick < until; ++tick) tell(*agent_, world_answered(tick, tick - 1));
+    for (Tick tick = from; tick < until; ++tick) deliver(*agent_, world_answered(tick, tick - 1));
   }
   void expect_foreseen(const Coefficients& expected) const {
     EXPECT_LT((agent_->foreseen_coverage() - expected).cwiseAbs().maxCoeff(), 1e-13)
@@ -123,11 +123,11 @@ TEST_F(Reckoning, TheNextBlockReplacesWhatWasReckoned) {
 
 TEST_F(Reckoning, NothingOfItIsHeldOrPassedOn) {
   begin(dead_reckoning_mission());
-  const Contribution said = block_of(mission_, 1, their_path(0, 1), kPeriod);
-  give(*agent_, said, at(0s));
+  const Contribution sent = block_of(mission_, 1, their_path(0, 1), kPeriod);
+  give(*agent_, sent, at(0s));
   run_ticks(0, 20);
   EXPECT_EQ(agent_->coverage()->steps_held(author_of(1)), 1);
-  EXPECT_EQ(agent_->coverage()->block(author_of(1), 0).sums, said.sums);
+  EXPECT_EQ(agent_->coverage()->block(author_of(1), 0).sums, sent.sums);
   const Coefficients known =
       (sums_of(mission_, {own_place(0)}) + sums_of(mission_, their_path(0, 1))) / 0.2;
   begin(dead_reckoning_mission());
@@ -151,9 +151,9 @@ TEST_F(Reckoning, APlaceBeyondTheRadiosRangeIsNone) {
   begin(mission);
   hear_block(their_path(0, 1));
   const auto tell_of = [&](Tick tick, double away_m) {
-    tell(*agent_,
-         world_state(tick, {own_place(tick), their_place(tick) + Eigen::Vector3d(away_m, 0, 0)},
-                     tick - 1));
+    deliver(*agent_,
+            world_state(tick, {own_place(tick), their_place(tick) + Eigen::Vector3d(away_m, 0, 0)},
+                        tick - 1));
   };
   tell_of(0, 0);
   tell_of(1, 900);
@@ -169,7 +169,7 @@ TEST_F(Reckoning, InRealTimeAVehicleThatNobodyDrivesAnyMoreIsNotItsDriver) {
   begin(dead_reckoning_mission(Pace::kRealtime));  // an old command is held for 5 ticks
   hear_block(their_path(0, 1));
   for (Tick tick = 0; tick < 12; ++tick)
-    tell(*agent_, world_answered(tick, std::min<Tick>(tick - 1, 3)));
+    deliver(*agent_, world_answered(tick, std::min<Tick>(tick - 1, 3)));
   expect_foreseen(foreseen(mission_, 0, 11, their_path(0, 9), 1, 3));
 }
 
@@ -181,9 +181,9 @@ TEST_F(Reckoning, InLockstepNobodyAnswersBeforeAllPartsOfTheWorldsStateAreThere)
   second.part = 1;
   first.vehicle_count = second.vehicle_count = 1;
   second.vehicles[0] = second.vehicles[1];
-  EXPECT_TRUE(only<Command>(tell(*agent_, first)).empty());
+  EXPECT_TRUE(only<Command>(deliver(*agent_, first)).empty());
   EXPECT_EQ(status_after(*agent_, at(0s)).waiting_for, kWorld);
-  EXPECT_EQ(only<Command>(tell(*agent_, second)).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(*agent_, second)).size(), 1u);
   expect_foreseen(foreseen(mission_, 0, 0, their_path(0, 1), 1, 0));
 }
 
@@ -191,7 +191,7 @@ TEST_F(Reckoning, InRealTimeAMissingPartHoldsUpNobody) {
   begin(dead_reckoning_mission(Pace::kRealtime));
   WorldState first = world_answered(0, -1);
   first.parts = 2;
-  EXPECT_EQ(only<Command>(tell(*agent_, first)).size(), 1u);
+  EXPECT_EQ(only<Command>(deliver(*agent_, first)).size(), 1u);
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST(AgentDigests, AndEachMissionSecondHoweverFastTheClockOfTheMission) {
   Agent agent = running_agent(small_mission(1));
   int digests = 0;
   for (Tick tick = 0; tick < 40; ++tick) {
-    for (const Outgoing& outgoing : tell(agent, world_state(tick, {{100, 500, 0}}), at(0s))) {
+    for (const Outgoing& outgoing : deliver(agent, world_state(tick, {{100, 500, 0}}), at(0s))) {
       const auto* digest = std::get_if<Digest>(&outgoing.message);
       if (digest == nullptr) continue;
       EXPECT_EQ(outgoing.bus, Bus::kSwarm);

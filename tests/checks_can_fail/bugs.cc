@@ -57,14 +57,14 @@ WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi"
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
-WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, receive_at_agent, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
 WRAPPED(void, advance, "_ZN8ergocast5Agent7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Agent*, Instant, Outbox&)
 WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*)
 WRAPPED(void, coordinate, "_ZN8ergocast11Coordinator7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Coordinator*, Instant, Outbox&)
 WRAPPED(void, turn_world, "_ZN8ergocast5World7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", World*, Instant, Outbox&)
 WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const World*)
-WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
-WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, receive_at_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, receive_at_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
 WRAPPED(bool, is_held, "_ZN8ergocast7is_heldESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, counted_ticks, "_ZN8ergocast13counted_ticksESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, tick_after, "_ZN8ergocast10tick_afterESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
@@ -75,7 +75,7 @@ WRAPPED(bool, goes_home, "_ZN8ergocast7WayHome5begunElRKN5Eigen6MatrixIdLi3ELi1E
 WRAPPED(bool, filters_again, "_ZN8ergocast13filters_againERKNS_7MissionE", const Mission&)
 WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
 WRAPPED(void, make_book, "_ZN8ergocast10BeaconBookC1ERKNS_7MissionERKNS_6AuthorEl", BeaconBook*, const Mission&, const Author&, std::int64_t)
-WRAPPED(void, hear_beacon, "_ZN8ergocast10BeaconBook4hearERKNS_6BeaconEbRKNS_6MomentE", BeaconBook*, const Beacon&, bool, const Moment&)
+WRAPPED(void, receive_beacon, "_ZN8ergocast10BeaconBook7receiveERKNS_6BeaconEbRKNS_6MomentE", BeaconBook*, const Beacon&, bool, const Moment&)
 WRAPPED(std::span<const Neighbour>, bodies, "_ZN8ergocast10BeaconBook6bodiesERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_6MomentE", BeaconBook*, const Eigen::Vector3d&, const Moment&)
 // clang-format on
 
@@ -103,7 +103,7 @@ namespace {
 /// What a filter was made for, and what it was told before.
 struct Filtered {
   Mission mission;
-  std::map<AgentId, std::map<Tick, std::vector<Neighbour>>> told;  // of each body
+  std::map<AgentId, std::map<Tick, std::vector<Neighbour>>> sent;  // of each body
 };
 std::map<const SeparationFilter*, Filtered> filtered;
 
@@ -113,10 +113,10 @@ constexpr Tick kOld = 8;
 /// What a body was told kOld ticks ago.
 std::vector<Neighbour> old_news(SeparationFilter* self, const Mover& mover,
                                 std::span<const Neighbour> others) {
-  auto& told = filtered.at(self).told[mover.id];
-  told[mover.tick] = {others.begin(), others.end()};
-  while (told.begin()->first < mover.tick - kOld) told.erase(told.begin());
-  return told.begin()->second;
+  auto& sent = filtered.at(self).sent[mover.id];
+  sent[mover.tick] = {others.begin(), others.end()};
+  while (sent.begin()->first < mover.tick - kOld) sent.erase(sent.begin());
+  return sent.begin()->second;
 }
 
 /// A number of a pair of bodies that holds for a second.
@@ -127,42 +127,42 @@ Tick draw_of(const Mover& mover, const Neighbour& other) {
 /// What the filter is told of another kind of body than its own.
 Neighbour misjudged_kind(const Mission& mission, const Mover& mover, const Neighbour& other) {
   const Motion motion = motion_of(mission, other.id);
-  Neighbour told = other;
-  if (bug("a neighbour needs no way to brake") && motion.has_inertia()) told.velocity_mps.setZero();
+  Neighbour sent = other;
+  if (bug("a neighbour needs no way to brake") && motion.has_inertia()) sent.velocity_mps.setZero();
   if (bug("a neighbour's loiter circle is a point")) {
     const Eigen::Vector3d center_m = anchor_m(motion, other.position_m, other.velocity_mps);
-    told.position_m += loiter_radius_m(motion) * (center_m - mover.position_m).normalized();
+    sent.position_m += loiter_radius_m(motion) * (center_m - mover.position_m).normalized();
   }
   if (bug("a neighbour is taken for another vehicle")) {
     const auto team = static_cast<AgentId>(mission.starts_m.size());
-    do told.id = (told.id + 1) % team;
-    while (told.id == mover.id);
+    do sent.id = (sent.id + 1) % team;
+    while (sent.id == mover.id);
   }
-  return told;
+  return sent;
 }
 
 /// What the filter is told of the others instead.
 std::vector<Neighbour> misjudged(SeparationFilter* self, const Mover& mover,
                                  std::span<const Neighbour> others) {
   const Filtered& made = filtered.at(self);
-  std::vector<Neighbour> told(others.begin(), others.end());
-  if (bug("only two bodies count")) told.resize(std::min<std::size_t>(2, told.size()));
+  std::vector<Neighbour> sent(others.begin(), others.end());
+  if (bug("only two bodies count")) sent.resize(std::min<std::size_t>(2, sent.size()));
   if (bug("a body takes the whole gap")) {
-    for (Neighbour& other : told) other.max_speed_mps *= 1e-9;
+    for (Neighbour& other : sent) other.max_speed_mps *= 1e-9;
   }
-  if (bug("old places count as new")) told = old_news(self, mover, others);
+  if (bug("old places count as new")) sent = old_news(self, mover, others);
   if (bug("places count as half as old")) {
-    told = old_news(self, mover, others);
-    for (Neighbour& other : told) other.age_ticks = kOld / 2;
+    sent = old_news(self, mover, others);
+    for (Neighbour& other : sent) other.age_ticks = kOld / 2;
   }
   if (bug("a body needs no way to brake")) {
-    for (Neighbour& other : told) other.velocity_mps.setZero();
+    for (Neighbour& other : sent) other.velocity_mps.setZero();
   }
-  if (bug("uncertainty narrows no direction")) told = old_news(self, mover, others);
+  if (bug("uncertainty narrows no direction")) sent = old_news(self, mover, others);
   if (bug("a body that is not heard does not exist")) {
-    std::erase_if(told, [&](const Neighbour& other) { return draw_of(mover, other) % 3 == 0; });
+    std::erase_if(sent, [&](const Neighbour& other) { return draw_of(mover, other) % 3 == 0; });
   }
-  for (Neighbour& other : told) {
+  for (Neighbour& other : sent) {
     if (other.id != mover.id) other = misjudged_kind(made.mission, mover, other);
     const Eigen::Vector3d y_m = other.position_m - mover.position_m;
     if (bug("uncertainty narrows no direction") && y_m.norm() > 0) {
@@ -175,7 +175,7 @@ std::vector<Neighbour> misjudged(SeparationFilter* self, const Mover& mover,
                           Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
     }
   }
-  return told;
+  return sent;
 }
 
 }  // namespace
@@ -216,7 +216,7 @@ namespace {
 struct Overheard {
   std::map<AgentId, Tick> heard;  // when the newest beacon came
   std::map<AgentId, bool> known;  // ever
-  std::vector<Neighbour> told;
+  std::vector<Neighbour> sent;
 };
 std::map<const BeaconBook*, Overheard> overheard;
 
@@ -228,24 +228,24 @@ void bug_make_book(BeaconBook* self, const Mission& mission, const Author& autho
   real_make_book(self, mission, author, revision);
 }
 
-void bug_hear_beacon(BeaconBook* self, const Beacon& beacon, bool fresh, const Moment& now) {
+void bug_receive_beacon(BeaconBook* self, const Beacon& beacon, bool fresh, const Moment& now) {
   if (fresh) overheard[self].heard[beacon.header.sender] = now.tick;
-  real_hear_beacon(self, beacon, fresh, now);
+  real_receive_beacon(self, beacon, fresh, now);
 }
 
 std::span<const Neighbour> bug_bodies(BeaconBook* self, const Eigen::Vector3d& x_m,
                                       const Moment& now) {
   const auto bodies = real_bodies(self, x_m, now);
   Overheard& memory = overheard[self];
-  memory.told.assign(bodies.begin(), bodies.end());
-  for (Neighbour& body : memory.told) {
+  memory.sent.assign(bodies.begin(), bodies.end());
+  for (Neighbour& body : memory.sent) {
     memory.known[body.id] = memory.known[body.id] || body.known;
     if (bug("places of beacons are always new")) body.age_ticks = 0;
     if (bug("a beacon's age counts from its arrival"))
       body.age_ticks = std::min(body.age_ticks, now.tick - memory.heard[body.id]);
     if (bug("nobody keeps to the lease")) body.known = memory.known[body.id];
   }
-  return memory.told;
+  return memory.sent;
 }
 
 bool bug_filters_again(const Mission& mission) {
@@ -323,7 +323,7 @@ const Agent* listener;
 bool is_relayed;
 
 /// The content of a table, for a forecast that misreads it.
-struct Told {
+struct Sent {
   Basis basis;
   double dt_s;
   Tick joined;
@@ -332,7 +332,7 @@ struct Told {
   };
   std::map<std::pair<Author, int>, Blocks> blocks;
 };
-std::map<const CoverageTable*, Told> told_to;
+std::map<const CoverageTable*, Sent> sent_to;
 
 /// Whether another incarnation of this agent has sent a block after `tick`.
 bool is_replaced(const CoverageTable& table, const Author& author, Tick tick) {
@@ -345,7 +345,7 @@ bool is_replaced(const CoverageTable& table, const Author& author, Tick tick) {
 }
 
 void note(const CoverageTable* table, const Contribution& theirs, Merge merged) {
-  Told::Blocks& blocks = told_to.at(table).blocks[{theirs.author(), theirs.block}];
+  Sent::Blocks& blocks = sent_to.at(table).blocks[{theirs.author(), theirs.block}];
   if (merged == Merge::kNewer) blocks = {blocks.held, theirs};
   const bool is_old = merged == Merge::kStale && theirs.steps < blocks.held.steps;
   if (is_old && bug("a late block becomes the one before")) blocks.before = theirs;
@@ -356,10 +356,11 @@ void note(const CoverageTable* table, const Contribution& theirs, Merge merged) 
 
 void bug_make_table(CoverageTable* self, const Basis& basis, double dt_s, Tick joined) {
   real_make_table(self, basis, dt_s, joined);
-  told_to[self] = {basis, dt_s, joined, {}};
+  sent_to[self] = {basis, dt_s, joined, {}};
 }
 
-void bug_hear(Agent* self, const Message& message, Bus bus, AgentId transmitter, Instant now) {
+void bug_receive_at_agent(Agent* self, const Message& message, Bus bus, AgentId transmitter,
+                          Instant now) {
   listener = self;
   is_relayed = transmitter != header_of(message).sender;
   const Acting acting(*self);
@@ -368,9 +369,9 @@ void bug_hear(Agent* self, const Message& message, Bus bus, AgentId transmitter,
       state != nullptr && bug("a late state is taken for the newest")) {
     WorldState taken = *state;
     if (taken.header.tick < self->tick()) taken.header.tick = self->tick() + 1;
-    return real_hear(self, taken, bus, transmitter, now);
+    return real_receive_at_agent(self, taken, bus, transmitter, now);
   }
-  real_hear(self, message, bus, transmitter, now);
+  real_receive_at_agent(self, message, bus, transmitter, now);
 }
 
 Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t max_steps) {
@@ -424,8 +425,8 @@ bool foresees_itself() { return bug("an agent foresees itself"); }
 
 /// The table as it would be with other messages.
 CoverageTable mistaken(const CoverageTable& table, Tick tick) {
-  const Told& told = told_to.at(&table);
-  CoverageTable other(told.basis, told.dt_s, told.joined);
+  const Sent& sent = sent_to.at(&table);
+  CoverageTable other(sent.basis, sent.dt_s, sent.joined);
   const auto merge = [&](Contribution block) {
     if (the_dead_are_foreseen()) block.next_broadcast_tick += kForEver;
     real_merge(&other, block, kForEver);
@@ -434,10 +435,10 @@ CoverageTable mistaken(const CoverageTable& table, Tick tick) {
     const Author& author = table.author(row);
     other.add_row(author);
     for (int b = 0; b < table.block_count(); ++b) {
-      const auto heard = told.blocks.find({author, b});
+      const auto heard = sent.blocks.find({author, b});
       Contribution own = real_block(&table, author, b);
       own.header.tick = tick;
-      if (heard == told.blocks.end()) {
+      if (heard == sent.blocks.end()) {
         merge(own);
       } else {
         merge(heard->second.before);
@@ -547,26 +548,26 @@ void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
   real_coordinate(self, now, out);
 }
 
-void bug_tell_coordinator(Coordinator* self, const Message& message, Bus bus, AgentId transmitter,
-                          Instant now) {
+void bug_receive_at_coordinator(Coordinator* self, const Message& message, Bus bus,
+                                AgentId transmitter, Instant now) {
   const auto* status = std::get_if<AgentStatus>(&message);
   if (bug("the coordinator does not hear an agent") && status != nullptr &&
       status->header.sender == 2)
     return;
-  real_tell_coordinator(self, message, bus, transmitter, now);
+  real_receive_at_coordinator(self, message, bus, transmitter, now);
 }
 
-void bug_tell_world(World* self, const Message& message, Bus bus, AgentId transmitter,
-                    Instant now) {
+void bug_receive_at_world(World* self, const Message& message, Bus bus, AgentId transmitter,
+                          Instant now) {
   if (bug("the world does not hear the logger") && std::holds_alternative<RecordAck>(message))
     return;
   if (const auto* state = std::get_if<WorldState>(&message);
       state != nullptr && bug("a restarted world takes bodies to stand")) {
     WorldState taken = *state;
     for (Vehicle& vehicle : taken.vehicles) vehicle.velocity_mps.setZero();
-    return real_tell_world(self, taken, bus, transmitter, now);
+    return real_receive_at_world(self, taken, bus, transmitter, now);
   }
-  real_tell_world(self, message, bus, transmitter, now);
+  real_receive_at_world(self, message, bus, transmitter, now);
 }
 
 namespace {

@@ -62,7 +62,7 @@ class PretendedPeer {
       if (!probe || probe->nonce == kNonce) continue;
       doctor::Echo& echo = echo_;
       if (echo.nonce == 0) echo = {probe->nonce, probe->sequence, probe->sequence, {}, 0};
-      ++(doctor::is_large(probe->sequence) ? echo.heard.large : echo.heard.small);
+      ++(doctor::is_large(probe->sequence) ? echo.received.large : echo.received.small);
       echo.last = probe->sequence;
       if (sequence_ < manners_.most) speak();
     }
@@ -131,7 +131,7 @@ class DoctorCanFail : public OnHosts {
     return [message, authenticator](int port) -> Speaker {
       const auto url = "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?ttl=1";
       return [stranger = std::make_shared<Stranger>(url, authenticator), message] {
-        stranger->say(Bus::kSwarm, message);
+        stranger->send(Bus::kSwarm, message);
       };
     };
   }

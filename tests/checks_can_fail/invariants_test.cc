@@ -21,7 +21,7 @@ struct Plant {
   const char* bug;            ///< "": only the one in the options
   std::string faults = "";    ///< a fault file's lines
   std::string scenario = "";  ///< lines added to faulty_team's
-  std::string says = "";      ///< selects one of several reports under that name
+  std::string prints = "";    ///< selects one of several reports under that name
   const char* pace = "--realtime";
 };
 
@@ -207,9 +207,9 @@ class InvariantsCanFail : public OwnHost {
     unsetenv("ERGOCAST_BUG");
     return code;
   }
-  bool says(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool prints(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// The first output: violations, or that there were none.
-  std::string said() const { return output().substr(0, 1000); }
+  std::string printed() const { return output().substr(0, 1000); }
 
  private:
   /// "agents { quorum: 3 }" goes into the block, if there is one; "name: value" takes its place.
@@ -238,16 +238,16 @@ TEST_F(InvariantsCanFail, EachOfThem) {
     const std::string name(lab::name_of(plant.broken));
     planted.insert(plant.broken);
     if (*plant.bug != '\0') {
-      EXPECT_EQ(run_plant(plant, ""), 0) << "without the bug: " << said();
+      EXPECT_EQ(run_plant(plant, ""), 0) << "without the bug: " << printed();
     }
     EXPECT_EQ(run_plant(plant, plant.bug), 4) << name << " holds though " << plant.bug << '\n'
-                                              << said();
+                                              << printed();
     for (const char* seed : {"seed 1: ", "seed 2: "}) {
-      EXPECT_TRUE(says(seed + name + ": ")) << plant.bug << " is not seen: " << said();
+      EXPECT_TRUE(prints(seed + name + ": ")) << plant.bug << " is not seen: " << printed();
     }
-    EXPECT_TRUE(says(plant.says)) << plant.says << " is not said: " << said();
-    EXPECT_TRUE(says("again: ergocast simulate ")) << said();
-    EXPECT_TRUE(says("--seeds 2")) << said();
+    EXPECT_TRUE(prints(plant.prints)) << plant.prints << " is not said: " << printed();
+    EXPECT_TRUE(prints("again: ergocast simulate ")) << printed();
+    EXPECT_TRUE(prints("--seeds 2")) << printed();
   }
   for (const auto& [invariant, name] : lab::kInvariants) {
     EXPECT_TRUE(planted.contains(invariant)) << "nothing is planted against: " << name;
@@ -265,14 +265,14 @@ TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
   const auto places =
       std::distance(std::sregex_iterator(sources.begin(), sources.end(), report), {});
   std::set<std::pair<Invariant, std::string>> planted;
-  for (const Plant& plant : kPlants) planted.emplace(plant.broken, plant.says);
+  for (const Plant& plant : kPlants) planted.emplace(plant.broken, plant.prints);
   EXPECT_EQ(places, std::ssize(planted));
 }
 
 TEST_F(InvariantsCanFail, AMissionWhoseProcessDiesIsOneThatFailed) {
   EXPECT_EQ(run_plant({}, "an agent crashes"), 4);
-  EXPECT_TRUE(says("seed 1: ")) << said();
-  EXPECT_TRUE(says("SIGABRT")) << said();
+  EXPECT_TRUE(prints("seed 1: ")) << printed();
+  EXPECT_TRUE(prints("SIGABRT")) << printed();
 }
 
 }  // namespace

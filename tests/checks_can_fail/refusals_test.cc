@@ -53,11 +53,11 @@ class RefusalsCanBeSeen : public RunningMission {
   }
 
   void say_raw(std::size_t bytes) {
-    Stranger(kUrl).say(Bus::kSwarm, "ERGOCAST_HELLO", std::vector<std::byte>(bytes));
+    Stranger(kUrl).send(Bus::kSwarm, "ERGOCAST_HELLO", std::vector<std::byte>(bytes));
   }
-  void say(const MessageAuthenticator& authenticator, const Message& message,
-           Bus bus = Bus::kSwarm) {
-    Stranger(kUrl, authenticator).say(bus, message);
+  void send(const MessageAuthenticator& authenticator, const Message& message,
+            Bus bus = Bus::kSwarm) {
+    Stranger(kUrl, authenticator).send(bus, message);
   }
 
   void exceed_rate() {
@@ -66,7 +66,7 @@ class RefusalsCanBeSeen : public RunningMission {
     status.host = "stranger";
     // Not all at once: what exceeds the agents' socket buffers is lost, not refused.
     for (int turn = 0; turn < 200; ++turn) {
-      for (int i = 0; i < 20; ++i) rate_offender_->say(Bus::kSwarm, status);
+      for (int i = 0; i < 20; ++i) rate_offender_->send(Bus::kSwarm, status);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
@@ -84,7 +84,7 @@ class RefusalsCanBeSeen : public RunningMission {
       for (; life < kIncarnations && part.roster.size() < kMaxRosterEntriesPerMessage; ++life) {
         part.roster.push_back({{kMany, static_cast<Incarnation>(1000 + life)}, 0, 1});
       }
-      usurper.say(Bus::kSwarm, part);
+      usurper.send(Bus::kSwarm, part);
     }
     ASSERT_EQ(life, kIncarnations) << "the plan has too few parts";
     for (int i = 0; i < kIncarnations; ++i) {
@@ -94,15 +94,15 @@ class RefusalsCanBeSeen : public RunningMission {
       block.steps = block.next_broadcast_tick = 1;
       block.elapsed_s = block.sums.edit()[0] = follower_.mission()->timing.dt_s;
       block.mode_count = follower_.mission()->basis.mode_count();
-      usurper.say(Bus::kSwarm, block);
+      usurper.send(Bus::kSwarm, block);
     }
   }
 
   /// The number of agent 0's refusals of this kind, as `ergocast status` shows it.
   std::int64_t refused(const std::string& reason) {
     ergocast({"status", "--json", "--lcm-url", kUrl, "--key-file", team_});
-    const auto told = nlohmann::json::parse(output(), nullptr, false);
-    for (const auto& agent : told.is_object() ? told["agents"] : nlohmann::json::array()) {
+    const auto report = nlohmann::json::parse(output(), nullptr, false);
+    for (const auto& agent : report.is_object() ? report["agents"] : nlohmann::json::array()) {
       if (agent["id"] == 0) return agent["refused"].value(reason, std::int64_t{0});
     }
     return 0;
@@ -123,15 +123,15 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
       // Longer than any message; the kernel drops much shorter or longer datagrams.
       {Refusal::kSize, [this] { say_raw(1230); }},
       {Refusal::kType, [this] { say_raw(200); }},
-      {Refusal::kTag, [this] { say(authenticator(other_), hello(run())); }},
-      {Refusal::kUnkeyed, [this] { say({}, hello(run())); }},
+      {Refusal::kTag, [this] { send(authenticator(other_), hello(run())); }},
+      {Refusal::kUnkeyed, [this] { send({}, hello(run())); }},
       {Refusal::kUnsigned,
        [this] {
-         say(authenticator(team_), Stop{from(kOperator, run()), false, "no key"});
+         send(authenticator(team_), Stop{from(kOperator, run()), false, "no key"});
        }},
-      {Refusal::kRun, [this] { say(authenticator(team_), hello(run() + 1)); }},
+      {Refusal::kRun, [this] { send(authenticator(team_), hello(run() + 1)); }},
       // An agent that sends the places of all vehicles.
-      {Refusal::kRange, [this] { say(authenticator(team_), world_of(3), Bus::kWorld); }},
+      {Refusal::kRange, [this] { send(authenticator(team_), world_of(3), Bus::kWorld); }},
       {Refusal::kEncoding,
        [this] {
          const Author teammate = follower_.roster().back().author;
@@ -139,7 +139,7 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
          block.header = from(teammate.agent, run());
          block.header.incarnation = teammate.incarnation;
          block.encoding = ContributionEncoding::kFixed16;
-         say(authenticator(team_), block);
+         send(authenticator(team_), block);
        }},
       {Refusal::kRate, [this] { exceed_rate(); }},
       // Before the mission's first tick.
@@ -147,7 +147,7 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
        [this] {
          Stop old{from(kOperator, run()), false, "a recording"};
          old.header.tick = -1;
-         say(authenticator(coordinator_), old);
+         send(authenticator(coordinator_), old);
        }},
       {Refusal::kLimit, [this] { crowd(); }},
   };
@@ -176,8 +176,8 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
     if (reason == Refusal::kLimit) continue;
     const std::string name = to_string(reason);
     const bool by_table = reason == Refusal::kEncoding;  // which says a sentence of its own
-    const std::string said = by_table ? "another contribution_encoding" : " " + name + "=";
-    EXPECT_TRUE(logs("agent-0", said)) << name << ":\n" << log_of("agent-0");
+    const std::string printed = by_table ? "another contribution_encoding" : " " + name + "=";
+    EXPECT_TRUE(logs("agent-0", printed)) << name << ":\n" << log_of("agent-0");
   }
   mission.send(SIGTERM);
   wait_for(mission);

@@ -57,9 +57,9 @@ void change_a_cell(const fs::path& table) {
 }
 
 struct Lie {
-  std::string said;
+  std::string printed;
   int exit_code;
-  std::function<void(const fs::path& run)> tell;
+  std::function<void(const fs::path& run)> falsify;
 };
 
 /// Falsifications of the summary and of what makes a run unrepeatable.
@@ -223,17 +223,17 @@ class VerifyCanFail : public OwnHost {
     arguments.insert(arguments.end(), {"--duration", "5", "--out", run});
     ASSERT_EQ(ergocast(arguments), 0) << output();
   }
-  void expect(const fs::path& run, int exit_code, const std::string& said) {
-    EXPECT_EQ(ergocast({"verify", run}), exit_code) << said << ":\n" << output();
-    EXPECT_NE(output().find(said), std::string::npos) << said << ":\n" << output();
+  void expect(const fs::path& run, int exit_code, const std::string& printed) {
+    EXPECT_EQ(ergocast({"verify", run}), exit_code) << printed << ":\n" << output();
+    EXPECT_NE(output().find(printed), std::string::npos) << printed << ":\n" << output();
     said_.push_back(output());
   }
   void expect_seen(const Lie& lie) {
     const fs::path run = folder_ / "falsified";
     fs::remove_all(run);
     fs::copy(out(), run, fs::copy_options::recursive);
-    lie.tell(run);
-    expect(run, lie.exit_code, lie.said);
+    lie.falsify(run);
+    expect(run, lie.exit_code, lie.printed);
   }
 
   std::vector<std::string> said_;

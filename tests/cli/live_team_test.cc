@@ -61,19 +61,19 @@ TEST_F(LiveTeamFrames, ComeOnceAndWithAllThatIsNew) {
 // A browser that comes late gets the curve up to its coming.
 TEST_F(LiveTeamFrames, BeginWithWhatTheStatusesHaveTold) {
   test::announce(test::small_mission(2));
-  LiveTeam told(test::kRun, kListening, false);
+  LiveTeam live_team(test::kRun, kListening, false);
   for (Tick tick = 0; tick < 3; ++tick) {
     const Instant now = kListening + 100ms * tick;
-    test::give(told, test::mission_part(1, MissionState::kRunning, test::roster_of(2)), now);
+    test::give(live_team, test::mission_part(1, MissionState::kRunning, test::roster_of(2)), now);
     AgentStatus status = test::status_of(0, test::next_sequence(), tick);
     status.header.tick = tick;
     status.ergodic_metric = 0.5;
-    test::give(told, status, now);
-    told.look(now);
+    test::give(live_team, status, now);
+    live_team.look(now);
   }
   LiveTeam::Cursor late;
   bool more = false;
-  const std::string text = told.frame(late, more);
+  const std::string text = live_team.frame(late, more);
   EXPECT_NE(text.find(R"("past":{"t":[0.0,0.1,0.2],"phi":[0.5,0.5,0.5],)"), std::string::npos)
       << text;
 }

@@ -120,9 +120,9 @@ TEST_F(RunRegistry, AFileThatIsNoEntryIsSaidAndLeftAlone) {
            {with("77", "\"x\""), "pid is missing or no number"},
            {text + std::string(1 << 16, ' '), "is larger than an entry can be"}}) {
     write(file(), content);
-    const std::string said = warning();
-    EXPECT_NE(said.find(file().string() + ": "), std::string::npos) << said;
-    EXPECT_NE(said.find(why), std::string::npos) << said << " instead of " << why;
+    const std::string printed = warning();
+    EXPECT_NE(printed.find(file().string() + ": "), std::string::npos) << printed;
+    EXPECT_NE(printed.find(why), std::string::npos) << printed << " instead of " << why;
     EXPECT_TRUE(fs::exists(file()));
   }
 }

@@ -15,10 +15,10 @@ using Names = std::vector<std::string>;
 class Monitored : public ::testing::Test {
  protected:
   Monitored() { announce(small_mission(2)); }
-  void hear(const Message& message, Instant now) { give(run_, message, now); }
+  void receive(const Message& message, Instant now) { give(run_, message, now); }
   void hear_mission(MissionState state, Instant now) {
-    hear(mission_part(state == MissionState::kRunning ? 0 : 1, state, roster_of(2), "stopped"),
-         now);
+    receive(mission_part(state == MissionState::kRunning ? 0 : 1, state, roster_of(2), "stopped"),
+            now);
   }
   static AgentStatus status(AgentId id, AgentPhase phase) {
     AgentStatus status = status_of(id, next_sequence());
@@ -41,7 +41,7 @@ TEST_F(Monitored, AnAgentThatWasNotHeardYetIsThereForAsLongAsItMayBeSilent) {
   EXPECT_EQ(run_.still_there(at(20ms)), (Names{"agent 0", "agent 1"}))
       << "their last words may come next";
   EXPECT_EQ(run_.lost(at(20ms)), Names());
-  hear(status(0, AgentPhase::kFinished), at(30ms));
+  receive(status(0, AgentPhase::kFinished), at(30ms));
   EXPECT_EQ(run_.still_there(at(40ms)), Names{"agent 1"});
   EXPECT_EQ(run_.still_there(at(3s)), Names());
   EXPECT_EQ(run_.lost(at(3s)), Names{"agent 1"});
@@ -50,30 +50,30 @@ TEST_F(Monitored, AnAgentThatWasNotHeardYetIsThereForAsLongAsItMayBeSilent) {
 TEST_F(Monitored, AProcessThatHasReportedItsEndIsNotAwaited) {
   TeamStatus team;
   team.header = {kRun, kCoordinator, kCoordinatorLife, next_sequence(), 5};
-  hear(team, at(1ms));
-  hear(world_state(5, {{1, 1, 0}}), at(1ms));
-  hear(RecordAck{{kRun, kLogger, kLoggerLife, next_sequence(), 4}}, at(1ms));
+  receive(team, at(1ms));
+  receive(world_state(5, {{1, 1, 0}}), at(1ms));
+  receive(RecordAck{{kRun, kLogger, kLoggerLife, next_sequence(), 4}}, at(1ms));
   EXPECT_EQ(run_.still_there(at(2ms)), (Names{"the logger", "the world", "the coordinator"}));
   WorldState farewell = world_state(5, {{1, 1, 0}});
   farewell.last = true;
-  hear(farewell, at(3ms));
+  receive(farewell, at(3ms));
   EXPECT_EQ(run_.still_there(at(3ms)), (Names{"the logger", "the coordinator"}));
   // On the world's bus; an earlier word on another bus may be read later.
   const RecordAck before{{kRun, kLogger, kLoggerLife, next_sequence(), 5}};
   run_.receive(RecordAck{{kRun, kLogger, kLoggerLife, next_sequence(), 5}, true}, Bus::kWorld,
                kLogger, at(4ms));
-  hear(before, at(4ms));
+  receive(before, at(4ms));
   EXPECT_EQ(run_.still_there(at(4ms)), Names{"the coordinator"});
   hear_mission(MissionState::kEnded, at(5ms));
   EXPECT_EQ(run_.still_there(at(5ms)), (Names{"agent 0", "agent 1"}));
 }
 
 TEST_F(Monitored, AllVehiclesOfAllDriversStandBeforeTheTeamDoes) {
-  hear(moving(100, 1, 2, 0xb), at(1ms));
-  hear(moving(101, 0, 0, 0xa), at(2ms));
+  receive(moving(100, 1, 2, 0xb), at(1ms));
+  receive(moving(101, 0, 0, 0xa), at(2ms));
   EXPECT_FALSE(run_.stands_still()) << "the other driver is a tick behind";
   EXPECT_EQ(run_.still_moving(at(3ms)), Names{"the world"});
-  hear(moving(101, 1, 0, 0xb), at(4ms));
+  receive(moving(101, 1, 0, 0xb), at(4ms));
   EXPECT_TRUE(run_.stands_still());
   EXPECT_EQ(run_.still_moving(at(5ms)), Names());
   EXPECT_EQ(run_.still_there(at(5ms)), Names{"the world"});
@@ -83,7 +83,7 @@ TEST_F(Monitored, TellsMissionTimeAndLeavesOutWhatDoesNotCount) {
   EXPECT_EQ(run_.mission_time(40), "tick 40") << "no mission is known";
   auto part = mission_part(0, MissionState::kRunning, roster_of(2));
   part.holds = {{10, 30}};
-  hear(part, at(1ms));
+  receive(part, at(1ms));
   EXPECT_EQ(run_.mission_time(10), "tick 10, t = 1.0 s");
   EXPECT_EQ(run_.mission_time(30), "tick 10, t = 1.0 s");
   EXPECT_EQ(run_.mission_time(40), "tick 20, t = 2.0 s");

@@ -169,7 +169,7 @@ TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
 // ---- what a newcomer knows ----
 
 /// The newest revision that it sends until `now`.
-std::int64_t newest_said(Coordinator& coordinator, Instant now) {
+std::int64_t newest_sent(Coordinator& coordinator, Instant now) {
   for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) return part.revision;
   ADD_FAILURE() << "it says no MISSION";
   return -1;
@@ -177,18 +177,18 @@ std::int64_t newest_said(Coordinator& coordinator, Instant now) {
 
 TEST(CoordinatorAdmits, NobodyWhoDoesNotKnowTheNewestMissionAndSaysItSoon) {
   Coordinator coordinator = coordinator_of(small_mission(2));
-  EXPECT_EQ(newest_said(coordinator, at(0s)), 0);
+  EXPECT_EQ(newest_sent(coordinator, at(0s)), 0);
   give(coordinator, hello_of(0, 71, -1), at(10ms));
   EXPECT_TRUE(coordinator.roster().empty());
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(99ms))).empty()) << "hellos flood no bus";
-  EXPECT_EQ(newest_said(coordinator, at(100ms)), 0);
+  EXPECT_EQ(newest_sent(coordinator, at(100ms)), 0);
   give(coordinator, hello_of(0, 71, 0), at(110ms));
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }
 
 TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
   Coordinator coordinator = coordinator_of(small_mission(20));
-  const std::int64_t known = newest_said(coordinator, at(0s));
+  const std::int64_t known = newest_sent(coordinator, at(0s));
   for (AgentId id = 0; id < 20; ++id)
     give(coordinator, hello_of(id, incarnation_of(id), known), at(1ms));
   EXPECT_EQ(coordinator.roster().size(), 20u);
@@ -197,12 +197,12 @@ TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
 // An agent waited for the number of a live agent and gave up; its messages were recorded.
 TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  const std::int64_t known = newest_said(coordinator, at(1s));
+  const std::int64_t known = newest_sent(coordinator, at(1s));
   give(coordinator, hello_of(0, 99, known), at(1s));
   advance(coordinator, at(2500ms));
   give(coordinator, hello_of(0, 99, known), at(3400ms));
   EXPECT_EQ(coordinator.roster().size(), 2u) << "and not before it has noticed the silence either";
-  const std::int64_t newer = newest_said(coordinator, at(3400ms));
+  const std::int64_t newer = newest_sent(coordinator, at(3400ms));
   EXPECT_GT(newer, known) << "a silence is news";
   give(coordinator, hello_of(0, 99, known), at(3500ms));
   EXPECT_EQ(coordinator.roster().size(), 2u);
@@ -213,8 +213,8 @@ TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
 // On a network with long delays, members fall silent and return faster than any HELLO arrives.
 TEST(CoordinatorAdmits, OthersThoughAMemberFellSilentSinceTheySpoke) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  const std::int64_t known = newest_said(coordinator, at(1s));
-  EXPECT_GT(newest_said(coordinator, at(3400ms)), known) << "a silence is news";
+  const std::int64_t known = newest_sent(coordinator, at(1s));
+  EXPECT_GT(newest_sent(coordinator, at(3400ms)), known) << "a silence is news";
   give(coordinator, hello_of(5, 99, known), at(3500ms));
   EXPECT_EQ(coordinator.roster().size(), 3u);
 }
@@ -226,7 +226,7 @@ TEST(CoordinatorAdmits, NobodyBySomethingSaidToItsPredecessor) {
   give(coordinator, status_of(0, 1), at(0s));
   MissionPart memory = mission_part(7, MissionState::kRunning, roster_of(2));
   give(coordinator, memory, at(0s));
-  const std::int64_t newest = newest_said(coordinator, at(1s));
+  const std::int64_t newest = newest_sent(coordinator, at(1s));
   give(coordinator, hello_of(5, 99, 8), at(1s));
   EXPECT_EQ(coordinator.roster().size(), 2u);
   give(coordinator, hello_of(5, 99, newest), at(1s));
@@ -350,10 +350,10 @@ TEST(CoordinatorStarts, WhenTheQuorumIsThereAndNotBefore) {
   advance(coordinator, at(1s));
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
   give(coordinator, hello_of(3), at(1s));
-  const auto said = only<MissionPart>(advance(coordinator, at(1s)));
+  const auto sent = only<MissionPart>(advance(coordinator, at(1s)));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-  ASSERT_FALSE(said.empty()) << "and says so at once";
-  EXPECT_EQ(said[0].state, MissionState::kRunning);
+  ASSERT_FALSE(sent.empty()) << "and says so at once";
+  EXPECT_EQ(sent[0].state, MissionState::kRunning);
 }
 
 TEST(CoordinatorStarts, DoesNotCountThoseWhoHaveDiedMeanwhile) {

@@ -278,11 +278,11 @@ TEST(CoordinatorTimeOut, EvictsInsteadIfTheScenarioSaysSo) {
   Coordinator coordinator = running_coordinator(impatient(2, OnTimeout::kEvict));
   give(coordinator, world_where(5, {5, 4}), at(1s));
   all_alive(coordinator, {-1, -1}, at(10s));
-  const auto said = only<MissionPart>(advance(coordinator, at(11s)));
+  const auto sent = only<MissionPart>(advance(coordinator, at(11s)));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-  ASSERT_FALSE(said.empty());
-  EXPECT_EQ(said[0].roster[0].active_until, -1);
-  EXPECT_EQ(said[0].roster[1].active_until, 5) << "the tick it did not answer";
+  ASSERT_FALSE(sent.empty());
+  EXPECT_EQ(sent[0].roster[0].active_until, -1);
+  EXPECT_EQ(sent[0].roster[1].active_until, 5) << "the tick it did not answer";
   advance(coordinator, at(20s));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning) << "the others have their time anew";
 }
@@ -346,16 +346,16 @@ TEST(CoordinatorEnds, TheFirstEndIsFinal) {
 TEST(CoordinatorEnds, TellsEverybodyTenTimesOverASecondAndIsThenDone) {
   Coordinator coordinator = running_coordinator(small_mission(1));
   coordinator.end(true, "agent 3 is late", at(5s));
-  int told = 0;
+  int sent = 0;
   for (int ms = 0; ms < 1000; ++ms) {
     for (const MissionPart& part : only<MissionPart>(advance(coordinator, at(5s + ms * 1ms)))) {
       EXPECT_EQ(part.state, MissionState::kFailed);
       EXPECT_EQ(part.reason, "agent 3 is late");
-      ++told;
+      ++sent;
     }
     ASSERT_FALSE(coordinator.finished());
   }
-  EXPECT_EQ(told, 2 * 10) << "on two buses";
+  EXPECT_EQ(sent, 2 * 10) << "on two buses";
   advance(coordinator, at(6s));
   EXPECT_TRUE(coordinator.finished());
 }

@@ -19,7 +19,7 @@ RosterEntry entry_of(const Coordinator& coordinator, const Author& author) {
 }
 
 /// The revision it sends at `now`, or nothing.
-std::optional<std::int64_t> said_revision(Coordinator& coordinator, Instant now) {
+std::optional<std::int64_t> sent_revision(Coordinator& coordinator, Instant now) {
   const auto parts = only<MissionPart>(advance(coordinator, now));
   return parts.empty() ? std::nullopt : std::optional(parts[0].revision);
 }
@@ -39,7 +39,7 @@ TEST(Leaving, AnAgentThatSaysItHasFinishedIsAMemberNoLonger) {
   give(coordinator, farewell_of(1, 5), at(100ms));
   EXPECT_EQ(entry_of(coordinator, author_of(1)).active_until, 7);
   EXPECT_EQ(entry_of(coordinator, author_of(0)).active_until, -1);
-  EXPECT_TRUE(said_revision(coordinator, at(100ms))) << "and all are told at once";
+  EXPECT_TRUE(sent_revision(coordinator, at(100ms))) << "and all are told at once";
 }
 
 TEST(Leaving, ItsLastTickCountsEvenIfTheWorldHasNotSpokenOfItYet) {
@@ -81,13 +81,13 @@ Mission forgetful(Pace pace = Pace::kRealtime) {
 }
 
 /// Only one agent sends a status at `now`.
-void speaks(Coordinator& coordinator, const Author& author, Instant now) {
+void reports(Coordinator& coordinator, const Author& author, Instant now) {
   AgentStatus status = status_of(author.agent, now.time_since_epoch().count() + 1);
   status.header.incarnation = author.incarnation;
   give(coordinator, status, now);
 }
 void only_0_speaks(Coordinator& coordinator, Instant now) {
-  speaks(coordinator, author_of(0), now);
+  reports(coordinator, author_of(0), now);
 }
 
 /// The world at `tick`, which uses roster `revision`.
@@ -111,9 +111,9 @@ TEST(Forgetting, ASilentAgentsCoverageStopsCountingAfterItsTimeFromANamedTickOn)
   Coordinator coordinator = running_coordinator(forgetful());
   give(coordinator, world_where(50, {49, 49}), at(1s));
   only_0_speaks(coordinator, at(19s));
-  const auto before = said_revision(coordinator, at(19999ms));
+  const auto before = sent_revision(coordinator, at(19999ms));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
-  const auto after = said_revision(coordinator, at(20s));
+  const auto after = sent_revision(coordinator, at(20s));
   ASSERT_TRUE(before);
   ASSERT_TRUE(after);
   EXPECT_GT(*after, *before);
@@ -144,23 +144,23 @@ TEST(Forgetting, IsRevokedFromANamedTickOnWhenTheAgentIsHeardAgain) {
     Coordinator coordinator = with_1_forgotten(pace);
     const RosterEntry gone = entry_of(coordinator, author_of(1));
     give(coordinator, flown_by(gone.since_revision, 90), at(21s));
-    speaks(coordinator, author_of(1), at(21s));
-    const auto said = said_revision(coordinator, at(21s));
-    ASSERT_TRUE(said) << "at once";
+    reports(coordinator, author_of(1), at(21s));
+    const auto sent = sent_revision(coordinator, at(21s));
+    ASSERT_TRUE(sent) << "at once";
     const RosterEntry back = entry_of(coordinator, author_of(1));
     EXPECT_FALSE(back.forgotten);
     EXPECT_EQ(back.since_tick, pace == Pace::kLockstep ? 91 : 90 + 21);
-    EXPECT_EQ(back.since_revision, *said);
-    EXPECT_TRUE(back.forgotten_at(back.since_tick - 1, *said));
-    EXPECT_TRUE(back.forgotten_at(back.since_tick, *said - 1));
-    EXPECT_FALSE(back.forgotten_at(back.since_tick, *said));
+    EXPECT_EQ(back.since_revision, *sent);
+    EXPECT_TRUE(back.forgotten_at(back.since_tick - 1, *sent));
+    EXPECT_TRUE(back.forgotten_at(back.since_tick, *sent - 1));
+    EXPECT_FALSE(back.forgotten_at(back.since_tick, *sent));
   }
 }
 
 TEST(Forgetting, IsNotRevokedBeforeItHasHappenedForAll) {
   Coordinator coordinator = with_1_forgotten();
   const RosterEntry gone = entry_of(coordinator, author_of(1));
-  speaks(coordinator, author_of(1), at(20500ms));
+  reports(coordinator, author_of(1), at(20500ms));
   advance(coordinator, at(20500ms));
   EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "some agents would never do it";
   give(coordinator, flown_by(gone.since_revision, gone.since_tick), at(22s));
@@ -182,7 +182,7 @@ TEST(Forgetting, IsNotRevokedByATakeover) {
   only_0_speaks(coordinator, at(2s));
   advance(coordinator, at(2s));
   EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "nothing was heard of it";
-  speaks(coordinator, author_of(1), at(3s));
+  reports(coordinator, author_of(1), at(3s));
   advance(coordinator, at(3s));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
 }
@@ -207,7 +207,7 @@ TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
   Coordinator coordinator = running_coordinator(forgetful());
   advance(coordinator, at(3s));
   give(coordinator, hello_of(1, 99), at(3s));
-  speaks(coordinator, {1, 99}, at(39s));
+  reports(coordinator, {1, 99}, at(39s));
   only_0_speaks(coordinator, at(39s));
   advance(coordinator, at(40s));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
@@ -216,7 +216,7 @@ TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
   EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "now both are gone";
   EXPECT_TRUE(entry_of(coordinator, {1, 99}).forgotten);
   give(coordinator, flown_by(1000, 90), at(60s));
-  speaks(coordinator, {1, 99}, at(60s));
+  reports(coordinator, {1, 99}, at(60s));
   advance(coordinator, at(60s));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten) << "and both are back";
   EXPECT_FALSE(entry_of(coordinator, {1, 99}).forgotten);

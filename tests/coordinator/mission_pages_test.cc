@@ -30,14 +30,14 @@ TEST(MissionPages, ASmallMissionIsSentAsAWhole) {
 TEST(MissionPages, AllPartsOfALargeOneComeInTurn) {
   constexpr std::size_t kParts = 512, kTurns = kParts / MissionPages::kMostAtOnce;
   MissionPages pages;
-  std::set<std::size_t> said;
+  std::set<std::size_t> sent;
   for (std::size_t turn = 0; turn < kTurns; ++turn) {
     const auto now = pages.next(hashes_of(kParts));
     EXPECT_LE(now.size(), MissionPages::kMostAtOnce);
-    said.insert(now.begin(), now.end());
+    sent.insert(now.begin(), now.end());
     EXPECT_EQ(pages.behind(), turn + 1 < kTurns);
   }
-  EXPECT_EQ(said.size(), kParts);
+  EXPECT_EQ(sent.size(), kParts);
 }
 
 TEST(MissionPages, WhatHasChangedIsSentThreeTimesAndTheOthersMeanwhile) {
@@ -48,8 +48,8 @@ TEST(MissionPages, WhatHasChangedIsSentThreeTimesAndTheOthersMeanwhile) {
   std::set<std::size_t> others;
   for (int turn = 0; turn < 7; ++turn) {
     const auto now = pages.next(hashes);
-    const bool said = std::find(now.begin(), now.end(), 150U) != now.end();
-    EXPECT_TRUE(said || turn >= MissionPages::kTimesSaid) << turn;
+    const bool sent = std::find(now.begin(), now.end(), 150U) != now.end();
+    EXPECT_TRUE(sent || turn >= MissionPages::kTimesSaid) << turn;
     EXPECT_FALSE(pages.behind());
     others.insert(now.begin(), now.end());
   }
@@ -106,11 +106,11 @@ TEST(LargeTeam, OfAllItsLivesIsFollowedAlsoByALatecomerUnderLoss) {
   }
   ASSERT_EQ(coordinator.roster().size(), kMaxRosterEntries);
   MissionFollower follower;
-  int said = 0, repetitions = 0;
+  int sent = 0, repetitions = 0;
   // Every fifth datagram is lost: after r rounds of 16 repetitions a part is missing with 0.2^r.
   for (; repetitions < 8 * 16 && follower.roster().size() < kMaxRosterEntries; ++repetitions) {
     for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) {
-      if (++said % 5 != 0) follower.receive(part);
+      if (++sent % 5 != 0) follower.receive(part);
     }
     now += 1s;
   }

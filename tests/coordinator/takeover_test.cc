@@ -47,7 +47,7 @@ TeamStatus alive(Incarnation incarnation, std::int64_t sequence = 1) {
   return status;
 }
 
-const MissionPart& said_by(const Outbox& out) {
+const MissionPart& sent_by(const Outbox& out) {
   for (const Outgoing& outgoing : out) {
     if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) return *part;
   }
@@ -69,7 +69,7 @@ TEST(TakeoverIfRunning, StartsAMissionOfItsOwnAfterThreeQuartersOfASecondOfSilen
   EXPECT_EQ(coordinator.next_wakeup(), Instant{}) << "at once, to listen";
   for (int ms = 0; ms < 750; ms += 10) EXPECT_TRUE(advance(coordinator, at(5s + ms * 1ms)).empty());
   EXPECT_LE(coordinator.next_wakeup(), at(5s + 750ms));
-  const MissionPart own = said_by(advance(coordinator, at(5s + 750ms)));
+  const MissionPart own = sent_by(advance(coordinator, at(5s + 750ms)));
   EXPECT_EQ(own.header.run, kSuccessorLife);
   EXPECT_EQ(coordinator.run(), kSuccessorLife);
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
@@ -180,7 +180,7 @@ TEST(TakeoverIfRunning, AfterTheEndOfALeadersMissionStartsItsOwn) {
   farewell.state = MissionState::kEnded;
   give(coordinator, alive(kCoordinatorLife), at(0s));
   give(coordinator, farewell, at(100ms));
-  EXPECT_EQ(said_by(advance(coordinator, at(750ms))).header.run, kSuccessorLife);
+  EXPECT_EQ(sent_by(advance(coordinator, at(750ms))).header.run, kSuccessorLife);
 }
 
 TEST(TakeoverMust, TakesOverFromALivingOneToo) {
@@ -209,21 +209,21 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   give(coordinator, memory_of(7, roster), at(250ms));
   give(coordinator, memory_of(6), at(260ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(699ms))).empty());
-  const MissionPart said = said_by(advance(coordinator, at(700ms)));
+  const MissionPart sent = sent_by(advance(coordinator, at(700ms)));
   EXPECT_TRUE(coordinator.took_over());
-  EXPECT_EQ(said.header.run, kRun);
-  EXPECT_EQ(said.header.incarnation, kSuccessorLife);
-  EXPECT_GT(said.revision, 7 + 100) << "the predecessor may have said more than was remembered";
-  EXPECT_EQ(said.state, MissionState::kRunning);
-  EXPECT_EQ(said.plan, encode_plan(small_mission(2)));
-  ASSERT_EQ(said.roster.size(), 3u);
+  EXPECT_EQ(sent.header.run, kRun);
+  EXPECT_EQ(sent.header.incarnation, kSuccessorLife);
+  EXPECT_GT(sent.revision, 7 + 100) << "the predecessor may have said more than was remembered";
+  EXPECT_EQ(sent.state, MissionState::kRunning);
+  EXPECT_EQ(sent.plan, encode_plan(small_mission(2)));
+  ASSERT_EQ(sent.roster.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(said.roster[i].author, roster[i].author);
-    EXPECT_EQ(said.roster[i].active_from, roster[i].active_from);
-    EXPECT_EQ(said.roster[i].active_until, roster[i].active_until);
-    EXPECT_EQ(said.roster[i].forgotten, roster[i].forgotten);
-    EXPECT_EQ(said.roster[i].since_tick, roster[i].since_tick);
-    EXPECT_EQ(said.roster[i].since_revision, roster[i].since_revision);
+    EXPECT_EQ(sent.roster[i].author, roster[i].author);
+    EXPECT_EQ(sent.roster[i].active_from, roster[i].active_from);
+    EXPECT_EQ(sent.roster[i].active_until, roster[i].active_until);
+    EXPECT_EQ(sent.roster[i].forgotten, roster[i].forgotten);
+    EXPECT_EQ(sent.roster[i].since_tick, roster[i].since_tick);
+    EXPECT_EQ(sent.roster[i].since_revision, roster[i].since_revision);
   }
 }
 
@@ -276,7 +276,7 @@ TEST(Takeover, GoesOnWithoutARevisionThatNobodyHasWhole) {
   advance(coordinator, at(2900ms));
   EXPECT_FALSE(coordinator.took_over());
   EXPECT_EQ(coordinator.next_wakeup(), at(3s));
-  const MissionPart ours = said_by(advance(coordinator, at(3s)));
+  const MissionPart ours = sent_by(advance(coordinator, at(3s)));
   ASSERT_TRUE(coordinator.took_over());
   EXPECT_GT(ours.revision, 13);
 }
@@ -287,7 +287,7 @@ TEST(TakeoverMust, NeedsNoPlanOfItsOwn) {
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, memory_of(3), at(0s));
-  EXPECT_EQ(said_by(advance(coordinator, at(600ms))).plan, encode_plan(small_mission(2)));
+  EXPECT_EQ(sent_by(advance(coordinator, at(600ms))).plan, encode_plan(small_mission(2)));
   ASSERT_NE(coordinator.mission(), nullptr);
   EXPECT_EQ(coordinator.mission()->name, "small");
 }
@@ -330,12 +330,12 @@ TEST(Takeover, OfAMissionThatWaitsStartsItWhenTheQuorumIsThere) {
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
   give(coordinator, status_of(0, 2), at(1s));
   give(coordinator, hello_of(1), at(1s));
-  EXPECT_EQ(said_by(advance(coordinator, at(1s))).state, MissionState::kRunning);
+  EXPECT_EQ(sent_by(advance(coordinator, at(1s))).state, MissionState::kRunning);
 }
 
 TEST(Takeover, OfAMissionThatIsOverSaysSoForASecondAndIsDone) {
   Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 0, MissionState::kEnded));
-  EXPECT_EQ(said_by(advance(coordinator, at(1100ms))).state, MissionState::kEnded);
+  EXPECT_EQ(sent_by(advance(coordinator, at(1100ms))).state, MissionState::kEnded);
   EXPECT_FALSE(coordinator.finished());
   advance(coordinator, at(2s));
   EXPECT_TRUE(coordinator.finished());
@@ -437,7 +437,7 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
   give(coordinator, alive(kSuccessorLife), at(1s));
   give(coordinator, repeated, at(3s));  // by an agent, long after the coordinator's last message
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-  EXPECT_GT(said_by(advance(coordinator, at(3s))).revision, 1000) << "or the team would not listen";
+  EXPECT_GT(sent_by(advance(coordinator, at(3s))).revision, 1000) << "or the team would not listen";
 }
 
 TEST(TakenOver, ACoordinatorAdoptsTheEndOfAPauseThatOnlyItsPredecessorHasNamed) {
@@ -445,7 +445,7 @@ TEST(TakenOver, ACoordinatorAdoptsTheEndOfAPauseThatOnlyItsPredecessorHasNamed) 
   memory.holds = {{2, -1}};
   Coordinator coordinator = taken_over(memory);
   ASSERT_EQ(coordinator.holds(), memory.holds);
-  MissionPart repeated = memory_of(said_by(advance(coordinator, at(2s))).revision + 1);
+  MissionPart repeated = memory_of(sent_by(advance(coordinator, at(2s))).revision + 1);
   repeated.holds = {{2, 9}};
   give(coordinator, repeated, at(3s));
   EXPECT_EQ(coordinator.holds(), repeated.holds) << "agents may have gone by it";
@@ -453,12 +453,12 @@ TEST(TakenOver, ACoordinatorAdoptsTheEndOfAPauseThatOnlyItsPredecessorHasNamed) 
 
 TEST(TakenOver, ACoordinatorSpeaksLouderThanWhatTheWorldAloneHasHeardOfTheDead) {
   Coordinator coordinator = taken_over(memory_of(3));
-  const std::int64_t before = said_by(advance(coordinator, at(2s))).revision;
+  const std::int64_t before = sent_by(advance(coordinator, at(2s))).revision;
   WorldState world = world_where(0, {0, 0});
   world.roster_revision = before + 8;
   give(coordinator, world, at(2s));
-  EXPECT_EQ(said_by(advance(coordinator, at(3s))).revision, before) << "who said it may live";
-  EXPECT_GT(said_by(advance(coordinator, at(3600ms))).revision, before + 8);
+  EXPECT_EQ(sent_by(advance(coordinator, at(3s))).revision, before) << "who said it may live";
+  EXPECT_GT(sent_by(advance(coordinator, at(3600ms))).revision, before + 8);
   give(coordinator, world, at(3700ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(3700ms))).empty()) << "once is enough";
 }
@@ -513,8 +513,8 @@ TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
     return two;
   }();
   Coordinator one = both[0], other = both[1];
-  const MissionPart ones = said_by(advance(one, at(600ms)));
-  const MissionPart others = said_by(advance(other, at(600ms)));
+  const MissionPart ones = sent_by(advance(one, at(600ms)));
+  const MissionPart others = sent_by(advance(other, at(600ms)));
   ASSERT_EQ(ones.revision, others.revision);
   give(one, alive(kSuccessorLife + 1), at(600ms));
   give(other, alive(kSuccessorLife), at(600ms));

@@ -203,7 +203,7 @@ TEST(Allocations, KnowingPlacesFromBeaconsMakesNone) {
       book.measured(tick - 1, 1, {40.0 * id, 0, 0}, {0, 0, 0});
       if (auto beacon = book.next(1, now)) {
         beacon->header = {test::kRun, id, test::incarnation_of(id), tick, tick};
-        for (BeaconBook& other : books) other.hear(*beacon, true, now);
+        for (BeaconBook& other : books) other.receive(*beacon, true, now);
       }
       for (const Neighbour& body : book.bodies({40.0 * id, 0, 0}, now)) known += body.known;
       book.commands(now);
@@ -269,10 +269,10 @@ TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
         if (id == 0 || (tick % 5 != 0 && id != 3) || (tick % 10 == 5 && id == 1)) continue;
         for (int b = 0; b < own.block_count(); ++b) {
           if (b > 0 && mission.timing.high_mode_period_factor > 1 && tick % 4 == 2) continue;
-          Contribution said = theirs.block(test::author_of(id), b);
-          said.header.tick = tick;
-          said.next_broadcast_tick = tick + 5;
-          ASSERT_EQ(own.merge(said, tick + 1), Merge::kNewer);
+          Contribution sent = theirs.block(test::author_of(id), b);
+          sent.header.tick = tick;
+          sent.next_broadcast_tick = tick + 5;
+          ASSERT_EQ(own.merge(sent, tick + 1), Merge::kNewer);
         }
       }
       forecast.look_ahead(own, roster, tick, foreseen);

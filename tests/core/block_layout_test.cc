@@ -121,7 +121,7 @@ CoverageTable table_of(const Mission& mission) {
 }
 
 /// An author's table after so many steps, one by one as told.
-std::vector<Contribution> said_by(const Author& author, const Mission& mission, std::int64_t steps,
+std::vector<Contribution> sent_by(const Author& author, const Mission& mission, std::int64_t steps,
                                   const double* footprint = nullptr) {
   CoverageTable own = table_of(mission);
   for (std::int64_t step = 0; step < steps; ++step) {
@@ -154,9 +154,9 @@ TEST(RareModes, ATableKnowsTheSameCoverageWhateverTheLayout) {
     for (AgentId id = 0; id < 4; ++id) {
       const double* seen = footprints[id % 2];
       const Author author{id, 5};
-      for (const Contribution& block : said_by(author, rare, 3 + id, seen))
+      for (const Contribution& block : sent_by(author, rare, 3 + id, seen))
         EXPECT_EQ(by_rank.merge(block, kManySteps), Merge::kNewer);
-      for (const Contribution& block : said_by(author, usual, 3 + id, seen))
+      for (const Contribution& block : sent_by(author, usual, 3 + id, seen))
         by_mode.merge(block, kManySteps);
       EXPECT_EQ(average_of(by_rank, rare), average_of(by_mode, usual)) << "bit for bit";
     }
@@ -165,7 +165,7 @@ TEST(RareModes, ATableKnowsTheSameCoverageWhateverTheLayout) {
 
 TEST(RareModes, ABlockHasTheLengthOfItsModes) {
   const Mission rare = mission_with(20, 20, 1, 4), usual = mission_with(20, 20, 1, 1);
-  const auto rare_blocks = said_by({1, 5}, rare, 3), usual_blocks = said_by({1, 5}, usual, 3);
+  const auto rare_blocks = sent_by({1, 5}, rare, 3), usual_blocks = sent_by({1, 5}, usual, 3);
   EXPECT_EQ(rare_blocks[0].sums.size(), std::size_t{kLowModes});
   EXPECT_EQ(rare_blocks[1].sums.size(), std::size_t{kBlockSize});
   CoverageTable by_rank = table_of(rare), by_mode = table_of(usual);
@@ -179,12 +179,12 @@ TEST(RareModes, ABlockHasTheLengthOfItsModes) {
 
 TEST(RareModes, BlocksMergeInAnyOrderAndAnyNumberOfTimes) {
   const Mission mission = mission_with(20, 20, 1, 4);
-  std::vector<Contribution> said;
+  std::vector<Contribution> sent;
   for (const Author& author : {Author{0, 7}, Author{0, 9}, Author{1, 5}}) {
     for (const std::int64_t steps : {1, 4, 8}) {
-      const auto blocks = said_by(author, mission, steps);
+      const auto blocks = sent_by(author, mission, steps);
       // High modes are said now and then.
-      said.insert(said.end(), blocks.begin(), steps == 4 ? blocks.begin() + 1 : blocks.end());
+      sent.insert(sent.end(), blocks.begin(), steps == 4 ? blocks.begin() + 1 : blocks.end());
     }
   }
   const auto held_after = [&](const std::vector<Contribution>& blocks) {
@@ -192,13 +192,13 @@ TEST(RareModes, BlocksMergeInAnyOrderAndAnyNumberOfTimes) {
     for (const Contribution& block : blocks) table.merge(block, kManySteps);
     return average_of(table, mission);
   };
-  const Coefficients expected = held_after(said);
+  const Coefficients expected = held_after(sent);
   for (std::uint64_t round = 0; round < 20; ++round) {
     Dice dice(round);
-    std::vector<Contribution> shuffled = said;
+    std::vector<Contribution> shuffled = sent;
     for (std::size_t i = shuffled.size(); i > 1; --i)
       std::swap(shuffled[i - 1], shuffled[dice.below(i)]);
-    for (int again = 0; again < 5; ++again) shuffled.push_back(said[dice.below(said.size())]);
+    for (int again = 0; again < 5; ++again) shuffled.push_back(sent[dice.below(sent.size())]);
     EXPECT_EQ(held_after(shuffled), expected) << "bit for bit, round " << round;
   }
 }
@@ -208,8 +208,8 @@ TEST(RareModes, HighOnesAreWeighedByTheTimeThatTheyCover) {
   const Author one{0, 1}, two{1, 1};
   CoverageTable table = table_of(mission), at_three = table_of(mission),
                 at_nine = table_of(mission);
-  const auto three = said_by(two, mission, 3), nine = said_by(two, mission, 9);
-  for (const Contribution& block : said_by(one, mission, 6)) {
+  const auto three = sent_by(two, mission, 3), nine = sent_by(two, mission, 9);
+  for (const Contribution& block : sent_by(one, mission, 6)) {
     for (CoverageTable* each : {&table, &at_three, &at_nine}) each->merge(block, kManySteps);
   }
   for (std::size_t b = 0; b < three.size(); ++b) {
@@ -237,8 +237,8 @@ TEST(RareModes, WhatIsReckonedNeedsNoTellingBitForBit) {
     std::vector<CoverageTable> rare_own(3, table_of(rare)), usual_own(3, table_of(usual));
     const std::vector<RosterEntry> roster{{{0, 9}, 0, -1}, {{1, 9}, 0, -1}, {{2, 9}, 0, -1}};
     const auto count = rare.basis.mode_count();
-    const auto tell = [](CoverageTable& table, const CoverageTable& own, const Author& author,
-                         const Mission& mission, Tick tick) {
+    const auto send_block = [](CoverageTable& table, const CoverageTable& own, const Author& author,
+                               const Mission& mission, Tick tick) {
       for (int b = 0; b < own.block_count(); ++b) {
         const bool due = tick == 0 || next_broadcast(mission, author.agent, tick - 1, b) == tick;
         if (author.agent != 0 && !due) continue;
@@ -257,8 +257,8 @@ TEST(RareModes, WhatIsReckonedNeedsNoTellingBitForBit) {
         usual_own[i].add_sample(author, at);
         by_rank.see(author.agent, tick, x_m);
         by_mode.see(author.agent, tick, x_m);
-        tell(rare_table, rare_own[i], author, rare, tick);
-        tell(usual_table, usual_own[i], author, usual, tick);
+        send_block(rare_table, rare_own[i], author, rare, tick);
+        send_block(usual_table, usual_own[i], author, usual, tick);
       }
       Coefficients ranks(count), modes(count);
       by_rank.look_ahead(rare_table, roster, tick, ranks);

@@ -73,34 +73,34 @@ void expect_same(const Held& a, const Held& b) {
 const std::vector<Author> kTeam{{0, 7}, {0, 9}, {1, 5}, {2, 1}};
 
 /// All messages: each author's blocks after 1, 2, 5 and 8 steps.
-std::vector<Contribution> everything_said() {
-  std::vector<Contribution> said;
+std::vector<Contribution> everything_sent() {
+  std::vector<Contribution> sent;
   for (const Author& author : kTeam) {
     for (const std::int64_t steps : {1, 2, 5, 8}) {
-      for (const Contribution& block : blocks_of(author, steps)) said.push_back(block);
+      for (const Contribution& block : blocks_of(author, steps)) sent.push_back(block);
     }
   }
-  return said;
+  return sent;
 }
 
-Held held_after(const std::vector<Contribution>& said) {
+Held held_after(const std::vector<Contribution>& sent) {
   CoverageTable table = table_of();
-  for (const Contribution& block : said) table.merge(block, kManySteps);
+  for (const Contribution& block : sent) table.merge(block, kManySteps);
   return held(table, kTeam);
 }
 
 // ---- a state-based CRDT ----
 
 TEST(CoverageTable, OrderAndRepetitionOfMessagesDoNotMatter) {
-  std::vector<Contribution> said = everything_said();
-  const Held in_order = held_after(said);
+  std::vector<Contribution> sent = everything_sent();
+  const Held in_order = held_after(sent);
   for (std::uint64_t round = 0; round < 50; ++round) {
     // Shuffled by our own generator, with some messages twice.
     std::vector<std::pair<std::uint64_t, Contribution>> keyed;
-    for (std::uint32_t i = 0; i < said.size(); ++i) {
+    for (std::uint32_t i = 0; i < sent.size(); ++i) {
       const RandomBits words = random_words(round, Purpose::kFault, i, 0);
-      keyed.emplace_back(words.first, said[i]);
-      if (words.second % 3 == 0) keyed.emplace_back(words.second, said[i]);
+      keyed.emplace_back(words.first, sent[i]);
+      if (words.second % 3 == 0) keyed.emplace_back(words.second, sent[i]);
     }
     std::sort(keyed.begin(), keyed.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -112,10 +112,10 @@ TEST(CoverageTable, OrderAndRepetitionOfMessagesDoNotMatter) {
 
 TEST(CoverageTable, MergingIsAssociative) {
   // Two groups that exchange what they hold end up with what one group would hold.
-  const std::vector<Contribution> said = everything_said();
+  const std::vector<Contribution> sent = everything_sent();
   CoverageTable left = table_of(), right = table_of();
-  for (std::size_t i = 0; i < said.size(); ++i) {
-    (i % 2 == 0 ? left : right).merge(said[i], kManySteps);
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    (i % 2 == 0 ? left : right).merge(sent[i], kManySteps);
   }
   for (const Author& author : kTeam) {
     for (int b = 0; b < 2; ++b) {
@@ -123,7 +123,7 @@ TEST(CoverageTable, MergingIsAssociative) {
       if (relayed.steps > 0) left.merge(relayed, kManySteps);
     }
   }
-  expect_same(held(left, kTeam), held_after(said));
+  expect_same(held(left, kTeam), held_after(sent));
 }
 
 TEST(CoverageTable, LostMessagesAreContainedInTheNext) {
@@ -131,15 +131,15 @@ TEST(CoverageTable, LostMessagesAreContainedInTheNext) {
   for (const Author& author : kTeam) {
     for (const Contribution& block : blocks_of(author, 8)) last.push_back(block);
   }
-  expect_same(held_after(last), held_after(everything_said()));
+  expect_same(held_after(last), held_after(everything_sent()));
 }
 
 TEST(CoverageTable, WithoutGainsItHoldsTheSame) {
-  const std::vector<Contribution> said = everything_said();
+  const std::vector<Contribution> sent = everything_sent();
   CoverageTable table = table_of();
   table.forgo_gains();
-  for (const Contribution& block : said) table.merge(block, kManySteps);
-  expect_same(held(table, kTeam), held_after(said));
+  for (const Contribution& block : sent) table.merge(block, kManySteps);
+  expect_same(held(table, kTeam), held_after(sent));
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     EXPECT_EQ(table.gains(row, 0).steps, 0);
   }

@@ -150,7 +150,7 @@ class Crowd {
 
   void step(Tick tick) {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      hear(bodies_[i], tick);
+      receive(bodies_[i], tick);
       if ((tick + static_cast<Tick>(i)) % attack_.compute_each == 0) command(i, tick);
     }
     std::vector<Eigen::Vector3d> next_m;
@@ -158,7 +158,7 @@ class Crowd {
     for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].x_m = next_m[i];
   }
 
-  void hear(Body& body, Tick tick) {
+  void receive(Body& body, Tick tick) {
     const bool forgets = between(0, 1) < attack_.forget;
     for (std::size_t j = 0; j < bodies_.size(); ++j) {
       Neighbour& other = body.others[j];

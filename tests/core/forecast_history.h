@@ -69,14 +69,14 @@ class Life {
     own_.add_sample(author_,
                     BasisAt(place(author_.agent, tick, mission_), mission_.domain, mission_.basis));
   }
-  std::vector<Contribution> speak(Tick tick, Tick period = kPeriod) const {
-    std::vector<Contribution> said;
+  std::vector<Contribution> blocks(Tick tick, Tick period = kPeriod) const {
+    std::vector<Contribution> sent;
     for (int b = 0; b < own_.block_count(); ++b) {
-      said.push_back(own_.block(author_, b));
-      said.back().header.tick = tick;
-      said.back().next_broadcast_tick = tick + period;
+      sent.push_back(own_.block(author_, b));
+      sent.back().header.tick = tick;
+      sent.back().next_broadcast_tick = tick + period;
     }
-    return said;
+    return sent;
   }
 
  private:
@@ -122,22 +122,22 @@ struct Row {
 /// What is held of each author and block, and what it has gained since the one held before.
 inline std::map<std::pair<Author, int>, Row> rows_of(const Known& known) {
   std::map<std::pair<Author, int>, Row> rows;
-  for (const Contribution& said : known.heard) {
-    Row& row = rows[{said.author(), said.block}];
-    if (said.steps <= row.steps) continue;
+  for (const Contribution& sent : known.heard) {
+    Row& row = rows[{sent.author(), sent.block}];
+    if (sent.steps <= row.steps) continue;
     const bool has_before = row.steps > 0 && row.tick >= known.joined;
     const std::int64_t before = has_before ? row.steps : 0;
     bool possible = true;
     for (std::size_t k = 0; k < kBlockSize; ++k) {
-      row.gains[k] = said.sums[k] - (has_before ? row.sums[k] : 0);
-      row.sums[k] = said.sums[k];
+      row.gains[k] = sent.sums[k] - (has_before ? row.sums[k] : 0);
+      row.sums[k] = sent.sums[k];
       possible &=
-          std::abs(row.gains[k]) < static_cast<double>(said.steps - before) * kDt * (1 + 1e-6);
+          std::abs(row.gains[k]) < static_cast<double>(sent.steps - before) * kDt * (1 + 1e-6);
     }
-    row.steps = said.steps;
-    row.gained_steps = possible ? said.steps - before : 0;
-    row.tick = said.header.tick;
-    row.period = said.next_broadcast_tick - said.header.tick;
+    row.steps = sent.steps;
+    row.gained_steps = possible ? sent.steps - before : 0;
+    row.tick = sent.header.tick;
+    row.period = sent.next_broadcast_tick - sent.header.tick;
   }
   return rows;
 }
@@ -235,7 +235,7 @@ inline RosterEntry entry_of(const Author& author, Tick from, Tick until = -1) {
 /// A team of `agents` that has broadcast all at each of the ticks 0 … kEnd − 1, as its messages.
 inline std::vector<Contribution> told_each_tick(int agents, const Mission& mission,
                                                 Tick every = 1) {
-  std::vector<Contribution> said;
+  std::vector<Contribution> sent;
   std::vector<Life> incarnations;
   for (AgentId id = 0; id < agents; ++id)
     incarnations.emplace_back(id == 0 ? kSelf : Author{id, 1}, mission);
@@ -243,10 +243,10 @@ inline std::vector<Contribution> told_each_tick(int agents, const Mission& missi
     for (Life& life : incarnations) {
       life.cover(tick);
       if (tick % every != 0) continue;
-      for (const Contribution& block : life.speak(tick)) said.push_back(block);
+      for (const Contribution& block : life.blocks(tick)) sent.push_back(block);
     }
   }
-  return said;
+  return sent;
 }
 
 inline Known team_of(int agents, const Mission& mission, Tick every = 1) {

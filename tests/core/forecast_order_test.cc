@@ -48,21 +48,21 @@ TEST(DeadReckoning, RowsAreAsGoodAsIfTheyWereToldEachTickBitForBit) {
   const Mission mission = mission_of(true);
   const Known often = team_of(4, mission), seldom = team_of(4, mission, 10);
   Forecast by_words(mission, kSelf), by_places(mission, kSelf);
-  CoverageTable told(mission.basis, kDt), dead_reckoned(mission.basis, kDt);
-  const auto hear = [](CoverageTable& table, const Known& team, Tick tick, bool all) {
+  CoverageTable announced(mission.basis, kDt), dead_reckoned(mission.basis, kDt);
+  const auto receive = [](CoverageTable& table, const Known& team, Tick tick, bool all) {
     for (const Contribution& block : team.heard) {
       if (block.header.tick == tick && (all || block.header.sender == 0))
         table.merge(block, kManySteps);
     }
   };
   for (Tick tick = 0; tick < kEnd; ++tick) {
-    hear(told, often, tick, true);
-    hear(dead_reckoned, often, tick, false);
-    hear(dead_reckoned, seldom, tick, true);
+    receive(announced, often, tick, true);
+    receive(dead_reckoned, often, tick, false);
+    receive(dead_reckoned, seldom, tick, true);
     see_all(by_words, 4, tick, mission);
     see_all(by_places, 4, tick, mission);
     Coefficients words(144), places(144);
-    by_words.look_ahead(told, often.roster, tick, words);
+    by_words.look_ahead(announced, often.roster, tick, words);
     by_places.look_ahead(dead_reckoned, seldom.roster, tick, places);
     ASSERT_EQ(words, places) << tick;
   }
@@ -105,16 +105,16 @@ TEST(DeadReckoning, DoesNotDependOnWhenPlacesAndBlocksComeNorOnWhenOneLooks) {
 }
 
 /// ĉ after the team has told all up to tick 20 and agent 1's vehicle was seen at 30 as `seen` says.
-Coefficients with_a_place(const Mission& mission, const Known& told,
+Coefficients with_a_place(const Mission& mission, const Known& announced,
                           const std::function<void(Forecast&)>& seen) {
   Forecast forecast(mission, kSelf);
   seen(forecast);
   Coefficients coverage(144);
-  forecast.look_ahead(table_of(told, mission), told.roster, 30, coverage);
+  forecast.look_ahead(table_of(announced, mission), announced.roster, 30, coverage);
   return coverage;
 }
 
-Known told_until(Tick last, const Mission& mission) {
+Known announced_until(Tick last, const Mission& mission) {
   Known known = team_of(3, mission);
   std::erase_if(known.heard,
                 [last](const Contribution& block) { return block.header.tick > last; });
@@ -123,10 +123,10 @@ Known told_until(Tick last, const Mission& mission) {
 
 TEST(DeadReckoning, UsesNoPlacesThatAreNone) {
   const Mission mission = mission_of(true);
-  const Known told = told_until(20, mission);
+  const Known announced = announced_until(20, mission);
   const auto here = place(1, 30, mission);
-  const Coefficients blind = with_a_place(mission, told, [](Forecast&) {});
-  EXPECT_NE(with_a_place(mission, told, [&](Forecast& f) { f.see(1, 30, here); }), blind);
+  const Coefficients blind = with_a_place(mission, announced, [](Forecast&) {});
+  EXPECT_NE(with_a_place(mission, announced, [&](Forecast& f) { f.see(1, 30, here); }), blind);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::pair<const char*, std::function<void(Forecast&)>>> none = {
       {"our own", [&](Forecast& f) { f.see(0, 30, here); }},
@@ -146,19 +146,20 @@ TEST(DeadReckoning, UsesNoPlacesThatAreNone) {
        }},
       {"known already", [&](Forecast& f) { f.see(1, 19, here); }},
   };
-  for (const auto& [name, seen] : none) EXPECT_EQ(with_a_place(mission, told, seen), blind) << name;
+  for (const auto& [name, seen] : none)
+    EXPECT_EQ(with_a_place(mission, announced, seen), blind) << name;
   Mission by_rows = mission;
   by_rows.dead_reckoning = false;
-  EXPECT_EQ(with_a_place(by_rows, told, [&](Forecast& f) { f.see(1, 30, here); }), blind)
+  EXPECT_EQ(with_a_place(by_rows, announced, [&](Forecast& f) { f.see(1, 30, here); }), blind)
       << "not wanted";
 }
 
 TEST(DeadReckoning, UsesNoPlaceTwiceNorOneOfAnEarlierTick) {
   const Mission mission = mission_of(true);
-  const Known told = told_until(20, mission);
+  const Known announced = announced_until(20, mission);
   const auto seen = [&](std::vector<std::pair<Tick, Tick>> said_and_true) {
-    return with_a_place(mission, told, [&](Forecast& f) {
-      for (const auto& [said, actual] : said_and_true) f.see(1, said, place(1, actual, mission));
+    return with_a_place(mission, announced, [&](Forecast& f) {
+      for (const auto& [sent, actual] : said_and_true) f.see(1, sent, place(1, actual, mission));
     });
   };
   const Coefficients once = seen({{21, 21}, {25, 25}});
@@ -169,61 +170,61 @@ TEST(DeadReckoning, UsesNoPlaceTwiceNorOneOfAnEarlierTick) {
 TEST(DeadReckoning, UsesNoPlaceOfAFormerAuthorsTime) {
   // Agent 1 was restarted at tick 22: its vehicle's places before are its predecessor's.
   const Mission mission = mission_of(true);
-  Known told = told_until(20, mission);
-  told.roster[1].active_until = 22;
-  told.roster.insert(told.roster.begin() + 2, entry_of({1, 5}, 22));
+  Known announced = announced_until(20, mission);
+  announced.roster[1].active_until = 22;
+  announced.roster.insert(announced.roster.begin() + 2, entry_of({1, 5}, 22));
   Life restarted({1, 5}, mission);
   for (Tick tick = 22; tick < 24; ++tick) restarted.cover(tick);
-  for (const Contribution& block : restarted.speak(23)) told.heard.push_back(block);
+  for (const Contribution& block : restarted.blocks(23)) announced.heard.push_back(block);
   const auto see_from = [&](Tick first) {
-    return with_a_place(mission, told, [&](Forecast& forecast) {
+    return with_a_place(mission, announced, [&](Forecast& forecast) {
       Coefficients looked(144);
       for (Tick tick = first; tick <= 30; ++tick) {
         forecast.see(1, tick, place(1, tick, mission));
         // While the former author was the newest, its row was reckoned on the same track.
-        Known then = told_until(std::min<Tick>(tick, 20), mission);
-        forecast.look_ahead(table_of(then, mission), tick < 22 ? then.roster : told.roster, tick,
-                            looked);
+        Known then = announced_until(std::min<Tick>(tick, 20), mission);
+        forecast.look_ahead(table_of(then, mission), tick < 22 ? then.roster : announced.roster,
+                            tick, looked);
       }
     });
   };
   EXPECT_EQ(see_from(0), see_from(24));
-  told.tick = 30;
-  for (Tick tick = 0; tick <= 30; ++tick) told.seen[1].push_back(tick);
-  EXPECT_LT((see_from(0) - by_the_formula(told, mission)).cwiseAbs().maxCoeff(), 1e-12);
+  announced.tick = 30;
+  for (Tick tick = 0; tick <= 30; ++tick) announced.seen[1].push_back(tick);
+  EXPECT_LT((see_from(0) - by_the_formula(announced, mission)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(DeadReckoning, UsesNoPlaceOfAnAdmissionThatIsNoMore) {
   // A coordinator died, and its successor admitted agent 1 anew, from tick 26 on.
   const Mission mission = mission_of(true);
-  const Known told = told_until(20, mission);
-  Known anew = told;
+  const Known announced = announced_until(20, mission);
+  Known anew = announced;
   anew.roster[1].active_from = 26;
   const auto after = [&](const std::vector<RosterEntry>& before) {
     return with_a_place(mission, anew, [&](Forecast& forecast) {
       Coefficients looked(144);
       for (Tick tick = 0; tick < 24; ++tick) forecast.see(1, tick, place(1, tick, mission));
-      forecast.look_ahead(table_of(told, mission), before, 24, looked);
+      forecast.look_ahead(table_of(announced, mission), before, 24, looked);
       forecast.see(1, 27, place(1, 27, mission));
     });
   };
-  EXPECT_EQ(after(told.roster), after(anew.roster));
-  EXPECT_NE(after(told.roster), foreseen(told, mission));
+  EXPECT_EQ(after(announced.roster), after(anew.roster));
+  EXPECT_NE(after(announced.roster), foreseen(announced, mission));
 }
 
 TEST(DeadReckoning, BeginsAnewAfterAPause) {
   // Agent 1 was forgotten for longer than its places are kept.
   const Mission mission = mission_of(true);
-  const Known told = told_until(20, mission);
-  CoverageTable without = table_of(told, mission);
+  const Known announced = announced_until(20, mission);
+  CoverageTable without = table_of(announced, mission);
   without.forget({1, 1});
   const auto after = [&](bool looked_before) {
-    return with_a_place(mission, told, [&](Forecast& forecast) {
+    return with_a_place(mission, announced, [&](Forecast& forecast) {
       Coefficients looked(144);
       for (Tick tick = 0; tick < 24; ++tick) forecast.see(1, tick, place(1, tick, mission));
       if (looked_before) {
-        forecast.look_ahead(table_of(told, mission), told.roster, 24, looked);
-        forecast.look_ahead(without, told.roster, 25, looked);
+        forecast.look_ahead(table_of(announced, mission), announced.roster, 24, looked);
+        forecast.look_ahead(without, announced.roster, 25, looked);
       }
       for (Tick tick = 25; tick < 200; ++tick) forecast.see(1, tick, place(1, tick, mission));
     });
@@ -233,15 +234,15 @@ TEST(DeadReckoning, BeginsAnewAfterAPause) {
 
 TEST(DeadReckoning, LeavesWhatIsKnownAndPassedOnAsItWas) {
   const Mission mission = mission_of(true);
-  const Known told = told_until(20, mission);
-  const CoverageTable before = table_of(told, mission);
+  const Known announced = announced_until(20, mission);
+  const CoverageTable before = table_of(announced, mission);
   CoverageTable table = before;
   Forecast forecast(mission, kSelf);
   Coefficients foreseen(144), known(144), known_before(144);
   before.average(known_before);
   for (Tick tick = 21; tick < kEnd; ++tick) {
     see_all(forecast, 3, tick, mission);
-    forecast.look_ahead(table, told.roster, tick, foreseen);
+    forecast.look_ahead(table, announced.roster, tick, foreseen);
     table.average(known);
     ASSERT_EQ(known, known_before);
     ASSERT_NE(foreseen, known);

@@ -58,7 +58,7 @@ Known drawn(std::uint64_t history, const Mission& mission) {
       life.cover(tick);
       if (dice.one_in(3)) continue;
       for (Contribution& block :
-           life.speak(tick, dice.one_in(5) ? 1000 : dice.tick(1, kPeriod + 1))) {
+           life.blocks(tick, dice.one_in(5) ? 1000 : dice.tick(1, kPeriod + 1))) {
         if (dice.one_in(12) && author != kSelf) forge(block, dice);
         if (dice.one_in(deafness)) known.heard.push_back(block);
         if (dice.one_in(6) && !known.heard.empty()) {
@@ -197,7 +197,7 @@ TEST(ForecastCounts, NoFormerLifeOfOurOwn) {
   const Author former{0, 5};
   Life life(former, mission);
   for (Tick tick = 0; tick < 20; ++tick) life.cover(tick);
-  for (const Contribution& block : life.speak(19)) known.heard.push_back(block);
+  for (const Contribution& block : life.blocks(19)) known.heard.push_back(block);
   const Coefficients expected = foreseen(known, mission);
   // Also where the roster does not have its departure yet.
   for (const Tick until : {Tick{20}, Tick{-1}}) {
@@ -238,12 +238,12 @@ TEST(ForecastCounts, AGainThatIsJustPossible) {
   Contribution& last = *last_words[0];
   Life before({1, 1}, mission);
   for (Tick tick = 0; tick < kEnd - 1; ++tick) before.cover(tick);
-  const std::vector<Contribution> said_before = before.speak(kEnd - 2);
-  last.sums.edit()[3] = said_before[0].sums[3] + kDt;
+  const std::vector<Contribution> sent_before = before.blocks(kEnd - 2);
+  last.sums.edit()[3] = sent_before[0].sums[3] + kDt;
   EXPECT_LT((foreseen(known, mission) - by_the_formula(known, mission)).cwiseAbs().maxCoeff(),
             1e-12);
   EXPECT_NE(foreseen(known, mission), foreseen(without_hope_for_1(known), mission));
-  last.sums.edit()[3] = said_before[0].sums[3] + 1.001 * kDt;
+  last.sums.edit()[3] = sent_before[0].sums[3] + 1.001 * kDt;
   EXPECT_EQ(foreseen(known, mission)[3], foreseen(without_hope_for_1(known), mission)[3]);
 }
 

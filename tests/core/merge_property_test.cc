@@ -49,9 +49,9 @@ class Dice {
 
 /// All blocks that the incarnations of this history ever broadcast, in the order of their
 /// sequences.
-std::vector<Contribution> everything_said(std::uint64_t history) {
+std::vector<Contribution> everything_sent(std::uint64_t history) {
   Dice dice(history);
-  std::vector<Contribution> said;
+  std::vector<Contribution> sent;
   for (const Author& author : kIncarnations) {
     CoverageTable own = empty_table();
     std::int64_t sequence = 0;
@@ -64,20 +64,20 @@ std::vector<Contribution> everything_said(std::uint64_t history) {
       own.add_sample(author, BasisAt(x_m, kDomain, basis()));
       if (dice.below(3) == 0) continue;
       for (int b = 0; b < 2; ++b) {
-        said.push_back(own.block(author, b));
-        said.back().header.tick = tick;
-        said.back().header.sequence = ++sequence;
-        said.back().next_broadcast_tick = tick + 1 + static_cast<Tick>(dice.below(3));
+        sent.push_back(own.block(author, b));
+        sent.back().header.tick = tick;
+        sent.back().header.sequence = ++sequence;
+        sent.back().next_broadcast_tick = tick + 1 + static_cast<Tick>(dice.below(3));
       }
     }
   }
-  return said;
+  return sent;
 }
 
 /// What `heard` of a history: a random part of it, some of it twice, in any order.
-std::vector<Contribution> part_of(const std::vector<Contribution>& said, Dice& dice) {
+std::vector<Contribution> part_of(const std::vector<Contribution>& sent, Dice& dice) {
   std::vector<Contribution> heard;
-  for (const Contribution& block : said) {
+  for (const Contribution& block : sent) {
     for (std::uint64_t times = dice.below(3); times > 0; --times) heard.push_back(block);
   }
   dice.shuffle(heard);
@@ -125,17 +125,17 @@ void expect_same(const CoverageTable& a, const CoverageTable& b) {
 
 /// Checks the messages of each of many histories.
 void in_every_history(
-    const std::function<void(const std::vector<Contribution>& said, Dice& dice)>& check) {
+    const std::function<void(const std::vector<Contribution>& sent, Dice& dice)>& check) {
   for (std::uint64_t history = 0; history < kHistories; ++history) {
     SCOPED_TRACE("history " + std::to_string(history));
     Dice dice(1000 + history);
-    check(everything_said(history), dice);
+    check(everything_sent(history), dice);
   }
 }
 
 TEST(MergeProperty, IsCommutativeAndIdempotent) {
-  in_every_history([](const auto& said, Dice& dice) {
-    std::vector<Contribution> heard = part_of(said, dice);
+  in_every_history([](const auto& sent, Dice& dice) {
+    std::vector<Contribution> heard = part_of(sent, dice);
     const CoverageTable once = table_after(heard);
     const std::vector<Contribution> again = heard;
     heard.insert(heard.end(), again.begin(), again.end());
@@ -145,8 +145,8 @@ TEST(MergeProperty, IsCommutativeAndIdempotent) {
 }
 
 TEST(MergeProperty, IsAssociative) {
-  in_every_history([](const auto& said, Dice& dice) {
-    const auto a = part_of(said, dice), b = part_of(said, dice), c = part_of(said, dice);
+  in_every_history([](const auto& sent, Dice& dice) {
+    const auto a = part_of(sent, dice), b = part_of(sent, dice), c = part_of(sent, dice);
     CoverageTable ab = table_after(a), bc = table_after(b), left = table_after(c);
     pass_on(table_after(b), ab);
     pass_on(ab, left);
@@ -158,8 +158,8 @@ TEST(MergeProperty, IsAssociative) {
 }
 
 TEST(MergeProperty, KeepsOfEachBlockTheOneWithMostSteps) {
-  in_every_history([](const auto& said, Dice& dice) {
-    const auto heard = part_of(said, dice);
+  in_every_history([](const auto& sent, Dice& dice) {
+    const auto heard = part_of(sent, dice);
     const CoverageTable table = table_after(heard);
     std::map<std::pair<Author, int>, std::int64_t> most;
     for (const Contribution& block : heard) {
@@ -173,8 +173,8 @@ TEST(MergeProperty, KeepsOfEachBlockTheOneWithMostSteps) {
 }
 
 TEST(MergeProperty, AddsUpInTheOrderOfAuthorsWhateverTheOrderOfArrival) {
-  in_every_history([](const auto& said, Dice& dice) {
-    const CoverageTable table = table_after(part_of(said, dice));
+  in_every_history([](const auto& sent, Dice& dice) {
+    const CoverageTable table = table_after(part_of(sent, dice));
     std::set<Author> in_order(kIncarnations.begin(), kIncarnations.end());
     const Coefficients average = average_of(table);
     for (int k = 0; k < 144; ++k) {
@@ -192,12 +192,12 @@ TEST(MergeProperty, AddsUpInTheOrderOfAuthorsWhateverTheOrderOfArrival) {
 }
 
 TEST(MergeProperty, WhatIsPassedOnIsWhatWasSaid) {
-  in_every_history([](const auto& said, Dice& dice) {
-    CoverageTable relay = table_after(part_of(said, dice)), far = empty_table();
+  in_every_history([](const auto& sent, Dice& dice) {
+    CoverageTable relay = table_after(part_of(sent, dice)), far = empty_table();
     pass_on(relay, far);
     expect_same(far, relay);
     std::map<std::pair<Author, std::int64_t>, const Contribution*> originals;
-    for (const Contribution& block : said)
+    for (const Contribution& block : sent)
       originals[{block.author(), block.header.sequence}] = &block;
     for (const Author& author : kIncarnations) {
       for (int b = 0; b < 2; ++b) {
@@ -215,8 +215,8 @@ TEST(MergeProperty, WhatIsPassedOnIsWhatWasSaid) {
 }
 
 TEST(MergeProperty, ForgettingIsLeavingOutAndKeeping) {
-  in_every_history([](const auto& said, Dice& dice) {
-    const auto heard = part_of(said, dice);
+  in_every_history([](const auto& sent, Dice& dice) {
+    const auto heard = part_of(sent, dice);
     std::set<Author> forgotten;
     for (const Author& author : kIncarnations) {
       if (dice.below(2) == 0) forgotten.insert(author);
@@ -239,8 +239,8 @@ TEST(MergeProperty, ForgettingIsLeavingOutAndKeeping) {
 }
 
 TEST(MergeProperty, ForgettingDoesNotDependOnWhatHasArrived) {
-  in_every_history([](const auto& said, Dice& dice) {
-    const auto heard = part_of(said, dice);
+  in_every_history([](const auto& sent, Dice& dice) {
+    const auto heard = part_of(sent, dice);
     const Author gone = kIncarnations[dice.below(kIncarnations.size())];
     CoverageTable first = empty_table();
     first.forget(gone);

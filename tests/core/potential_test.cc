@@ -120,10 +120,10 @@ class FreshTeam {
       own.add_sample(author, BasisAt(x_m_.back(), mission_.domain, mission_.basis));
       if (tick + 1 < last_tick_) continue;
       for (int b = 0; b < own.block_count(); ++b) {
-        Contribution said = own.block(author, b);
-        said.header.tick = tick;
-        said.next_broadcast_tick = tick + 1;
-        EXPECT_EQ(table_->merge(said, tick + 1), Merge::kNewer);
+        Contribution sent = own.block(author, b);
+        sent.header.tick = tick;
+        sent.next_broadcast_tick = tick + 1;
+        EXPECT_EQ(table_->merge(sent, tick + 1), Merge::kNewer);
       }
     }
     roster_.push_back({author, 0, -1});

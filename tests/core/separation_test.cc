@@ -190,9 +190,9 @@ double nearest_edge_m(double response_s, double position_error_m, bool wall = fa
   Eigen::Vector3d x_m(50, 40, 0), v_mps(0, 0, 0);
   double least_m = 100;
   for (Tick tick = 0; tick < 200; ++tick) {
-    const Eigen::Vector3d told_m = x_m - Eigen::Vector3d(position_error_m, position_error_m, 0);
+    const Eigen::Vector3d reported_m = x_m - Eigen::Vector3d(position_error_m, position_error_m, 0);
     const Eigen::Vector3d safe_mps =
-        filter.safe({0, tick, told_m, 20}, {16, 12, 0}, {}).velocity_mps;
+        filter.safe({0, tick, reported_m, 20}, {16, 12, 0}, {}).velocity_mps;
     for (int step = 0; step < 100; ++step) {
       v_mps += (safe_mps - v_mps) * 1e-3 / 0.4;
       x_m += v_mps * 1e-3;

@@ -58,8 +58,8 @@ Mission flawed(Mission mission, Flaw flaw) {
 constexpr int kBodies = 12;
 
 /// What `self` is told of the team.
-std::vector<Neighbour> told(const Mission& mission, const std::vector<Mover>& team,
-                            const Mover& self, Flaw flaw) {
+std::vector<Neighbour> neighbours_of(const Mission& mission, const std::vector<Mover>& team,
+                                     const Mover& self, Flaw flaw) {
   std::vector<Neighbour> others;
   for (const Mover& one : team) {
     if (one.id == self.id) continue;
@@ -108,7 +108,7 @@ double spare_m(Mission mission, Flaw flaw = Flaw::kNone) {
       const bool lost = draw.between(0, 1) < 0.1;
       const Eigen::Vector3d wanted_mps = (goals_m[i] - self.position_m).normalized() * 25;
       const Eigen::Vector3d safe_mps =
-          filter.safe(self, wanted_mps, told(mission, team, self, flaw)).velocity_mps;
+          filter.safe(self, wanted_mps, neighbours_of(mission, team, self, flaw)).velocity_mps;
       next_mps.push_back(executed(motion_of(mission, self.id), self.velocity_mps,
                                   lost ? Eigen::Vector3d(0, 0, 0) : safe_mps));
     }

@@ -54,11 +54,11 @@ Mission in_maze(const VehicleLimits& vehicle, double clearance_m = 3) {
 
 /// What is asked of the filter.
 struct Attack {
-  explicit Attack(const Mission& all) : mission(all), told(all) {}
+  explicit Attack(const Mission& all) : mission(all), assumed(all) {}
 
   Mission mission;  ///< the world's
-  Mission told;     ///< the filter's
-  Tick hold_ticks = 0, told_hold_ticks = 0;
+  Mission assumed;  ///< the filter's
+  Tick hold_ticks = 0, reported_hold_ticks = 0;
   int bodies = 20, ticks = 1500;
   double restless = 0.02;  ///< the chance of a new goal in a tick
 };
@@ -66,8 +66,8 @@ struct Attack {
 /// The least clearance of all bodies, within ticks too, less what the mission asks for [m].
 double spare_m(const Attack& attack) {
   const Mission& mission = attack.mission;
-  const Motion motion = motion_of(mission, 0), told = motion_of(attack.told, 0);
-  SeparationFilter filter(attack.told, attack.told_hold_ticks);
+  const Motion motion = motion_of(mission, 0), assumed = motion_of(attack.assumed, 0);
+  SeparationFilter filter(attack.assumed, attack.reported_hold_ticks);
   Drawn draw;
   double least_m = 1e9;
   for (AgentId id = 0; id < attack.bodies; ++id) {
@@ -82,8 +82,9 @@ double spare_m(const Attack& attack) {
         const Eigen::Vector3d seen_m =
             x_m + error_m * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
         const Eigen::Vector3d wanted_mps = 10 * (goal_m - seen_m);
-        command_mps = filter.safe({id, tick, seen_m, told.speed_limit_mps, v_mps}, wanted_mps, {})
-                          .velocity_mps;
+        command_mps =
+            filter.safe({id, tick, seen_m, assumed.speed_limit_mps, v_mps}, wanted_mps, {})
+                .velocity_mps;
       }
       const Eigen::Vector3d next_mps = executed(motion, v_mps, command_mps);
       for (const double share : {0.25, 0.5, 0.75, 1.0}) {
@@ -103,10 +104,10 @@ TEST(WallFilter, KeepsPointsOut) {
   Attack attack(in_maze({}));
   EXPECT_GE(spare_m(attack), 0);
   EXPECT_LT(spare_m(attack), 1e-3) << "they do come near";
-  attack.told.wall_clearance_m = 2.5;
+  attack.assumed.wall_clearance_m = 2.5;
   EXPECT_LT(spare_m(attack), -0.4);
   attack = Attack(in_maze({}));
-  attack.told.walls.resize(2);
+  attack.assumed.walls.resize(2);
   EXPECT_LT(spare_m(attack), -3);
 }
 
@@ -118,7 +119,7 @@ TEST(WallFilter, KeepsOutWhoBrakes) {
   for (const double limit_mps2 : {5.0, 40.0}) {
     Attack attack(in_maze(inertia(limit_mps2)));
     EXPECT_GE(spare_m(attack), 0) << limit_mps2;
-    attack.told.vehicle = {};
+    attack.assumed.vehicle = {};
     EXPECT_LT(spare_m(attack), -0.5) << "as if it could stand at once";
   }
 }
@@ -127,20 +128,20 @@ TEST(WallFilter, KeepsOutWhoTurnsSlowly) {
   for (const VehicleLimits& kind : {unicycle(1), unicycle(10)}) {
     Attack attack(in_maze(kind));
     EXPECT_GE(spare_m(attack), 0);
-    attack.told.vehicle = {};
+    attack.assumed.vehicle = {};
     EXPECT_LT(spare_m(attack), -0.1) << "as if it could look anywhere at once";
   }
   Attack attack(in_maze(unicycle(10), 2));
   attack.restless = 0.2;
   EXPECT_GE(spare_m(attack), 0);
-  attack.told.wall_clearance_m -= bulge_m(motion_of(attack.mission, 0));
+  attack.assumed.wall_clearance_m -= bulge_m(motion_of(attack.mission, 0));
   EXPECT_LT(spare_m(attack), 0) << "the bulge of an arc counts";
 }
 
 TEST(WallFilter, KeepsOutLoiterCircles) {
   Attack attack(in_maze(wings(1.5)));
   EXPECT_GE(spare_m(attack), 0);
-  attack.told.wall_clearance_m -= loiter_radius_m(motion_of(attack.mission, 0));
+  attack.assumed.wall_clearance_m -= loiter_radius_m(motion_of(attack.mission, 0));
   EXPECT_LT(spare_m(attack), -1);
 }
 
@@ -155,15 +156,15 @@ TEST(WallFilter, KeepsOutWhoIsNotWhereItIsSaidToBe) {
   mission.separation.position_error_m = 1.2;
   Attack attack(mission);
   EXPECT_GE(spare_m(attack), 0);
-  attack.told.separation.position_error_m = 0;
+  attack.assumed.separation.position_error_m = 0;
   EXPECT_LT(spare_m(attack), -0.5);
 }
 
 TEST(WallFilter, KeepsOutWhoHoldsItsCommands) {
   Attack attack(with_distance(7));
-  attack.hold_ticks = attack.told_hold_ticks = 3;
+  attack.hold_ticks = attack.reported_hold_ticks = 3;
   EXPECT_GE(spare_m(attack), 0);
-  attack.told_hold_ticks = 0;
+  attack.reported_hold_ticks = 0;
   EXPECT_LT(spare_m(attack), -1);
 }
 

@@ -240,7 +240,7 @@ Driver driver_of(AgentId id, const Mission& mission, Incarnation life = kWorldLi
   return driver;
 }
 
-WorldState said_by(Incarnation life, AgentId id, Tick tick) {
+WorldState sent_by(Incarnation life, AgentId id, Tick tick) {
   WorldState state = world_state(tick, {{100, 500, 0}});
   state.header.incarnation = life;
   state.vehicles[0].id = id;
@@ -263,9 +263,9 @@ TEST(DriverOfOneRobot, SaysItsPartOfTheState) {
 
 TEST(DriverOfOneRobot, RefusesARobotThatAnotherOneDrives) {
   Driver driver = driver_of(1, leased());
-  give(driver, said_by(77, 0, 5), at(500ms));
+  give(driver, sent_by(77, 0, 5), at(500ms));
   EXPECT_FALSE(driver.finished()) << "another robot";
-  give(driver, said_by(77, 1, 5), at(500ms));
+  give(driver, sent_by(77, 1, 5), at(500ms));
   EXPECT_TRUE(driver.failed());
   EXPECT_NE(driver.reason().find("robot 1 is driven by another driver already"), std::string::npos);
   EXPECT_TRUE(advance(driver, at(2s)).empty());
@@ -275,7 +275,7 @@ TEST(DriverOfAllRobots, RefusesRobotsThatAnotherOneDrives) {
   announce(leased());
   Driver driver(kRun, kWorldLife, kSpeedLimit_mps, std::nullopt);
   give(driver, mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
-  give(driver, said_by(77, 1, 5), at(500ms));
+  give(driver, sent_by(77, 1, 5), at(500ms));
   EXPECT_TRUE(driver.failed());
   EXPECT_NE(driver.reason().find("robot 1 is driven by another driver already"), std::string::npos);
 }
@@ -283,7 +283,7 @@ TEST(DriverOfAllRobots, RefusesRobotsThatAnotherOneDrives) {
 TEST(DriverOfOneRobot, WhoDrivesItAlreadyGoesOn) {
   Driver driver = driver_of(1, leased());
   for (int tick = 0; tick < 12; ++tick) state_at(driver, at(1s + tick * 100ms));
-  give(driver, said_by(1, 1, 5), at(2200ms));
+  give(driver, sent_by(1, 1, 5), at(2200ms));
   EXPECT_FALSE(driver.finished());
 }
 
@@ -298,19 +298,19 @@ TEST(DriverOfOneRobot, OfTwoThatBeginTogetherOneGivesWay) {
 
 TEST(DriverOfOneRobot, CatchesUpWithTheOthers) {
   Driver driver = driver_of(1, leased());
-  const auto hears = [&](Tick tick, Instant now) {
+  const auto receive = [&](Tick tick, Instant now) {
     MissionPart part = mission_part(1, MissionState::kRunning, roster_of(2));
     part.header.tick = tick;
     give(driver, part, now);
   };
   EXPECT_EQ(state_at(driver, at(1s)).header.tick, 0);
-  hears(1, at(1050ms));
+  receive(1, at(1050ms));
   EXPECT_EQ(state_at(driver, at(1100ms)).header.tick, 1) << "the others began a little earlier";
-  hears(9, at(1150ms));
+  receive(9, at(1150ms));
   const WorldState state = state_at(driver, at(1200ms));
   EXPECT_EQ(state.header.tick, 10);
   EXPECT_EQ(state.skipped_ticks, 8);
-  hears(1000000, at(1250ms));
+  receive(1000000, at(1250ms));
   EXPECT_LE(state_at(driver, at(1300ms)).header.tick, 400) << "the mission's end";
 }
 

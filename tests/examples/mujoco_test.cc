@@ -109,11 +109,11 @@ TEST_P(RobotsInPhysics, FollowAsLateAsTheirScenarioSays) {
   std::vector<PhysicalBody> body = {{3, mission.speed_limit_mps * way}};
   for (int tick = 0; tick < 50; ++tick) physics.pass_tick(body);
   EXPECT_NEAR(body[0].velocity_mps.norm(), mission.speed_limit_mps, 0.02);
-  const Eigen::Vector3d told_m = body[0].position_m;
+  const Eigen::Vector3d reported_m = body[0].position_m;
   body[0].wanted_mps.setZero();
   for (int tick = 0; tick < 30; ++tick) physics.pass_tick(body);
   EXPECT_LT(body[0].velocity_mps.norm(), 0.01);
-  const double lag_s = (body[0].position_m - told_m).norm() / mission.speed_limit_mps;
+  const double lag_s = (body[0].position_m - reported_m).norm() / mission.speed_limit_mps;
   EXPECT_NEAR(lag_s + mission.timing.dt_s / 2, mission.separation.response_s, 0.02);
 }
 

@@ -17,9 +17,9 @@ namespace ergocast::fuzz {
 namespace {
 
 /// A core's messages are valid, whatever it received.
-void check_said(const Outbox& said) {
+void check_sent(const Outbox& sent) {
   static std::vector<std::byte> bytes;
-  for (const Outgoing& outgoing : said) {
+  for (const Outgoing& outgoing : sent) {
     encode(outgoing.message, bytes);
     ERGOCAST_REQUIRE(std::holds_alternative<Message>(decode(bytes, test::kRun)));
   }
@@ -32,7 +32,7 @@ Instant listen(Input input, Core& core, const Receive& receive) {
   const auto act = [&] {
     Outbox out;
     core.advance(now, out);
-    check_said(out);
+    check_sent(out);
   };
   act();
   play(

@@ -103,14 +103,14 @@ class HostileNetwork : public RunningMission {
     ASSERT_TRUE(eventually([&] { return adversary.listen(), adversary.heard() > 100; }));
     const Stretch quiet = spend(adversary, std::max(time / 4, std::chrono::duration<double>(3)), 0);
     const Stretch stormy = spend(adversary, time, strikes);
-    ASSERT_TRUE(moves_on()) << said();
-    EXPECT_EQ(crew(), before) << said();
+    ASSERT_TRUE(moves_on()) << printed();
+    EXPECT_EQ(crew(), before) << printed();
     std::printf(
         "%ld datagrams in %.0f s; of the deadlines were missed: quiet %.4f, stormy %.4f; "
         "largest process %ld kB, then %ld kB\n",
         strikes, time.count(), quiet.share(), stormy.share(), memory_kb, largest_kb(before));
     mission.send(SIGINT);
-    EXPECT_EQ(wait_for(mission), 0) << said();
+    EXPECT_EQ(wait_for(mission), 0) << printed();
     check(adversary, strikes);
   }
 

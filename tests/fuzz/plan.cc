@@ -23,9 +23,10 @@ FUZZ_TARGET(plan) {
   ERGOCAST_REQUIRE(std::ranges::equal(encode_plan(mission), bytes_of(input)));
   for (const double mu : mission.target_coefficients.reshaped())
     ERGOCAST_REQUIRE(std::abs(mu) <= 1 + 1e-6);
-  const auto said = Scenario::parse(mission_text(mission) + "target { uniform_weight: 1 }", "plan");
-  ERGOCAST_REQUIRE(std::holds_alternative<Scenario>(said));
-  ERGOCAST_REQUIRE(std::get<Scenario>(said).mission().timing.tick_count ==
+  const auto parsed =
+      Scenario::parse(mission_text(mission) + "target { uniform_weight: 1 }", "plan");
+  ERGOCAST_REQUIRE(std::holds_alternative<Scenario>(parsed));
+  ERGOCAST_REQUIRE(std::get<Scenario>(parsed).mission().timing.tick_count ==
                    mission.timing.tick_count);
 }
 

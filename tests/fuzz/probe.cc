@@ -26,7 +26,7 @@ FUZZ_TARGET(probe) {
   }
   const std::string table = doctor::text_of(ledger.peers());
   for (const char c : table) ERGOCAST_REQUIRE(c == '\n' || (c & 0xE0) != 0);
-  doctor::peer_findings({}, {ledger.peers(), ledger.only_heard_by_others(), ledger.sent(), ""},
+  doctor::peer_findings({}, {ledger.peers(), ledger.only_received_by_others(), ledger.sent(), ""},
                         "1");
 }
 

@@ -71,15 +71,15 @@ std::string turn(int wait, AgentId transmitter, const std::string& datagram) {
 }
 
 /// The messages of an undisturbed team, one of every kind at a time.
-std::vector<std::string> everything_said(SmallTeam& team) {
+std::vector<std::string> everything_sent(SmallTeam& team) {
   std::vector<std::string> turns;
-  std::map<std::size_t, int> said;
+  std::map<std::size_t, int> sent;
   team.on_sent = [&](AgentId transmitter, const std::vector<std::byte>& bytes) {
     const auto message = std::get<Message>(decode(bytes, 0));
     const int most = std::holds_alternative<MissionPart>(message)    ? 6
                      : std::holds_alternative<Contribution>(message) ? 1
                                                                      : 3;
-    if (++said[message.index()] <= most) turns.push_back(turn(2, transmitter, text_of(bytes)));
+    if (++sent[message.index()] <= most) turns.push_back(turn(2, transmitter, text_of(bytes)));
   };
   for (int i = 0; i < 30; ++i) team.pass(i == 0 ? 0ms : 100ms);
   team.check();
@@ -91,16 +91,16 @@ void conversations(const Seeds& seeds) {
     const auto features = static_cast<char>(bit < 0 ? 0 : 1 << bit);
     const std::string name = bit < 0 ? "plain" : "feature-" + std::to_string(bit);
     SmallTeam team(static_cast<std::uint8_t>(features));
-    std::string said;
-    for (const std::string& turn : everything_said(team)) said += turn;
+    std::string sent;
+    for (const std::string& turn : everything_sent(team)) sent += turn;
     std::string alone;
     for (int i = 0; i < 8; ++i) alone += turn(i < 6 ? 3 : 4, 0, "");
     seeds.add("team", name, std::string{features, '\0'} + alone);
-    if (bit < 1) seeds.add("team", name + "-echo", std::string{features, '\0'} + said);
+    if (bit < 1) seeds.add("team", name + "-echo", std::string{features, '\0'} + sent);
     for (const char who : {0, 1, 2, 3, 4}) {
       const bool telling = bit < 1 || (bit == 6 && who == 0) || (bit == 7 && who == 1);
       if (!telling) continue;
-      seeds.add("listener", name + "-" + std::to_string(who), std::string{features, who} + said);
+      seeds.add("listener", name + "-" + std::to_string(who), std::string{features, who} + sent);
     }
   }
 }

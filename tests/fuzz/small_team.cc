@@ -92,7 +92,7 @@ void SmallTeam::take(const Message& message, AgentId transmitter) {
   test::give(view_, message, now_);
 }
 
-void SmallTeam::hear(std::span<const std::byte> datagram, AgentId transmitter) {
+void SmallTeam::receive(std::span<const std::byte> datagram, AgentId transmitter) {
   const auto decoded = decode(datagram, kRun);
   const auto* message = std::get_if<Message>(&decoded);
   if (message != nullptr) take(*message, transmitter_in(*message, transmitter));

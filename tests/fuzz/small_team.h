@@ -46,7 +46,7 @@ class SmallTeam {
   explicit SmallTeam(std::uint8_t features);
 
   /// An attacker's datagram, as the transport would pass it on.
-  void hear(std::span<const std::byte> datagram, AgentId transmitter);
+  void receive(std::span<const std::byte> datagram, AgentId transmitter);
   /// Time passes; every process does its due work and receives the others' messages.
   void pass(std::chrono::nanoseconds time);
 

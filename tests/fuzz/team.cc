@@ -14,7 +14,7 @@ FUZZ_TARGET_WITH(team, &mutate_turns) {
   play(
       input, [&team](std::chrono::nanoseconds time) { team.pass(time); },
       [&team](std::span<const std::byte> datagram, AgentId transmitter) {
-        team.hear(datagram, transmitter);
+        team.receive(datagram, transmitter);
       });
   team.check();
 }

@@ -50,14 +50,14 @@ std::size_t mutate_turn(std::span<std::uint8_t> space, std::size_t size, const T
 }  // namespace
 
 void play(Input input, const std::function<void(std::chrono::nanoseconds)>& wait,
-          const std::function<void(std::span<const std::byte>, AgentId transmitter)>& hear) {
+          const std::function<void(std::span<const std::byte>, AgentId transmitter)>& receive) {
   for (const Turn& turn : turns_in(input)) {
     wait(kWaits[input[turn.begin] % kWaits.size()]);
-    const Input said = input.subspan(turn.begin + kTurnBytes, turn.end - turn.begin - kTurnBytes);
-    if (said.size() < kHeaderBytes) continue;
-    std::vector<std::uint8_t> datagram(said.begin(), said.end());
+    const Input sent = input.subspan(turn.begin + kTurnBytes, turn.end - turn.begin - kTurnBytes);
+    if (sent.size() < kHeaderBytes) continue;
+    std::vector<std::uint8_t> datagram(sent.begin(), sent.end());
     retag(datagram);
-    hear(bytes_of(datagram), input[turn.begin + 1]);
+    receive(bytes_of(datagram), input[turn.begin + 1]);
   }
 }
 

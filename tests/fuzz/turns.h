@@ -25,9 +25,9 @@ inline constexpr std::array<std::chrono::milliseconds, 8> kWaits = {
     std::chrono::milliseconds(500),  std::chrono::milliseconds(1000),
     std::chrono::milliseconds(4000), std::chrono::milliseconds(60000)};
 
-/// Calls `wait` and then `hear` for each turn, `hear` only if there is a datagram.
+/// Calls `wait` and then `receive` for each turn, `receive` only if there is a datagram.
 void play(Input input, const std::function<void(std::chrono::nanoseconds)>& wait,
-          const std::function<void(std::span<const std::byte>, AgentId transmitter)>& hear);
+          const std::function<void(std::span<const std::byte>, AgentId transmitter)>& receive);
 
 /// Changes one turn, or the order of the turns.
 std::size_t mutate_turns(std::span<std::uint8_t> space, std::size_t size, std::uint64_t seed);

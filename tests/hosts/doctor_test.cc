@@ -16,18 +16,18 @@ class DoctorOnHosts : public OnHosts {
  protected:
   struct Answer {
     int exit_code = -1;
-    json told;
+    json report;
 
     /// The finding of a check; null if there is none.
     json of(const std::string& check) const {
-      for (const json& finding : told["findings"]) {
+      for (const json& finding : report["findings"]) {
         if (finding["check"] == check) return finding;
       }
       return {};
     }
     /// Of the only peer; null if there is not exactly one.
     json peer(const char* what) const {
-      const json& peers = told["peers"];
+      const json& peers = report["peers"];
       return peers.size() == 1 ? peers[0][what] : json();
     }
     /// Of the only peer, one of its losses [%]; −1 if there is not exactly one.
@@ -51,7 +51,7 @@ class DoctorOnHosts : public OnHosts {
   Answer answer(int host, Child& child) {
     const int code = wait_for(child);
     Answer answer{code, json::parse(text_of(logs_[host]), nullptr, false)};
-    EXPECT_FALSE(answer.told.is_discarded()) << text_of(logs_[host]);
+    EXPECT_FALSE(answer.report.is_discarded()) << text_of(logs_[host]);
     return answer;
   }
   Answer alone(int host, int ttl) {
@@ -83,8 +83,8 @@ class DoctorOnHosts : public OnHosts {
 TEST_F(DoctorOnHosts, TwoThatHearEachOtherAreToldSo) {
   const auto [one, two] = both();
   for (const auto& [answer, other] : {std::pair(one, "host-1"), std::pair(two, "host-0")}) {
-    EXPECT_EQ(answer.exit_code, 0) << answer.told.dump(1);
-    ASSERT_EQ(answer.told["peers"].size(), 1u) << answer.told.dump(1);
+    EXPECT_EQ(answer.exit_code, 0) << answer.report.dump(1);
+    ASSERT_EQ(answer.report["peers"].size(), 1u) << answer.report.dump(1);
     EXPECT_EQ(answer.peer("host"), other);
     EXPECT_EQ(answer.peer("hears_this_host"), true);
     EXPECT_EQ(answer.lost("from_it"), 0);
@@ -102,7 +102,7 @@ TEST_F(DoctorOnHosts, AOneWayPartitionIsSeenByTheSideThatHears) {
   EXPECT_EQ(one.peer("hears_this_host"), false);
   EXPECT_NE(one.of("peer host-1")["found"].dump().find("one-way"), std::string::npos);
   EXPECT_EQ(two.exit_code, 1);
-  EXPECT_EQ(two.told["peers"].size(), 0u);
+  EXPECT_EQ(two.report["peers"].size(), 0u);
   EXPECT_EQ(two.of("peers")["level"], "problem");
 }
 
@@ -126,7 +126,7 @@ TEST_F(DoctorOnHosts, ANarrowSwitchLosesOnlyWhatIsLong) {
   const auto [one, two] = both();
   for (const Answer& answer : {one, two}) {
     EXPECT_EQ(answer.exit_code, 1);
-    EXPECT_EQ(answer.lost("from_it", "lost_small_percent"), 0) << answer.told.dump(1);
+    EXPECT_EQ(answer.lost("from_it", "lost_small_percent"), 0) << answer.report.dump(1);
     EXPECT_EQ(answer.lost("from_it", "lost_large_percent"), 100);
   }
   EXPECT_EQ(one.of("peer host-1")["found"], "only short datagrams arrive");
@@ -147,14 +147,14 @@ TEST_F(DoctorOnHosts, TheWrongOneOfTwoInterfacesIsMendedByTheCommandGiven) {
   lan_->route_multicast(0, "eth1");
   const auto [wrong, deaf] = both();
   EXPECT_EQ(wrong.exit_code, 1);
-  EXPECT_EQ(wrong.told["peers"].size(), 0u);
-  EXPECT_EQ(deaf.told["peers"].size(), 0u);
+  EXPECT_EQ(wrong.report["peers"].size(), 0u);
+  EXPECT_EQ(deaf.report["peers"].size(), 0u);
   EXPECT_EQ(wrong.of("route")["found"],
             "239.255.76.67 goes over eth1 (10.0.1.1), and not over eth0");
   lan_->on_host(0, wrong.of("route")["remedy"]);
   const auto [right, hearing] = both();
-  EXPECT_EQ(right.exit_code, 0) << right.told.dump(1);
-  EXPECT_EQ(hearing.exit_code, 0) << hearing.told.dump(1);
+  EXPECT_EQ(right.exit_code, 0) << right.report.dump(1);
+  EXPECT_EQ(hearing.exit_code, 0) << hearing.report.dump(1);
 }
 
 TEST_F(DoctorOnHosts, LoopbackIsAProblemForATeamOnSeveralHosts) {
@@ -169,7 +169,7 @@ TEST_F(DoctorOnHosts, ATtlOfZeroOnOneSideIsOneWay) {
   const auto [one, two] = both(/*ttl_of_0=*/0);
   EXPECT_EQ(one.of("TTL")["level"], "problem");
   EXPECT_EQ(one.peer("hears_this_host"), false);
-  EXPECT_EQ(two.told["peers"].size(), 0u);
+  EXPECT_EQ(two.report["peers"].size(), 0u);
 }
 
 TEST_F(DoctorOnHosts, AFirewallIsOpenedByTheCommandsGiven) {

@@ -68,10 +68,10 @@ class Fragments : public RunningMission {
   }
   /// The team continues undisturbed.
   void expect_nothing_happens(Child& mission) {
-    ASSERT_TRUE(moves_on(100000)) << said();
+    ASSERT_TRUE(moves_on(100000)) << printed();
     mission.send(SIGTERM);
-    EXPECT_EQ(wait_for(mission), 0) << said();
-    EXPECT_EQ(summary()["restarts"], 0) << said();
+    EXPECT_EQ(wait_for(mission), 0) << printed();
+    EXPECT_EQ(summary()["restarts"], 0) << printed();
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   }
   /// The number of packets that the rule has dropped.
@@ -128,8 +128,8 @@ TEST_F(Fragments, TheDoctorSaysWhetherARuleDropsThem) {
   if (!is_root()) GTEST_SKIP() << "needs root";
   const auto finding = [this] {
     ergocast({"doctor", "--json", "--lcm-url", kUrl});
-    const auto said = nlohmann::json::parse(output());
-    for (const auto& one : said["findings"]) {
+    const auto printed = nlohmann::json::parse(output());
+    for (const auto& one : printed["findings"]) {
       if (one["check"] == "LCM fragments") return one;
     }
     return nlohmann::json();

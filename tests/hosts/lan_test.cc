@@ -137,7 +137,7 @@ TEST_F(ThreeHosts, AreLate) {
 TEST_F(ThreeHosts, SeeTheProgramsThatRunOnThem) {
   EXPECT_TRUE(lan_->processes().empty());
   Program& world = on(1, "ergocast-sim");
-  ASSERT_TRUE(world.says("waiting for a mission")) << world.said();
+  ASSERT_TRUE(world.prints("waiting for a mission")) << world.printed();
   EXPECT_EQ(lan_->processes().size(), 1U);
 }
 

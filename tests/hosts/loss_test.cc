@@ -39,7 +39,7 @@ TEST_F(Loss, InRealTimeLeavesNobodyBehindByMoreThanTheAnnouncedPeriods) {
   lan_->lose(30, {1});
   const auto up_to_date = [&](AgentId who, AgentId whose) {
     const std::int64_t held = observer.held(observer.member(who), observer.member(whose));
-    return held > 0 && observer.said(observer.member(whose)) - held <= kTolerated;
+    return held > 0 && observer.steps_sent(observer.member(whose)) - held <= kTolerated;
   };
   const auto all_up_to_date = [&](AgentId who) {
     for (AgentId whose = 0; whose < 4; ++whose) {
@@ -48,8 +48,9 @@ TEST_F(Loss, InRealTimeLeavesNobodyBehindByMoreThanTheAnnouncedPeriods) {
     return true;
   };
   for (int round = 1; round <= 5; ++round) {
-    ASSERT_TRUE(observer.hears([&] { return observer.said(observer.member(0)) > 100 * round; }));
-    EXPECT_TRUE(observer.hears([&] {
+    ASSERT_TRUE(
+        observer.observes([&] { return observer.steps_sent(observer.member(0)) > 100 * round; }));
+    EXPECT_TRUE(observer.observes([&] {
       return all_up_to_date(0) && all_up_to_date(1) && all_up_to_date(2) && all_up_to_date(3);
     }));
   }

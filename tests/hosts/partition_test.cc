@@ -12,10 +12,10 @@ class Partition : public TeamOnHosts {
  protected:
   /// Steps of each of the four agents, as `observer` received them.
   using Coverage = std::array<std::int64_t, 4>;
-  static Coverage said(const BusObserver& observer) {
+  static Coverage coverage_sent(const BusObserver& observer) {
     Coverage coverage{};
     for (AgentId id = 0; id < 4; ++id) {
-      coverage[static_cast<std::size_t>(id)] = observer.said(observer.member(id));
+      coverage[static_cast<std::size_t>(id)] = observer.steps_sent(observer.member(id));
     }
     return coverage;
   }
@@ -32,7 +32,7 @@ class Partition : public TeamOnHosts {
            holds(observer, 2, coverage) && holds(observer, 3, coverage);
   }
   static bool agree_on(BusObserver& observer, const Coverage& coverage) {
-    return observer.hears([&] { return all_hold(observer, coverage); });
+    return observer.observes([&] { return all_hold(observer, coverage); });
   }
   /// The coverage of all agents so far and a little more.
   static Coverage more_than(Coverage coverage, std::int64_t steps) {
@@ -56,11 +56,11 @@ TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
   start_all_but_agents(mission(kEndless, kRealtime), GetParam());
   start_agents();
   BusObserver with_world = witness_on(1), cut_off = witness_on(2);
-  ASSERT_TRUE(agree_on(with_world, {1, 1, 1, 1})) << coordinator_->said();
+  ASSERT_TRUE(agree_on(with_world, {1, 1, 1, 1})) << coordinator_->printed();
   ASSERT_TRUE(agree_on(cut_off, {1, 1, 1, 1}));
 
   lan_->unplug(2);
-  const Coverage before = said(with_world);
+  const Coverage before = coverage_sent(with_world);
   ASSERT_TRUE(eventually([&] {
     with_world.listen();
     cut_off.listen();
@@ -74,10 +74,10 @@ TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
   EXPECT_TRUE(stands_still(2) && stands_still(3)) << "and the others do not";
   for (const AgentId id : {2, 3}) {
     EXPECT_EQ(cut_off.held(cut_off.member(5 - id), cut_off.member(id)),
-              cut_off.said(cut_off.member(id)))
+              cut_off.steps_sent(cut_off.member(id)))
         << "but each holds all that the other has";
   }
-  const Coverage apart = said(with_world), theirs = said(cut_off);
+  const Coverage apart = coverage_sent(with_world), theirs = coverage_sent(cut_off);
 
   lan_->heal();
   const Coverage all{apart[0], apart[1], theirs[2], theirs[3]};
@@ -89,21 +89,21 @@ TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
 TEST_F(Partition, InAChainOfHostsTheOneBetweenPassesOnWhatTheOthersCover) {
   start(mission(kEndless, kRealtime));
   BusObserver between = witness_on(1);
-  ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->said();
+  ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->printed();
   lan_->block(0, 2);
   lan_->block(2, 0);
-  EXPECT_TRUE(agree_on(between, more_than(said(between), 5 * kTicksPerSecond)));
+  EXPECT_TRUE(agree_on(between, more_than(coverage_sent(between), 5 * kTicksPerSecond)));
   lan_->heal();
-  EXPECT_TRUE(agree_on(between, more_than(said(between), kTicksPerSecond)));
+  EXPECT_TRUE(agree_on(between, more_than(coverage_sent(between), kTicksPerSecond)));
   expect_same_members_to_end_in_order();
 }
 
 TEST_F(Partition, AHostThatIsHeardButDoesNotHearAnotherGetsItsCoverageFromTheThird) {
   start(mission(kEndless, kRealtime));
   BusObserver between = witness_on(1);
-  ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->said();
+  ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->printed();
   lan_->block(0, 2);
-  EXPECT_TRUE(agree_on(between, more_than(said(between), 5 * kTicksPerSecond)));
+  EXPECT_TRUE(agree_on(between, more_than(coverage_sent(between), 5 * kTicksPerSecond)));
   lan_->heal();
   expect_same_members_to_end_in_order();
 }
@@ -111,9 +111,9 @@ TEST_F(Partition, AHostThatIsHeardButDoesNotHearAnotherGetsItsCoverageFromTheThi
 TEST_F(Partition, InLockstepEverybodyWaitsForACutOffHostAndNotABitChanges) {
   start(mission(kEndless));
   BusObserver observer = witness_on(1);
-  ASSERT_TRUE(recorded(30000)) << coordinator_->said();
+  ASSERT_TRUE(recorded(30000)) << coordinator_->printed();
   lan_->unplug(2);
-  ASSERT_TRUE(observer.hears([&] {
+  ASSERT_TRUE(observer.observes([&] {
     return observer.stands_still(observer.member(0)) && observer.stands_still(observer.member(1));
   }));
   lan_->heal();
@@ -126,16 +126,17 @@ TEST_F(Partition, AnAgentThatIsCutOffWhenTheMissionEndsDoesNotWaitForEver) {
   hold_next("ERGOCAST_WORLD_STATE", 100);
   start(mission("100", "pace: REALTIME realtime_factor: 20"));
   hold_none();
-  for (Program* agent : agents_) ASSERT_TRUE(agent->says(": running")) << agent->said();
-  ASSERT_TRUE(eventually([this] { return stopped({world_->child.pid()}); })) << world_->said();
+  for (Program* agent : agents_) ASSERT_TRUE(agent->prints(": running")) << agent->printed();
+  ASSERT_TRUE(eventually([this] { return stopped({world_->child.pid()}); })) << world_->printed();
   lan_->unplug(2);
   world_->child.send(SIGCONT);
   for (Program* program : {coordinator_, world_, logger_, agents_[0], agents_[1]}) {
-    EXPECT_EQ(wait_for(program->child), 0) << program->said();
+    EXPECT_EQ(wait_for(program->child), 0) << program->printed();
   }
   for (Program* agent : {agents_[2], agents_[3]}) {
-    EXPECT_EQ(wait_for(agent->child), 4) << agent->said();
-    EXPECT_TRUE(agent->says("neither the world nor the coordinator can be heard")) << agent->said();
+    EXPECT_EQ(wait_for(agent->child), 4) << agent->printed();
+    EXPECT_TRUE(agent->prints("neither the world nor the coordinator can be heard"))
+        << agent->printed();
   }
 }
 

@@ -13,11 +13,11 @@ TEST_F(Takeover, ACoordinatorOnAnotherHostTakesTheMissionOver) {
   start(file);
   hold_none();
   ASSERT_TRUE(eventually([this] { return stopped({agents_[3]->child.pid()}); }))
-      << coordinator_->said();
+      << coordinator_->printed();
   coordinator_->child.send(SIGKILL);
   wait_for(coordinator_->child);
   coordinator_ = &on(2, "ergocast-coordinator", {"--resume"});
-  ASSERT_TRUE(coordinator_->says("taken over")) << coordinator_->said();
+  ASSERT_TRUE(coordinator_->prints("taken over")) << coordinator_->printed();
   agents_[3]->child.send(SIGCONT);
   expect_all_to_end();
   expect_complete_record();
@@ -27,11 +27,11 @@ TEST_F(Takeover, ACoordinatorOnAnotherHostTakesTheMissionOver) {
 
 TEST_F(Takeover, AWorldOnAnotherHostGoesOnWhereTheAgentsWere) {
   start(mission(kEndless));
-  ASSERT_TRUE(recorded(30000)) << coordinator_->said();
+  ASSERT_TRUE(recorded(30000)) << coordinator_->printed();
   world_->child.send(SIGKILL);
   wait_for(world_->child);
   world_ = &on(0, "ergocast-sim");
-  ASSERT_TRUE(world_->says("moving from tick")) << world_->said();
+  ASSERT_TRUE(world_->prints("moving from tick")) << world_->printed();
   // States that only the killed world had may be missing in the record.
   expect_all_to_go_on_and_end_when_told();
 }
@@ -41,11 +41,11 @@ TEST_F(Takeover, TheSuccessorsOfADeadHostsAgentsGetBackWhatThoseHadCovered) {
   BusObserver observer = witness_on(1);
   const auto knows = [&](AgentId who, const Author& whose) {
     return observer.held(observer.member(who), whose) >=
-           std::max<std::int64_t>(1, observer.said(whose));
+           std::max<std::int64_t>(1, observer.steps_sent(whose));
   };
-  ASSERT_TRUE(observer.hears([&] {
+  ASSERT_TRUE(observer.observes([&] {
     return knows(0, observer.member(2)) && knows(0, observer.member(3));
-  })) << coordinator_->said();
+  })) << coordinator_->printed();
 
   const Author former[] = {observer.member(2), observer.member(3)};
   lan_->unplug(2);
@@ -54,15 +54,15 @@ TEST_F(Takeover, TheSuccessorsOfADeadHostsAgentsGetBackWhatThoseHadCovered) {
     wait_for(agents_[id]->child);
   }
   agents_ = {agents_[0], agents_[1], &agent_on(0, 2), &agent_on(1, 3)};
-  ASSERT_TRUE(observer.hears([&] {
+  ASSERT_TRUE(observer.observes([&] {
     const Author two = observer.member(2), three = observer.member(3);
-    return two != former[0] && three != former[1] && observer.said(two) > 50 &&
-           observer.said(three) > 50;
-  })) << coordinator_->said();
+    return two != former[0] && three != former[1] && observer.steps_sent(two) > 50 &&
+           observer.steps_sent(three) > 50;
+  })) << coordinator_->printed();
   for (const Author& dead : former) {
     for (const AgentId id : {0, 1, 2, 3}) {
-      EXPECT_TRUE(observer.hears([&] { return knows(id, dead); })) << id << " of " << dead.agent;
-      EXPECT_EQ(observer.held(observer.member(id), dead), observer.said(dead))
+      EXPECT_TRUE(observer.observes([&] { return knows(id, dead); })) << id << " of " << dead.agent;
+      EXPECT_EQ(observer.held(observer.member(id), dead), observer.steps_sent(dead))
           << "no more than that";
     }
   }

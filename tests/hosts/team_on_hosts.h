@@ -75,7 +75,7 @@ class TeamOnHosts : public OnHosts {
 
   /// The mission continues until it is stopped, and the record equals the simulation's.
   void expect_all_to_go_on_and_end_when_told() {
-    EXPECT_TRUE(moves_on()) << coordinator_->said();
+    EXPECT_TRUE(moves_on()) << coordinator_->printed();
     end_mission();
     expect_all_to_end();
     EXPECT_EQ(summary()["result"], "stopped") << summary()["reason"];
@@ -85,9 +85,9 @@ class TeamOnHosts : public OnHosts {
   /// All processes end by themselves, in order.
   void expect_all_to_end() {
     for (Program* program : {coordinator_, world_, logger_}) {
-      EXPECT_EQ(wait_for(program->child), 0) << program->said();
+      EXPECT_EQ(wait_for(program->child), 0) << program->printed();
     }
-    for (Program* agent : agents_) EXPECT_EQ(wait_for(agent->child), 0) << agent->said();
+    for (Program* agent : agents_) EXPECT_EQ(wait_for(agent->child), 0) << agent->printed();
   }
   void expect_complete_record() {
     EXPECT_EQ(summary()["result"], "done") << summary()["reason"];

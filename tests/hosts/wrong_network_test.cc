@@ -13,20 +13,20 @@ class WrongNetwork : public TeamOnHosts {
     std::swap(url_, url);
     agents_.push_back(&agent_on(2, 2));
     std::swap(url_, url);
-    for (Program* agent : agents_) EXPECT_TRUE(agent->says("joining on")) << agent->said();
+    for (Program* agent : agents_) EXPECT_TRUE(agent->prints("joining on")) << agent->printed();
     start_all_but_agents(mission("20", time));
   }
   void expect_agent_2_to_be_missing() {
-    EXPECT_EQ(wait_for(coordinator_->child), 4) << coordinator_->said();
-    EXPECT_TRUE(coordinator_->says("only 3 of the quorum of 4 agents were admitted; missing: 2"))
-        << coordinator_->said();
+    EXPECT_EQ(wait_for(coordinator_->child), 4) << coordinator_->printed();
+    EXPECT_TRUE(coordinator_->prints("only 3 of the quorum of 4 agents were admitted; missing: 2"))
+        << coordinator_->printed();
   }
   void expect_agent_2_to_join_once_mended() {
     start_team("admission_timeout_s: 600", url_);
-    ASSERT_TRUE(coordinator_->says("agent 3")) << coordinator_->said();
+    ASSERT_TRUE(coordinator_->prints("agent 3")) << coordinator_->printed();
     lan_->route_multicast(2, "eth0");
-    EXPECT_TRUE(agents_.back()->says("listening on another network interface"))
-        << agents_.back()->said();
+    EXPECT_TRUE(agents_.back()->prints("listening on another network interface"))
+        << agents_.back()->printed();
     expect_all_to_end();
     expect_complete_record();
   }
@@ -58,8 +58,8 @@ TEST_F(WrongNetwork, AnAgentWithATtlOfZeroIsMissed) {
 TEST_F(WrongNetwork, AnAgentWithoutAMulticastRouteSaysWhatIsWrong) {
   lan_->route_multicast(2, "");
   Program& agent = agent_on(2, 0);
-  EXPECT_EQ(wait_for(agent.child), 3) << agent.said();
-  EXPECT_TRUE(agent.says("ip route add 224.0.0.0/4")) << agent.said();
+  EXPECT_EQ(wait_for(agent.child), 3) << agent.printed();
+  EXPECT_TRUE(agent.prints("ip route add 224.0.0.0/4")) << agent.printed();
 }
 
 TEST_F(WrongNetwork, AnAgentWhoseFirewallDropsOneBusSaysWhich) {
@@ -73,9 +73,9 @@ TEST_F(WrongNetwork, AnAgentWhoseFirewallDropsOneBusSaysWhich) {
     ASSERT_EQ(std::system(drop.c_str()), 0);
   }
   Program& agent = agent_on(2, 0);
-  EXPECT_EQ(wait_for(agent.child), 3) << agent.said();
-  EXPECT_TRUE(agent.says(url.of(Bus::kWorld) + ": LCM's self test failed")) << agent.said();
-  EXPECT_TRUE(agent.says("nft list ruleset")) << agent.said();
+  EXPECT_EQ(wait_for(agent.child), 3) << agent.printed();
+  EXPECT_TRUE(agent.prints(url.of(Bus::kWorld) + ": LCM's self test failed")) << agent.printed();
+  EXPECT_TRUE(agent.prints("nft list ruleset")) << agent.printed();
 }
 
 }  // namespace

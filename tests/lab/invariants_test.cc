@@ -91,7 +91,7 @@ class InvariantsTest : public ::testing::Test {
     team.received(one, MissionPart());
     one.roster = &later;
     team.received(one, MissionPart());
-    const auto hear = [&](Tick tick, std::int64_t steps) {
+    const auto receive = [&](Tick tick, std::int64_t steps) {
       cover(other, kTwo, 1, static_cast<double>(steps) / 10);
       for (const int b : {1, 0}) {
         Contribution block = other.block(kTwo, b);
@@ -103,9 +103,9 @@ class InvariantsTest : public ::testing::Test {
     };
     cover(table, kOne, 80);
     cover(other, kTwo, 50);
-    hear(83, 51);
+    receive(83, 51);
     cover(other, kTwo, 3, 9);
-    hear(86, 55);
+    receive(86, 55);
     const Outgoing seen = world(88, {7, 3, 0});
     WorldState state = std::get<WorldState>(seen.message);
     state.vehicles[0].id = kTwo.agent;
@@ -392,7 +392,7 @@ TEST_F(InvariantsTest, RelaysStopOnceAllKnowAll) {
 TEST_F(InvariantsTest, TheMissionEndsWell) {
   RunFacts good;
   good.ergodic_metric_last = 0.1;
-  const auto said = [&](const std::string& running, const std::string& failure, Tick tick,
+  const auto sent = [&](const std::string& running, const std::string& failure, Tick tick,
                         double metric, Tick recorded = 100, Tick excused = 0) {
     Invariants team(mission_);
     team.sent(0, world(tick, {1, 1, 0}), nullptr);
@@ -402,14 +402,14 @@ TEST_F(InvariantsTest, TheMissionEndsWell) {
     team.ended(1, running, failure, facts, excused);
     return violated_by(team);
   };
-  EXPECT_EQ(said("", "", 100, 0.1), "");
-  EXPECT_EQ(said("agent 1", "", 100, 0.1), "everybody ends");
-  EXPECT_EQ(said("", "bad luck", 100, 0.1), "the mission does not fail");
-  EXPECT_EQ(said("", "", 99, 0.1), "the mission reaches its last tick");
-  EXPECT_EQ(said("", "", 100, 0.1, 0), "the record has every tick");
-  EXPECT_EQ(said("", "", 100, 0.1, 79, 20), "the record has every tick");
-  EXPECT_EQ(said("", "", 100, 0.1, 80, 20), "");
-  EXPECT_EQ(said("", "", 100, 0.2), "the goal is reached");
+  EXPECT_EQ(sent("", "", 100, 0.1), "");
+  EXPECT_EQ(sent("agent 1", "", 100, 0.1), "everybody ends");
+  EXPECT_EQ(sent("", "bad luck", 100, 0.1), "the mission does not fail");
+  EXPECT_EQ(sent("", "", 99, 0.1), "the mission reaches its last tick");
+  EXPECT_EQ(sent("", "", 100, 0.1, 0), "the record has every tick");
+  EXPECT_EQ(sent("", "", 100, 0.1, 79, 20), "the record has every tick");
+  EXPECT_EQ(sent("", "", 100, 0.1, 80, 20), "");
+  EXPECT_EQ(sent("", "", 100, 0.2), "the goal is reached");
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ Scenario team(Pace pace, const std::string& name = "faulty_team", const std::str
       name, overrides));
 }
 
-struct Outcome {
+struct RecordedRun {
   std::vector<std::vector<std::string>> rows, metrics;
   RunFacts facts;
   Tick last = 0;
@@ -49,7 +49,7 @@ std::vector<std::vector<std::string>> table_of(const std::string& text) {
   return rows;
 }
 
-Outcome simulated(const Mission& mission, std::vector<Hold> holds) {
+RecordedRun simulated(const Mission& mission, std::vector<Hold> holds) {
   std::ostringstream trajectory, metrics;
   lab::Simulation simulation({.plan = encode_plan(mission), .holds = std::move(holds)}, trajectory,
                              metrics);
@@ -80,7 +80,7 @@ class PausedLockstep : public ::testing::TestWithParam<Law> {};
 TEST_P(PausedLockstep, IsTheSameMissionWithTicksInBetween) {
   const Mission mission =
       team(Pace::kLockstep, "faulty_team", GetParam().part, GetParam().more).mission();
-  const Outcome through = simulated(mission, {}), paused = simulated(mission, kHolds);
+  const RecordedRun through = simulated(mission, {}), paused = simulated(mission, kHolds);
   EXPECT_EQ(counted(paused.rows, kHolds), counted(through.rows, {}));
   EXPECT_EQ(through.last, 300);
   EXPECT_EQ(paused.last, 300 + 3 + 1 + 31 + 9 + 41);
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Law{"time {", " contribution_encoding: FIXED16 high_mode_period_factor: 3"}));
 
 TEST(PausedLockstep, StandsStillInEveryHeldTick) {
-  const Outcome paused = simulated(team(Pace::kLockstep).mission(), kHolds);
+  const RecordedRun paused = simulated(team(Pace::kLockstep).mission(), kHolds);
   int held = 0;
   for (const auto& row : paused.rows) {
     if (!is_held(kHolds, std::stoll(row[0]))) continue;

@@ -47,7 +47,7 @@ class Author16 {
 
   /// What it has said by the end of so many ticks, as it arrives.
   std::vector<Contribution> run_ticks(Tick ticks, Tick period) {
-    std::vector<Contribution> said;
+    std::vector<Contribution> sent;
     std::vector<Contribution> before(static_cast<std::size_t>(table_.block_count()));
     for (Tick tick = 0; tick < ticks; ++tick) {
       table_.add_sample(author_, BasisAt(place(author_.agent, tick), kDomain, modes()));
@@ -62,11 +62,11 @@ class Author16 {
         const std::span<double> gains = block.gains.set_all(block.sums.size());
         for (std::size_t k = 0; k < gains.size(); ++k)
           gains[k] = block.sums[k] - last.sums.data()[k];
-        said.push_back(arrived(block));
+        sent.push_back(arrived(block));
         last = block;
       }
     }
-    return said;
+    return sent;
   }
   static Contribution arrived(const Contribution& block) {
     return decoded_as<Contribution>(encoded(block));
@@ -129,16 +129,16 @@ void expect_same(const CoverageTable& a, const CoverageTable& b) {
 }
 
 TEST(Fixed16, MergesInAnyOrderAndAnyNumberOfTimes) {
-  std::vector<Contribution> said;
+  std::vector<Contribution> sent;
   for (AgentId id = 0; id < 3; ++id) {
     const auto more = Author16(id).run_ticks(20, 2);
-    said.insert(said.end(), more.begin(), more.end());
+    sent.insert(sent.end(), more.begin(), more.end());
   }
   CoverageTable in_order = rounded_table();
-  for (const Contribution& block : said) in_order.merge(block, kManySteps);
+  for (const Contribution& block : sent) in_order.merge(block, kManySteps);
   for (std::uint64_t shuffle = 0; shuffle < 20; ++shuffle) {
-    std::vector<Contribution> heard = said;
-    heard.insert(heard.end(), said.begin(), said.end());
+    std::vector<Contribution> heard = sent;
+    heard.insert(heard.end(), sent.begin(), sent.end());
     for (std::size_t i = heard.size(); i > 1; --i) {
       std::swap(heard[i - 1], heard[random_words(shuffle, Purpose::kFault, 1, i).first % i]);
     }

@@ -172,10 +172,10 @@ TEST(Codec, SecondControlCharactersAreRefusedInUtf8AndOtherCharactersAreNot) {
 }
 
 TEST(Codec, WhatWeSayOurselvesMeansNothingToATerminal) {
-  const Stop said{header_of_sender(kOperator), true,
+  const Stop sent{header_of_sender(kOperator), true,
                   "a\x1b[2J b\xC2\x9B"
                   "2J \xC3\xA9 \x9B"};
-  EXPECT_EQ(decoded_as<Stop>(encoded(said)).reason, "a [2J b 2J \xC3\xA9 \x9B");
+  EXPECT_EQ(decoded_as<Stop>(encoded(sent)).reason, "a [2J b 2J \xC3\xA9 \x9B");
 }
 
 TEST(Codec, StringsLongerThanTheirLimitAreRefusedEvenIfTheBytesAreThere) {

@@ -127,14 +127,14 @@ TEST(MessageAuthenticator, AMemberCannotSpeakForTheCoordinator) {
 }
 
 TEST(MessageAuthenticator, AMemberRepeatsWhatTheCoordinatorSignedButCannotChangeIt) {
-  const Message said = unsigned_copy(mission_part());
-  const Bytes bytes = authenticated(said, kCoordinatorAuthenticator);
-  const auto decoded = decode(bytes, kRun, kMemberAuthenticator, channel_of(said));
+  const Message sent = unsigned_copy(mission_part());
+  const Bytes bytes = authenticated(sent, kCoordinatorAuthenticator);
+  const auto decoded = decode(bytes, kRun, kMemberAuthenticator, channel_of(sent));
   auto part = std::get<MissionPart>(std::get<Message>(decoded));
   EXPECT_EQ(authenticated(part, kMemberAuthenticator), bytes);
   part.revision += 1;
   EXPECT_EQ(
-      opened(authenticated(part, kMemberAuthenticator), kMemberAuthenticator, channel_of(said)),
+      opened(authenticated(part, kMemberAuthenticator), kMemberAuthenticator, channel_of(sent)),
       "unsigned");
 }
 
@@ -159,9 +159,9 @@ MessageAuthenticator obeying_another() {
 }
 
 TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
-  const Message said = unsigned_copy(mission_part());
-  const Bytes bytes = authenticated(said, kCoordinatorAuthenticator);
-  const std::string& channel = channel_of(said);
+  const Message sent = unsigned_copy(mission_part());
+  const Bytes bytes = authenticated(sent, kCoordinatorAuthenticator);
+  const std::string& channel = channel_of(sent);
   KnownSignatures known;
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "unsigned");
   EXPECT_EQ(verdict(decode(bytes, kRun, kMemberAuthenticator, channel, &known)), "accepted");
@@ -170,21 +170,21 @@ TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
 }
 
 TEST(KnownSignatures, WhatIsRefusedIsNotRemembered) {
-  const Message said = unsigned_copy(mission_part());
-  const std::string& channel = channel_of(said);
-  const Bytes forged = authenticated(said, kMemberAuthenticator);
+  const Message sent = unsigned_copy(mission_part());
+  const std::string& channel = channel_of(sent);
+  const Bytes forged = authenticated(sent, kMemberAuthenticator);
   KnownSignatures known;
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(verdict(decode(forged, kRun, kMemberAuthenticator, channel, &known)), "unsigned");
   }
-  const Bytes good = authenticated(said, kCoordinatorAuthenticator);
+  const Bytes good = authenticated(sent, kCoordinatorAuthenticator);
   EXPECT_EQ(verdict(decode(good, kRun, kMemberAuthenticator, channel, &known)), "accepted");
 }
 
 TEST(KnownSignatures, AKnownTagMakesNoOtherBytesAcceptable) {
-  const Message said = unsigned_copy(mission_part());
-  const std::string& channel = channel_of(said);
-  const Bytes good = authenticated(said, kCoordinatorAuthenticator);
+  const Message sent = unsigned_copy(mission_part());
+  const std::string& channel = channel_of(sent);
+  const Bytes good = authenticated(sent, kCoordinatorAuthenticator);
   KnownSignatures known;
   ASSERT_EQ(verdict(decode(good, kRun, kMemberAuthenticator, channel, &known)), "accepted");
   for (std::size_t at = 0; at < good.size(); ++at) {

@@ -67,19 +67,19 @@ std::map<std::string, std::vector<Names>> documented() {
 }
 
 TEST(Subscriptions, AreThoseOfTheDocument) {
-  const auto said = documented();
-  EXPECT_EQ(said.size(), kMessageTypeCount);
+  const auto sent = documented();
+  EXPECT_EQ(sent.size(), kMessageTypeCount);
   for (std::size_t type = 0; type < kMessageTypeCount; ++type) {
     const ChannelName& name = channel_names()[type];
     const std::string channel = std::string(name.text) + (name.per_agent ? "<id>" : "");
-    ASSERT_TRUE(said.contains(channel)) << channel;
+    ASSERT_TRUE(sent.contains(channel)) << channel;
     for (std::size_t bus = 0; bus < kBusCount; ++bus) {
-      Names hear;
+      Names types;
       for (std::size_t role = 0; role < kRoleCount; ++role) {
-        if ((kSubscriptions[role][bus] >> type & 1) != 0) hear.insert(kNames[role]);
+        if ((kSubscriptions[role][bus] >> type & 1) != 0) types.insert(kNames[role]);
       }
-      EXPECT_EQ(hear.erase(""), 1U) << "the logger hears everything, also " << channel;
-      EXPECT_EQ(said.at(channel)[bus], hear) << channel << " on bus " << bus;
+      EXPECT_EQ(types.erase(""), 1U) << "the logger hears everything, also " << channel;
+      EXPECT_EQ(sent.at(channel)[bus], types) << channel << " on bus " << bus;
     }
   }
 }
@@ -89,7 +89,7 @@ TEST(Subscriptions, AreTheChannelsOfTheirTypesAndNoOthers) {
     for (std::size_t bus = 0; bus < kBusCount; ++bus) {
       for (const Message& message : every_message()) {
         EXPECT_EQ(is_channel_of(subscriptions[bus], channel_of(message)),
-                  hears(subscriptions, static_cast<Bus>(bus), message))
+                  subscribes(subscriptions, static_cast<Bus>(bus), message))
             << channel_of(message) << " on bus " << bus;
       }
       for (const char* nobodys : {"", "ERGOCAST_", "ERGOCAST_SOMETHING", "ERGOCAST_HELLO_",

@@ -33,7 +33,7 @@ WorldState part_of(AgentId id, int robots, Tick tick) {
 TEST(RecordOfDrivers, JoinsWhatTheySay) {
   Record record(driven(3));
   for (Tick tick = 0; tick < 10; ++tick) {
-    for (const AgentId id : {2, 0, 1}) record.tell(part_of(id, 3, tick), at(tick * 100ms));
+    for (const AgentId id : {2, 0, 1}) record.deliver(part_of(id, 3, tick), at(tick * 100ms));
   }
   const auto rows = record.trajectory_rows();
   ASSERT_EQ(rows.size(), 9u * 3);
@@ -47,7 +47,8 @@ TEST(RecordOfDrivers, HasTheOthersRowsWhereOneIsNotHeard) {
   Record record(driven(3));
   for (Tick tick = 0; tick < 40; ++tick) {
     for (const AgentId id : {2, 0, 1}) {
-      if (id != 1 || tick < 10 || tick >= 20) record.tell(part_of(id, 3, tick), at(tick * 100ms));
+      if (id != 1 || tick < 10 || tick >= 20)
+        record.deliver(part_of(id, 3, tick), at(tick * 100ms));
     }
   }
   record.recorder.stop("enough");

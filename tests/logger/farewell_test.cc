@@ -12,20 +12,20 @@ using namespace test;
 class LastWords : public ::testing::Test {
  protected:
   void record_until(Tick last) {
-    for (Tick tick = 0; tick <= last; ++tick) record_.tell(state_of(tick), at(1s));
+    for (Tick tick = 0; tick <= last; ++tick) record_.deliver(state_of(tick), at(1s));
   }
   void mission_ends(MissionState state = MissionState::kEnded) {
-    record_.tell(mission_part(1, state, roster_of(1), "why"), at(1s));
+    record_.deliver(mission_part(1, state, roster_of(1), "why"), at(1s));
   }
   void agent_leaves() {
     AgentStatus status = status_of(0, next_sequence());
     status.phase = AgentPhase::kFinished;
-    said_ = record_.tell(status, at(1s));
+    said_ = record_.deliver(status, at(1s));
   }
   void world_leaves(Tick tick) {
     WorldState last = state_of(tick);
     last.last = true;
-    said_ = record_.tell(last, at(1s));
+    said_ = record_.deliver(last, at(1s));
   }
   bool left() const { return record_.recorder.finished(); }
 
@@ -52,27 +52,27 @@ TEST_F(LastWords, InWhateverOrderTheyLeave) {
   const WorldState overtaken[] = {state_of(0), state_of(1)};
   world_leaves(2), agent_leaves(), mission_ends();
   EXPECT_FALSE(left()) << "it lacks states";
-  for (const WorldState& state : overtaken) record_.tell(state, at(1s));
+  for (const WorldState& state : overtaken) record_.deliver(state, at(1s));
   EXPECT_TRUE(left());
   EXPECT_EQ(record_.trajectory_rows().size(), 2u);
 }
 
 TEST_F(LastWords, TheLastRowIsAcknowledgedAtOnce) {
-  for (Tick tick = 0; tick < 2; ++tick) record_.tell(state_of(tick), at(1s));
-  EXPECT_EQ(acks(record_.tell(state_of(2), at(1s))), (std::vector<Tick>{1}));
+  for (Tick tick = 0; tick < 2; ++tick) record_.deliver(state_of(tick), at(1s));
+  EXPECT_EQ(acks(record_.deliver(state_of(2), at(1s))), (std::vector<Tick>{1}));
 }
 
 TEST_F(LastWords, AfterASecondIfAnyOfThemIsNotHeard) {
   for (const int unheard : {0, 1, 2}) {
     Record record(mission_);
-    for (Tick tick = 0; tick <= 2; ++tick) record.tell(state_of(tick), at(1s));
+    for (Tick tick = 0; tick <= 2; ++tick) record.deliver(state_of(tick), at(1s));
     AgentStatus status = status_of(0, next_sequence());
     status.phase = unheard == 0 ? AgentPhase::kRunning : AgentPhase::kFinished;
-    record.tell(status, at(1s));
-    if (unheard != 1) record.tell(mission_part(1, MissionState::kEnded, roster_of(1)), at(1s));
+    record.deliver(status, at(1s));
+    if (unheard != 1) record.deliver(mission_part(1, MissionState::kEnded, roster_of(1)), at(1s));
     WorldState last = state_of(2);
     last.last = unheard != 2;
-    record.tell(last, at(1s));
+    record.deliver(last, at(1s));
     advance(record.recorder, at(1999ms));
     EXPECT_FALSE(record.recorder.finished()) << unheard;
     advance(record.recorder, at(2s));
@@ -81,7 +81,7 @@ TEST_F(LastWords, AfterASecondIfAnyOfThemIsNotHeard) {
 }
 
 TEST_F(LastWords, AfterASecondIfAStateIsMissing) {
-  record_.tell(state_of(0), at(1s));
+  record_.deliver(state_of(0), at(1s));
   mission_ends(), agent_leaves(), world_leaves(2);
   EXPECT_FALSE(left());
   advance(record_.recorder, at(2s));

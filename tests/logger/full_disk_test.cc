@@ -26,11 +26,11 @@ void free_space(Record& record, Instant now) {
 
 TEST(FullDisk, NothingIsAcknowledgedThatIsNotWritten) {
   Record record(long_mission(Pace::kLockstep));
-  for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
   fill(record);
-  Outbox said;
-  for (Tick tick = 11; tick <= 60; ++tick) said = record.tell(state_of(tick), at(1s));
-  EXPECT_TRUE(acks(said).empty());
+  Outbox sent;
+  for (Tick tick = 11; tick <= 60; ++tick) sent = record.deliver(state_of(tick), at(1s));
+  EXPECT_TRUE(acks(sent).empty());
   EXPECT_TRUE(acks(advance(record.recorder, at(5s))).empty());
   EXPECT_EQ(record.trajectory_rows().size(), 10U);
 }
@@ -38,29 +38,29 @@ TEST(FullDisk, NothingIsAcknowledgedThatIsNotWritten) {
 TEST(FullDisk, WhatWasStillHeldIsWrittenAfterwards) {
   Record record(long_mission(Pace::kLockstep)), untroubled(long_mission(Pace::kLockstep));
   for (Tick tick = 0; tick <= 70; ++tick) {
-    untroubled.tell(state_of(tick));
+    untroubled.deliver(state_of(tick));
     if (tick == 10) fill(record);
-    record.tell(state_of(tick));
+    record.deliver(state_of(tick));
   }
   free_space(record, at(3s));
-  const Outbox said = advance(record.recorder, at(3s));
-  EXPECT_EQ(acks(said), std::vector<Tick>{69});
-  EXPECT_NE(incarnation_of(said), kLoggerLife) << "a world that gave it up takes it back";
+  const Outbox sent = advance(record.recorder, at(3s));
+  EXPECT_EQ(acks(sent), std::vector<Tick>{69});
+  EXPECT_NE(incarnation_of(sent), kLoggerLife) << "a world that gave it up takes it back";
   EXPECT_EQ(record.trajectory.str(), untroubled.trajectory.str());
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }
 
 TEST(FullDisk, InLockstepTheRecordGoesOnWhereTheTeamIsAndCountsTheGap) {
   Record record(long_mission(Pace::kLockstep));
-  for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
   fill(record);
-  for (Tick tick = 11; tick <= 5000; ++tick) record.tell(state_of(tick), at(59s));
+  for (Tick tick = 11; tick <= 5000; ++tick) record.deliver(state_of(tick), at(59s));
   free_space(record, at(60s));
   advance(record.recorder, at(60s));
   // Its buffered ticks, 1024 from the first missing one on; then the world's repeats, after a
   // while.
-  record.tell(state_of(5000), at(61s));
-  EXPECT_EQ(acks(record.tell(state_of(5001), at(62s))), std::vector<Tick>{5000});
+  record.deliver(state_of(5000), at(61s));
+  EXPECT_EQ(acks(record.deliver(state_of(5001), at(62s))), std::vector<Tick>{5000});
   const auto rows = record.trajectory_rows();
   const auto ticks = static_cast<Tick>(rows.size());
   EXPECT_EQ(number(rows.back(), 0), 5000);
@@ -71,11 +71,11 @@ TEST(FullDisk, InLockstepTheRecordGoesOnWhereTheTeamIsAndCountsTheGap) {
 
 TEST(FullDisk, InRealTimeTheRecordGoesOnWhereTheTeamIsAndCountsTheGap) {
   Record record(long_mission(Pace::kRealtime));
-  for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
   fill(record);
-  for (Tick tick = 11; tick <= 5000; ++tick) record.tell(state_of(tick), at(1s));
+  for (Tick tick = 11; tick <= 5000; ++tick) record.deliver(state_of(tick), at(1s));
   free_space(record, at(60s));
-  for (Tick tick = 5001; tick <= 5100; ++tick) record.tell(state_of(tick), at(61s));
+  for (Tick tick = 5001; tick <= 5100; ++tick) record.deliver(state_of(tick), at(61s));
   const auto rows = record.trajectory_rows();
   const auto ticks = static_cast<Tick>(rows.size());
   EXPECT_EQ(number(rows.back(), 0), 5099);
@@ -86,24 +86,24 @@ TEST(FullDisk, InRealTimeTheRecordGoesOnWhereTheTeamIsAndCountsTheGap) {
 
 TEST(Statuses, OfNoMoreLivesThanThereCanBeAreKept) {
   Record record(long_mission(Pace::kLockstep));
-  const auto hear = [&](Incarnation life, std::int64_t sequence) {
+  const auto receive = [&](Incarnation life, std::int64_t sequence) {
     AgentStatus status = status_of(1, sequence);
     status.header.incarnation = life;
-    record.tell(status);
+    record.deliver(status);
   };
-  for (Incarnation life = 1; life <= Liveness::kMaxIncarnations + 1; ++life) hear(life, 1);
+  for (Incarnation life = 1; life <= Liveness::kMaxIncarnations + 1; ++life) receive(life, 1);
   EXPECT_EQ(record.recorder.statuses().size(), Liveness::kMaxIncarnations - 1)
       << "and the coordinator";
-  hear(1, 2);
+  receive(1, 2);
   EXPECT_EQ(record.recorder.statuses().at({1, 1}).header.sequence, 2) << "of those it goes on";
 }
 
 TEST(FullDisk, UntilTheEndOfTheMissionTheRecordIsWhatFitted) {
   Record record(long_mission(Pace::kLockstep));
-  for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
   fill(record);
-  for (Tick tick = 11; tick <= 60; ++tick) record.tell(state_of(tick), at(1s));
-  record.tell(mission_part(1, MissionState::kEnded, roster_of(1)), at(2s));
+  for (Tick tick = 11; tick <= 60; ++tick) record.deliver(state_of(tick), at(1s));
+  record.deliver(mission_part(1, MissionState::kEnded, roster_of(1)), at(2s));
   advance(record.recorder, at(10s));
   EXPECT_TRUE(record.recorder.finished());
   EXPECT_STREQ(record.recorder.result(), "stopped");

@@ -35,7 +35,7 @@ struct Record {
     give(recorder, mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
   }
 
-  Outbox tell(const Message& message, Instant now = at(0s)) {
+  Outbox deliver(const Message& message, Instant now = at(0s)) {
     give(recorder, message, now);
     return advance(recorder, now);
   }

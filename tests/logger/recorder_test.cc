@@ -19,10 +19,10 @@ using namespace test;
 
 TEST(Trajectory, RowNHoldsThePlaceOfTickNAndTheCommandAppliedThere) {
   Record record(small_mission(1));
-  record.tell(state_of(0, {100, 500, 0}, {0, 0, 0}));
+  record.deliver(state_of(0, {100, 500, 0}, {0, 0, 0}));
   EXPECT_TRUE(record.trajectory_rows().empty()) << "the command of tick 0 is not known yet";
-  record.tell(state_of(1, {101, 502, 0}, {10, 20, 0}));
-  record.tell(state_of(2, {104, 506, 0}, {30, 40, 0}));
+  record.deliver(state_of(1, {101, 502, 0}, {10, 20, 0}));
+  record.deliver(state_of(2, {104, 506, 0}, {30, 40, 0}));
   EXPECT_EQ(record.trajectory.str(),
             "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps\n"
             "0,0,0,100,500,10,20\n"
@@ -39,7 +39,7 @@ TEST(Trajectory, EveryNumberReadsBackBitForBit) {
     const double scale = std::pow(10, -static_cast<double>(tick % 20));
     places.push_back(on_ground(2000 * uniform_pair(1, Purpose::kStart, 0, step) * scale));
     commands.push_back(on_ground(normal_pair(1, Purpose::kStart, 1, step) * scale));
-    record.tell(state_of(tick, places.back(), commands.back()));
+    record.deliver(state_of(tick, places.back(), commands.back()));
   }
   const auto rows = record.trajectory_rows();
   ASSERT_EQ(rows.size(), 200u);
@@ -54,8 +54,8 @@ TEST(Trajectory, EveryNumberReadsBackBitForBit) {
 
 TEST(Trajectory, RowsComeInOrderWhateverTheOrderOfArrival) {
   Record in_order(small_mission(1)), shuffled(small_mission(1));
-  for (Tick tick = 0; tick <= 5; ++tick) in_order.tell(state_of(tick));
-  for (const Tick tick : {3, 1, 1, 5, 0, 4, 3, 2, 0}) shuffled.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 5; ++tick) in_order.deliver(state_of(tick));
+  for (const Tick tick : {3, 1, 1, 5, 0, 4, 3, 2, 0}) shuffled.deliver(state_of(tick));
   ASSERT_EQ(in_order.trajectory_rows().size(), 5u);
   EXPECT_EQ(shuffled.trajectory.str(), in_order.trajectory.str());
   EXPECT_EQ(shuffled.metrics.str(), in_order.metrics.str());
@@ -71,11 +71,11 @@ TEST(Trajectory, WaitsForEveryPartOfAState) {
     state.parts = 2;
     return state;
   };
-  record.tell(part_of(0, 0));
-  record.tell(part_of(1, 0));
-  record.tell(part_of(1, 1));
+  record.deliver(part_of(0, 0));
+  record.deliver(part_of(1, 0));
+  record.deliver(part_of(1, 1));
   EXPECT_TRUE(record.trajectory_rows().empty());
-  record.tell(part_of(0, 1));
+  record.deliver(part_of(0, 1));
   const auto rows = record.trajectory_rows();
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(columns(rows[0])[2], "0");
@@ -86,8 +86,8 @@ TEST(Trajectory, EndsWithTheLastTicksRow) {
   Mission mission = small_mission(1);
   mission.timing.tick_count = 3;
   Record record(mission);
-  for (Tick tick = 0; tick <= 3; ++tick) record.tell(state_of(tick));
-  record.tell(state_of(4));
+  for (Tick tick = 0; tick <= 3; ++tick) record.deliver(state_of(tick));
+  record.deliver(state_of(4));
   EXPECT_EQ(record.trajectory_rows().size(), 3u);
   EXPECT_EQ(record.recorder.facts().ticks, 3);
   EXPECT_EQ(record.recorder.facts().gaps, 0);
@@ -98,19 +98,19 @@ TEST(Trajectory, MissesNoRowForStatesBeyondThePlan) {
   mission.timing.tick_count = 3;
   mission.timing.pace = Pace::kRealtime;
   Record record(mission);
-  record.tell(state_of(0));
-  for (Tick tick = 4; tick < 100; ++tick) record.tell(state_of(tick));
-  for (Tick tick = 1; tick <= 3; ++tick) record.tell(state_of(tick));
+  record.deliver(state_of(0));
+  for (Tick tick = 4; tick < 100; ++tick) record.deliver(state_of(tick));
+  for (Tick tick = 1; tick <= 3; ++tick) record.deliver(state_of(tick));
   EXPECT_EQ(record.trajectory_rows().size(), 3u);
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }
 
 TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
   Record record(small_mission(1));
-  record.tell(state_of(1025, {1, 1, 0}, {0, 0, 0}));
-  record.tell(state_of(Tick{1} << 48, {1, 1, 0}, {0, 0, 0}));
-  record.tell(state_of(0));
-  record.tell(state_of(1));
+  record.deliver(state_of(1025, {1, 1, 0}, {0, 0, 0}));
+  record.deliver(state_of(Tick{1} << 48, {1, 1, 0}, {0, 0, 0}));
+  record.deliver(state_of(0));
+  record.deliver(state_of(1));
   EXPECT_EQ(record.trajectory_rows().size(), 1u);
 }
 
@@ -127,10 +127,10 @@ TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
 
 TEST(Acknowledgement, ComesEverySixteenRowsAndEveryTenthOfASecond) {
   Record record(small_mission(1));
-  EXPECT_EQ(acks(record.tell(state_of(0))), (std::vector<Tick>{-1}));
+  EXPECT_EQ(acks(record.deliver(state_of(0))), (std::vector<Tick>{-1}));
   std::vector<Tick> all;
   for (Tick tick = 1; tick <= 50; ++tick) {
-    for (const Tick ack : acks(record.tell(state_of(tick)))) all.push_back(ack);
+    for (const Tick ack : acks(record.deliver(state_of(tick)))) all.push_back(ack);
   }
   EXPECT_EQ(all, (std::vector<Tick>{15, 31, 47}));
   EXPECT_TRUE(acks(advance(record.recorder, at(99ms))).empty());
@@ -141,12 +141,12 @@ TEST(Acknowledgement, ComesEverySixteenRowsAndEveryTenthOfASecond) {
 
 TEST(Acknowledgement, NeverNamesATickThatIsNotWritten) {
   Record record(small_mission(1));
-  record.tell(state_of(0));
-  record.tell(state_of(1));
+  record.deliver(state_of(0));
+  record.deliver(state_of(1));
   for (Tick tick = 3; tick < 40; ++tick) {
-    for (const Tick ack : acks(record.tell(state_of(tick), at(tick * 1s)))) EXPECT_LE(ack, 0);
+    for (const Tick ack : acks(record.deliver(state_of(tick), at(tick * 1s)))) EXPECT_LE(ack, 0);
   }
-  record.tell(state_of(2), at(50s));
+  record.deliver(state_of(2), at(50s));
   EXPECT_EQ(acks(advance(record.recorder, at(51s))), (std::vector<Tick>{38}));
 }
 
@@ -155,11 +155,11 @@ TEST(Acknowledgement, NeverNamesATickThatIsNotWritten) {
 TEST(Gap, InLockstepTheRecordWaitsForTheMissingStateBecauseItIsRepeated) {
   Record record(small_mission(1));
   for (Tick tick = 0; tick <= 60; ++tick) {
-    if (tick != 3) record.tell(state_of(tick));
+    if (tick != 3) record.deliver(state_of(tick));
   }
   advance(record.recorder, at(30s));
   EXPECT_EQ(record.recorder.next_row(), 2);
-  record.tell(state_of(3), at(30s));
+  record.deliver(state_of(3), at(30s));
   EXPECT_EQ(record.recorder.next_row(), 60);
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }
@@ -169,24 +169,24 @@ TEST(Gap, InLockstepARecorderThatWasCutOffAndGivenUpComesBackAndCountsTheRowsItL
   mission.timing.tick_count = 10000;
   Record record(mission);
   const auto patience = seconds(mission.timing.lockstep_timeout_s / 2);
-  for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
   // The world has continued meanwhile, further than it would with a logger.
-  record.tell(state_of(500), at(1s));
+  record.deliver(state_of(500), at(1s));
   EXPECT_EQ(record.recorder.next_row(), 10) << "it may still be waiting for us";
   const Instant back = at(seconds(1)) + patience;
-  const Outbox said = record.tell(state_of(501), back);
-  ASSERT_EQ(acks(said).size(), 1U);
-  EXPECT_NE(header_of(said.front().message).incarnation, kLoggerLife)
+  const Outbox sent = record.deliver(state_of(501), back);
+  ASSERT_EQ(acks(sent).size(), 1U);
+  EXPECT_NE(header_of(sent.front().message).incarnation, kLoggerLife)
       << "as somebody whom it takes back";
-  record.tell(state_of(502), back + seconds(1));
-  record.tell(state_of(503), back + seconds(2));
+  record.deliver(state_of(502), back + seconds(1));
+  record.deliver(state_of(503), back + seconds(2));
   EXPECT_EQ(number(record.trajectory_rows().back(), 0), 502);
   EXPECT_EQ(record.recorder.facts().gaps, 490);
 }
 
 TEST(Gap, InLockstepWhatStandsBehindAGapIsWrittenAtTheEnd) {
   Record record(small_mission(1));
-  for (const Tick tick : {0, 1, 2, 20, 21, 22}) record.tell(state_of(tick));
+  for (const Tick tick : {0, 1, 2, 20, 21, 22}) record.deliver(state_of(tick));
   record.recorder.stop("told to");
   EXPECT_EQ(number(record.trajectory_rows().back(), 0), 21);
   EXPECT_EQ(record.recorder.facts().gaps, 18);
@@ -195,7 +195,7 @@ TEST(Gap, InLockstepWhatStandsBehindAGapIsWrittenAtTheEnd) {
 TEST(Gap, InRealTimeTheRecordGoesOnAndCountsTheRowsItLacks) {
   Record record(realtime_mission());
   for (Tick tick = 0; tick <= 60; ++tick) {
-    if (tick != 10 && tick != 11 && tick != 40) record.tell(state_of(tick));
+    if (tick != 10 && tick != 11 && tick != 40) record.deliver(state_of(tick));
   }
   // A row needs its own state and the next: 9, 10, 11 and 39, 40 are gone.
   std::vector<Tick> ticks;
@@ -213,12 +213,12 @@ TEST(Gap, ShortlyBeforeTheEndCostsNoOtherRow) {
   for (const bool by_stop : {false, true}) {
     Record record(realtime_mission());
     for (Tick tick = 0; tick <= 100; ++tick) {
-      if (tick != 95) record.tell(state_of(tick));
+      if (tick != 95) record.deliver(state_of(tick));
     }
     if (by_stop) {
       record.recorder.stop("SIGTERM");
     } else {
-      record.tell(mission_part(1, MissionState::kEnded, roster_of(1), "mission complete"));
+      record.deliver(mission_part(1, MissionState::kEnded, roster_of(1), "mission complete"));
       advance(record.recorder, at(1s));
     }
     EXPECT_TRUE(record.recorder.finished());
@@ -238,7 +238,7 @@ TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
   std::vector<double> expected;
   for (Tick tick = 0; tick <= 25; ++tick) {
-    record.tell(state_of(tick));
+    record.deliver(state_of(tick));
     const Eigen::Vector3d x_m(100 + static_cast<double>(tick), 500, 0);
     sums += 0.1 * basis_values(x_m, mission.domain, mission.basis);
     if (tick == 0 || tick == 10 || tick == 20 || tick == 24) {
@@ -276,21 +276,21 @@ TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
     status.blocked_ticks = id == 0 ? 1 : 0;
     return status;
   };
-  record.tell(report(0, 7, 0.5, 1.5, 100, 3));
-  record.tell(report(0, 6, 99, 99, 1, 1));  // older
-  record.tell(report(1, 1, 0.25, 2.5, 200, 4));
-  record.tell(report(2, 1, 0.75, 0.5, 300, 5));
+  record.deliver(report(0, 7, 0.5, 1.5, 100, 3));
+  record.deliver(report(0, 6, 99, 99, 1, 1));  // older
+  record.deliver(report(1, 1, 0.25, 2.5, 200, 4));
+  record.deliver(report(2, 1, 0.75, 0.5, 300, 5));
   AgentStatus newcomer = status_of(1, 2);  // φ² without any coverage has no meaning
   newcomer.ergodic_metric = 7;
   newcomer.max_staleness_s = 2.5;
   newcomer.contributions_received = 200;
   newcomer.contributions_lost = 4;
-  record.tell(newcomer);
+  record.deliver(newcomer);
   AgentStatus foreign = report(2, 9, 1e9, 1e9, 1000, 1000);
   foreign.header.run = kRun + 1;
-  record.tell(foreign);
-  record.tell(state_of(0));
-  record.tell(state_of(1));
+  record.deliver(foreign);
+  record.deliver(state_of(0));
+  record.deliver(state_of(1));
   const auto rows = record.metrics_rows();
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(number(rows[0], 3), 0.25) << "max − min of φ² as the agents see it";
@@ -309,13 +309,13 @@ TEST(Metrics, AnAgentThatHasLeftCountsInTheTotalsButNotInTheSpread) {
   AgentStatus here = status_of(0, 1);
   here.ergodic_metric = 1;
   here.contributions_received = 10;
-  record.tell(gone);
-  record.tell(here);
+  record.deliver(gone);
+  record.deliver(here);
   std::vector<RosterEntry> roster = roster_of(2);
   roster[1].active_until = 0;
-  record.tell(mission_part(1, MissionState::kRunning, roster));
-  record.tell(state_of(0));
-  record.tell(state_of(1));
+  record.deliver(mission_part(1, MissionState::kRunning, roster));
+  record.deliver(state_of(0));
+  record.deliver(state_of(1));
   const auto rows = record.metrics_rows();
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(number(rows[0], 3), 0);
@@ -328,7 +328,7 @@ TEST(Metrics, ShowWhatTheWorldMissedAndSkipped) {
   WorldState state = state_of(0);
   state.missed_deadlines = 4;
   state.skipped_ticks = 2;
-  record.tell(state);
+  record.deliver(state);
   EXPECT_EQ(record.recorder.facts().missed_deadlines, 4);
   EXPECT_EQ(record.recorder.facts().skipped_ticks, 2);
 }
@@ -340,7 +340,7 @@ TEST(Metrics, TicksOfAPauseThatIsTakenBackCountAfterAll) {
     for (Tick tick = from; tick < to; ++tick) {
       WorldState state = state_of(tick);
       state.uncounted_ticks = uncounted_at(tick);
-      record.tell(state);
+      record.deliver(state);
     }
   };
   run_ticks(0, 9,
@@ -359,9 +359,9 @@ TEST(RecordEnd, ComesASecondAfterTheLastTickSoThatLastStatusesCount) {
   Mission mission = small_mission(1);
   mission.timing.tick_count = 2;
   Record record(mission);
-  for (Tick tick = 0; tick <= 2; ++tick) record.tell(state_of(tick), at(5s));
+  for (Tick tick = 0; tick <= 2; ++tick) record.deliver(state_of(tick), at(5s));
   EXPECT_FALSE(record.recorder.finished());
-  record.tell(status_of(0, 9), at(5500ms));
+  record.deliver(status_of(0, 9), at(5500ms));
   EXPECT_EQ(acks(advance(record.recorder, at(6s))), (std::vector<Tick>{1}));
   EXPECT_TRUE(record.recorder.finished());
   EXPECT_STREQ(record.recorder.result(), "done");
@@ -371,9 +371,9 @@ TEST(RecordEnd, ComesASecondAfterTheLastTickSoThatLastStatusesCount) {
 
 TEST(RecordEnd, SaysThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
   Record record(small_mission(1));
-  for (Tick tick = 0; tick <= 7; ++tick) record.tell(state_of(tick));
-  record.tell(mission_part(1, MissionState::kFailed, roster_of(1), "agent 0 is late"), at(5s));
-  record.tell(state_of(8), at(5500ms));
+  for (Tick tick = 0; tick <= 7; ++tick) record.deliver(state_of(tick));
+  record.deliver(mission_part(1, MissionState::kFailed, roster_of(1), "agent 0 is late"), at(5s));
+  record.deliver(state_of(8), at(5500ms));
   advance(record.recorder, at(6400ms));
   EXPECT_FALSE(record.recorder.finished()) << "a missing state may still come";
   advance(record.recorder, at(6500ms));
@@ -386,10 +386,10 @@ TEST(RecordEnd, SaysThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
 TEST(RecordEnd, AStopAtOnceEndsItWithTheStopsReason) {
   for (const bool failed : {false, true}) {
     Record record(small_mission(1));
-    record.tell(Stop{{kRun + 1, kOperator, 1, 1, 0}, true, "another run's", true}, at(0s));
-    record.tell(Stop{{kRun, kOperator, 1, 1, 0}, true, "the coordinator's to obey"}, at(0s));
-    record.tell(Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough", true}, at(5s));
-    record.tell(mission_part(1, MissionState::kEnded, roster_of(1), "later"), at(5s));
+    record.deliver(Stop{{kRun + 1, kOperator, 1, 1, 0}, true, "another run's", true}, at(0s));
+    record.deliver(Stop{{kRun, kOperator, 1, 1, 0}, true, "the coordinator's to obey"}, at(0s));
+    record.deliver(Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough", true}, at(5s));
+    record.deliver(mission_part(1, MissionState::kEnded, roster_of(1), "later"), at(5s));
     advance(record.recorder, at(6s));
     EXPECT_TRUE(record.recorder.finished());
     EXPECT_STREQ(record.recorder.result(), failed ? "failed" : "stopped");
@@ -400,10 +400,10 @@ TEST(RecordEnd, AStopAtOnceEndsItWithTheStopsReason) {
 
 TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   Record record(realtime_mission());  // 10 s
-  for (const Tick tick : {0, 1, 40}) record.tell(state_of(tick), at(4s));
+  for (const Tick tick : {0, 1, 40}) record.deliver(state_of(tick), at(4s));
   advance(record.recorder, at(40s));  // 6 s after tick 40, and 30 s more
   EXPECT_FALSE(record.recorder.finished());
-  record.tell(mission_part(0, MissionState::kRunning, roster_of(1)), at(40s));
+  record.deliver(mission_part(0, MissionState::kRunning, roster_of(1)), at(40s));
   advance(record.recorder, at(76s));
   EXPECT_FALSE(record.recorder.finished()) << "the coordinator has spoken";
   advance(record.recorder, at(76s + 1ms));
@@ -417,7 +417,7 @@ TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
 
 TEST(RecordEnd, ItsOwnProcessMayEndIt) {
   Record record(small_mission(1));
-  for (Tick tick = 0; tick <= 3; ++tick) record.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 3; ++tick) record.deliver(state_of(tick));
   record.recorder.stop("SIGTERM");
   EXPECT_TRUE(record.recorder.finished());
   EXPECT_STREQ(record.recorder.result(), "stopped");
@@ -430,7 +430,7 @@ TEST(RecordedStatuses, AreTheNewestWithTheWorstLagOfAll) {
   AgentStatus status = status_of(0, 1);
   for (const double lag_s : {0.1, 0.7, 0.2}) {
     status.loop_lag_s = lag_s;
-    record.tell(status);
+    record.deliver(status);
     ++status.header.sequence;
   }
   EXPECT_EQ(record.recorder.statuses().at(author_of(0)).loop_lag_s, 0.7);

@@ -80,7 +80,7 @@ class Resume : public testing::Test {
   /// After rows 0 … 9 of a single agent on its line.
   RunData ten_rows() const {
     Record former(small_mission(1));
-    for (Tick tick = 0; tick <= 10; ++tick) former.tell(state_of(tick));
+    for (Tick tick = 0; tick <= 10; ++tick) former.deliver(state_of(tick));
     return past(former.trajectory.str(), former.metrics.str());
   }
 
@@ -95,8 +95,8 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
   mission.separation.distance_m = 1;
   mission.speed_limit_mps = 20;
   Record lived(mission), killed(mission);
-  for (Tick tick = 0; tick <= 100; ++tick) lived.tell(team_at(tick));
-  for (Tick tick = 0; tick <= 60; ++tick) killed.tell(team_at(tick));
+  for (Tick tick = 0; tick <= 100; ++tick) lived.deliver(team_at(tick));
+  for (Tick tick = 0; tick <= 60; ++tick) killed.deliver(team_at(tick));
   ASSERT_EQ(lived.trajectory_rows().size(), 300u);
   EXPECT_LT(lived.recorder.facts().nearest_m, 2) << "at tick 7";
   const std::string trajectory = killed.trajectory.str(), metrics = killed.metrics.str();
@@ -105,7 +105,7 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
     const std::string rows = trajectory.substr(0, cut);
     const std::string values = metrics.substr(0, cut * 13 % metrics.size());
     Record resumed(mission, past(rows, values));
-    for (Tick tick = 0; tick <= 100; ++tick) resumed.tell(team_at(tick));
+    for (Tick tick = 0; tick <= 100; ++tick) resumed.deliver(team_at(tick));
     ASSERT_EQ(joined(rows_of(rows), resumed.trajectory_rows()), lived.trajectory_rows()) << cut;
     ASSERT_EQ(observed(joined(rows_of(values), resumed.metrics_rows())),
               observed(lived.metrics_rows()))
@@ -123,7 +123,7 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
 
 TEST_F(Resume, ACompleteRecordIsDone) {
   Record former(small_mission(1));
-  for (Tick tick = 0; tick <= 100; ++tick) former.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 100; ++tick) former.deliver(state_of(tick));
   Record resumed(small_mission(1), past(former.trajectory.str(), former.metrics.str()));
   EXPECT_EQ(acks(advance(resumed.recorder, at(0s))), (std::vector<Tick>{99}));
   advance(resumed.recorder, at(1s));
@@ -135,7 +135,7 @@ TEST_F(Resume, ACompleteRecordIsDone) {
 
 TEST_F(Resume, WithoutARecordOneIsBegun) {
   Record resumed(small_mission(1), RunData{});
-  for (Tick tick = 0; tick <= 20; ++tick) resumed.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 20; ++tick) resumed.deliver(state_of(tick));
   EXPECT_EQ(resumed.trajectory_rows().size(), 20u);
   EXPECT_EQ(resumed.recorder.facts().gaps, 0);
 }
@@ -143,10 +143,10 @@ TEST_F(Resume, WithoutARecordOneIsBegun) {
 TEST_F(Resume, GapsOfTheFormerProcessStayCounted) {
   Record former(realtime_mission());
   for (Tick tick = 0; tick <= 40; ++tick) {
-    if (tick != 10) former.tell(state_of(tick));
+    if (tick != 10) former.deliver(state_of(tick));
   }
   Record resumed(realtime_mission(), past(former.trajectory.str(), former.metrics.str()));
-  for (Tick tick = 40; tick <= 60; ++tick) resumed.tell(state_of(tick));
+  for (Tick tick = 40; tick <= 60; ++tick) resumed.deliver(state_of(tick));
   EXPECT_EQ(resumed.recorder.facts().gaps, 2);
   EXPECT_EQ(resumed.recorder.facts().ticks, 58);
 }
@@ -156,10 +156,10 @@ TEST_F(Resume, CountsOfMessagesDoNotFallBack) {
   AgentStatus status = status_of(0, 1, 0);
   status.contributions_received = 700;
   status.contributions_lost = 7;
-  former.tell(status);
-  for (Tick tick = 0; tick <= 5; ++tick) former.tell(state_of(tick));
+  former.deliver(status);
+  for (Tick tick = 0; tick <= 5; ++tick) former.deliver(state_of(tick));
   Record resumed(small_mission(1), past(former.trajectory.str(), former.metrics.str()));
-  for (Tick tick = 5; tick <= 15; ++tick) resumed.tell(state_of(tick));
+  for (Tick tick = 5; tick <= 15; ++tick) resumed.deliver(state_of(tick));
   ASSERT_EQ(resumed.metrics_rows().size(), 1u);
   EXPECT_EQ(columns(resumed.metrics_rows()[0])[5], "700");
   EXPECT_EQ(columns(resumed.metrics_rows()[0])[6], "7");
@@ -187,16 +187,16 @@ TEST_F(Resume, WhatIsAcknowledgedIsInTheFile) {
 
 TEST_F(Resume, AStateThatIsRepeatedInTimeIsNoGap) {
   Record resumed(small_mission(1), ten_rows());
-  EXPECT_EQ(acks(resumed.tell(state_of(30), at(10s))), (std::vector<Tick>{9}));
+  EXPECT_EQ(acks(resumed.deliver(state_of(30), at(10s))), (std::vector<Tick>{9}));
   for (Tick tick = 10; tick < 30; ++tick)
-    resumed.tell(state_of(tick), at(10s + (tick - 9) * 200ms));
+    resumed.deliver(state_of(tick), at(10s + (tick - 9) * 200ms));
   EXPECT_EQ(resumed.recorder.next_row(), 30);
   EXPECT_EQ(resumed.recorder.facts().gaps, 0);
 }
 
 TEST_F(Resume, WhatIsNotRepeatedWithinHalfASecondIsAGap) {
   Record resumed(small_mission(1), ten_rows());
-  for (const Tick tick : {30, 31, 33, 34}) resumed.tell(state_of(tick), at(10s));
+  for (const Tick tick : {30, 31, 33, 34}) resumed.deliver(state_of(tick), at(10s));
   advance(resumed.recorder, at(10499ms));
   EXPECT_EQ(resumed.recorder.next_row(), 10);
   advance(resumed.recorder, at(10500ms));
@@ -204,23 +204,23 @@ TEST_F(Resume, WhatIsNotRepeatedWithinHalfASecondIsAGap) {
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
   advance(resumed.recorder, at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 31) << "32 came after the first that was heard";
-  resumed.tell(state_of(32), at(30s));
+  resumed.deliver(state_of(32), at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 34);
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
 }
 
 TEST_F(Resume, AGapEndsAtTheFirstStateHeardEvenIfTheNextIsMissing) {
   Record resumed(small_mission(1), ten_rows());
-  for (const Tick tick : {30, 32}) resumed.tell(state_of(tick), at(10s));
+  for (const Tick tick : {30, 32}) resumed.deliver(state_of(tick), at(10s));
   advance(resumed.recorder, at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 30);
-  resumed.tell(state_of(31), at(30s));
+  resumed.deliver(state_of(31), at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 32);
 }
 
 TEST_F(Resume, AGapEndsWithTheFirstPairThatIsRepeated) {
   Record resumed(small_mission(1), ten_rows());
-  for (const Tick tick : {30, 20, 21, 18}) resumed.tell(state_of(tick), at(10s));
+  for (const Tick tick : {30, 20, 21, 18}) resumed.deliver(state_of(tick), at(10s));
   advance(resumed.recorder, at(11s));
   EXPECT_EQ(resumed.recorder.next_row(), 21);
   EXPECT_EQ(resumed.recorder.facts().gaps, 10);
@@ -229,7 +229,7 @@ TEST_F(Resume, AGapEndsWithTheFirstPairThatIsRepeated) {
 TEST_F(Resume, NothingIsGivenUpWhileNoNewerStateIsHeld) {
   Record resumed(small_mission(1), ten_rows());
   advance(resumed.recorder, at(1h));
-  resumed.tell(state_of(10), at(2h));
+  resumed.deliver(state_of(10), at(2h));
   advance(resumed.recorder, at(3h));
   EXPECT_EQ(resumed.recorder.next_row(), 10);
   EXPECT_EQ(resumed.recorder.facts().gaps, 0);
@@ -238,11 +238,11 @@ TEST_F(Resume, NothingIsGivenUpWhileNoNewerStateIsHeld) {
 TEST_F(Resume, ALastTickThatWasCutOffCannotBecomeAGap) {
   const Mission mission = small_mission(3);
   Record former(mission);
-  for (Tick tick = 0; tick <= 10; ++tick) former.tell(team_at(tick));
+  for (Tick tick = 0; tick <= 10; ++tick) former.deliver(team_at(tick));
   const std::string rows = former.trajectory.str();
   const std::string cut = rows.substr(0, rows.rfind('\n', rows.size() - 2) + 5);  // 9's third row
   Record resumed(mission, past(cut, former.metrics.str()));
-  for (const Tick tick : {20, 21}) resumed.tell(team_at(tick), at(10s));
+  for (const Tick tick : {20, 21}) resumed.deliver(team_at(tick), at(10s));
   advance(resumed.recorder, at(11s));
   EXPECT_EQ(resumed.recorder.next_row(), 21);
   EXPECT_EQ(resumed.recorder.facts().gaps, 10) << "10 … 19: of 9 there are rows";
@@ -253,7 +253,7 @@ TEST_F(Resume, TheWorldMayHaveGoneFarAheadButNotBeyondTheMission) {
   Mission mission = small_mission(1);
   mission.timing.tick_count = 9000;
   Record resumed(mission, ten_rows());
-  for (const Tick tick : {9001, 8000, 8001}) resumed.tell(state_of(tick), at(10s));
+  for (const Tick tick : {9001, 8000, 8001}) resumed.deliver(state_of(tick), at(10s));
   advance(resumed.recorder, at(11s));
   EXPECT_EQ(resumed.recorder.next_row(), 8001);
   EXPECT_EQ(resumed.recorder.facts().gaps, 7990);
@@ -261,7 +261,7 @@ TEST_F(Resume, TheWorldMayHaveGoneFarAheadButNotBeyondTheMission) {
 
 TEST_F(Resume, ARecordThatEndsWritesWhatStandsBehindTheGap) {
   Record resumed(small_mission(1), ten_rows());
-  for (const Tick tick : {30, 31, 32}) resumed.tell(state_of(tick), at(10s));
+  for (const Tick tick : {30, 31, 32}) resumed.deliver(state_of(tick), at(10s));
   resumed.recorder.stop("SIGTERM");
   EXPECT_EQ(resumed.recorder.next_row(), 32);
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
@@ -269,9 +269,9 @@ TEST_F(Resume, ARecordThatEndsWritesWhatStandsBehindTheGap) {
 
 TEST_F(Resume, ANewWorldMayLeaveAGapBeforeItsFirstState) {
   Record record(small_mission(1));
-  for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
   for (const Tick tick : {14, 15, 17}) {
-    record.tell(of_world(kNextWorldLife, state_of(tick)), at(10s));
+    record.deliver(of_world(kNextWorldLife, state_of(tick)), at(10s));
   }
   advance(record.recorder, at(10499ms));
   EXPECT_EQ(record.recorder.next_row(), 10);
@@ -283,12 +283,12 @@ TEST_F(Resume, ANewWorldMayLeaveAGapBeforeItsFirstState) {
 TEST_F(Resume, ANewWorldThatRepeatsWhatIsRecordedChangesNothing) {
   for (Mission mission : {small_mission(1), realtime_mission()}) {
     Record record(mission);
-    for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+    for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
     // It does not know which velocities led there.
-    record.tell(of_world(kNextWorldLife, state_of(8, {108, 500, 0}, {0, 0, 0})), at(1s));
-    record.tell(of_world(kNextWorldLife, state_of(10, {110, 500, 0}, {0, 0, 0})), at(1s));
+    record.deliver(of_world(kNextWorldLife, state_of(8, {108, 500, 0}, {0, 0, 0})), at(1s));
+    record.deliver(of_world(kNextWorldLife, state_of(10, {110, 500, 0}, {0, 0, 0})), at(1s));
     for (Tick tick = 11; tick <= 20; ++tick) {
-      record.tell(of_world(kNextWorldLife, state_of(tick)), at(1s));
+      record.deliver(of_world(kNextWorldLife, state_of(tick)), at(1s));
     }
     const auto rows = record.trajectory_rows();
     ASSERT_EQ(rows.size(), 20u);
@@ -299,8 +299,8 @@ TEST_F(Resume, ANewWorldThatRepeatsWhatIsRecordedChangesNothing) {
 
 TEST_F(Resume, AStateThatIsHeldIsNotReplacedByANewWorldsRepeat) {
   Record record(small_mission(1));
-  for (const Tick tick : {0, 1, 3, 4}) record.tell(state_of(tick));
-  record.tell(of_world(kNextWorldLife, state_of(4, {104, 500, 0}, {0, 0, 0})), at(1s));
+  for (const Tick tick : {0, 1, 3, 4}) record.deliver(state_of(tick));
+  record.deliver(of_world(kNextWorldLife, state_of(4, {104, 500, 0}, {0, 0, 0})), at(1s));
   advance(record.recorder, at(2s));
   const auto rows = record.trajectory_rows();
   ASSERT_EQ(rows.size(), 2u);
@@ -317,11 +317,11 @@ TEST_F(Resume, PartsOfTwoWorldsMakeNoState) {
     state.parts = 2;
     return state;
   };
-  for (const int part : {0, 1}) record.tell(part_of(kWorldLife, 0, part));
-  record.tell(part_of(kWorldLife, 1, 0));
-  record.tell(part_of(kNextWorldLife, 1, 1));
+  for (const int part : {0, 1}) record.deliver(part_of(kWorldLife, 0, part));
+  record.deliver(part_of(kWorldLife, 1, 0));
+  record.deliver(part_of(kNextWorldLife, 1, 1));
   EXPECT_TRUE(record.trajectory_rows().empty());
-  record.tell(part_of(kNextWorldLife, 1, 0));
+  record.deliver(part_of(kNextWorldLife, 1, 0));
   EXPECT_EQ(record.trajectory_rows().size(), 2u);
 }
 
@@ -408,7 +408,7 @@ TEST_F(Resume, KnowsTheMetricInCosinesWithoutARowMore) {
   mission.basis.table_hash = std::get<ModesTable>(table_of(mission))->hash;
   Record lived(mission);
   EXPECT_TRUE(std::isnan(lived.recorder.facts().cosine_metric_last)) << "nobody has moved yet";
-  for (Tick tick = 0; tick <= 100; ++tick) lived.tell(state_of(tick));
+  for (Tick tick = 0; tick <= 100; ++tick) lived.deliver(state_of(tick));
   const double metric = lived.recorder.facts().cosine_metric_last;
   EXPECT_GT(metric, 0);
   Record resumed(mission, past(lived.trajectory.str(), lived.metrics.str()));

@@ -331,7 +331,7 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
   EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 0.02);
   screenshot("live_recorded");
   expect_no_errors();
-  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);
 
@@ -375,7 +375,7 @@ TEST_F(PageInABrowser, ALateBrowserGetsTheWholeCurveOfAFreeDomain) {
   expect_no_errors();
   mission.send(SIGINT);
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
-  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);
 }
@@ -394,7 +394,7 @@ TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {
   mission.send(SIGINT);
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
   EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 0.02);  // of the whole mission
-  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);
 }

@@ -90,7 +90,7 @@ TEST_F(WordsInABrowser, ALiveTeamPausesAndRests) {
   EXPECT_EQ(js(kStates), nlohmann::json(std::vector<std::string>(4, "paused")));
   EXPECT_TRUE(is_shown("pause"));
   EXPECT_EQ(js("return ergocast.S.run.incidents.filter(one => one.kind === 'paused').length"), 1);
-  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);
 }
@@ -116,7 +116,7 @@ TEST_F(WordsInABrowser, LateCommandsAreAWarning) {
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
   EXPECT_TRUE(browser_->becomes(
       "return /% of all commands came/.test(document.getElementById('overload').textContent)"));
-  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);
 }

@@ -12,7 +12,7 @@ class BadInput : public OwnHost {
     std::ofstream(folder_ / name) << text;
     return folder_ / name;
   }
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
 };
 
 constexpr const char* kManyProblems = R"(
@@ -31,7 +31,7 @@ TEST_F(BadInput, CheckNamesEveryProblemAtOnceWithItsLine) {
        {"bad.textproto:2:", "size_y_m", "bad.textproto:3:", "uniform_weight",
         "bad.textproto:4:", "modes_x", "64", "bad.textproto:5:", "u_max_mps",
         "bad.textproto:6:", "durration_s", "duration_s", "bad.textproto:7:", "x_m", "problems"}) {
-    EXPECT_TRUE(said(part)) << part << " in\n" << output();
+    EXPECT_TRUE(printed(part)) << part << " in\n" << output();
   }
 }
 
@@ -45,9 +45,9 @@ TEST_F(BadInput, RunAndSimulateRefuseABadScenarioAndWriteNothing) {
 
 TEST_F(BadInput, CheckPrintsAScenarioThatIsItself) {
   ASSERT_EQ(ergocast({"check", "--print", scenario_file("quadrimodal_corners")}), 0);
-  const auto printed = write("printed.textproto", output());
-  ASSERT_EQ(ergocast({"check", "--print", printed}), 0) << output();
-  EXPECT_EQ(output(), text_of(printed));
+  const auto canonical = write("printed.textproto", output());
+  ASSERT_EQ(ergocast({"check", "--print", canonical}), 0) << output();
+  EXPECT_EQ(output(), text_of(canonical));
 }
 
 TEST_F(BadInput, UnknownCommandsAndOptionsAreRefused) {
@@ -60,7 +60,7 @@ TEST_F(BadInput, UnknownCommandsAndOptionsAreRefused) {
   EXPECT_EQ(ergocast({"run", scenario, "--agents", "0", "--out", out()}), 2);
   EXPECT_EQ(ergocast({"run", scenario, "--seed", "-1", "--out", out()}), 2);
   EXPECT_EQ(ergocast({"run", scenario, "--lcm-url", "udpm://10.0.0.1:7667", "--out", out()}), 2);
-  EXPECT_TRUE(said("multicast")) << output();
+  EXPECT_TRUE(printed("multicast")) << output();
   EXPECT_FALSE(std::filesystem::exists(out()));
 }
 
@@ -68,9 +68,9 @@ TEST_F(BadInput, EveryProgramKnowsHelpAndVersion) {
   for (const char* program :
        {"ergocast", "ergocast-agent", "ergocast-coordinator", "ergocast-sim", "ergocast-logger"}) {
     EXPECT_EQ(run(program, {"--help"}), 0) << program;
-    EXPECT_TRUE(said("--version")) << output();
+    EXPECT_TRUE(printed("--version")) << output();
     EXPECT_EQ(run(program, {"--version"}), 0) << program;
-    EXPECT_TRUE(said("LCM 1.")) << output();
+    EXPECT_TRUE(printed("LCM 1.")) << output();
   }
 }
 
@@ -78,7 +78,7 @@ TEST_F(BadInput, EveryCommandKnowsHelpAndVersion) {
   for (const char* command : {"run", "simulate", "study", "check", "report", "verify"}) {
     EXPECT_EQ(ergocast({command, "--help"}), 0) << command;
     EXPECT_EQ(ergocast({command, "--version"}), 0) << command;
-    EXPECT_TRUE(said("LCM 1.")) << output();
+    EXPECT_TRUE(printed("LCM 1.")) << output();
   }
 }
 
@@ -87,7 +87,7 @@ TEST_F(BadInput, AnOutThatIsNotEmptyIsLeftAlone) {
   const auto precious = write("run/precious", "data");
   for (const char* command : {"run", "simulate"}) {
     EXPECT_EQ(ergocast({command, scenario_file("quadrimodal_corners"), "--out", out()}), 2);
-    EXPECT_TRUE(said("is not empty")) << output();
+    EXPECT_TRUE(printed("is not empty")) << output();
     EXPECT_EQ(text_of(precious), "data");
     EXPECT_FALSE(std::filesystem::exists(out() / "trajectory.csv"));
   }
@@ -96,36 +96,36 @@ TEST_F(BadInput, AnOutThatIsNotEmptyIsLeftAlone) {
 TEST_F(BadInput, AnOutThatCannotBeMadeIsNamed) {
   const auto file = write("file", "");
   EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--out", file}), 2);
-  EXPECT_TRUE(said("is a file")) << output();
+  EXPECT_TRUE(printed("is a file")) << output();
   EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--out", file / "below"}), 2);
-  EXPECT_TRUE(said("Not a directory")) << output();
+  EXPECT_TRUE(printed("Not a directory")) << output();
   EXPECT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--out", "/proc/run"}), 2);
-  EXPECT_TRUE(said("/proc/run")) << output();
+  EXPECT_TRUE(printed("/proc/run")) << output();
 }
 
 TEST_F(BadInput, LoggerRefusesAFolderWithARecord) {
   std::filesystem::create_directory(out());
   const auto record = write("run/trajectory.csv", "old");
   EXPECT_EQ(run("ergocast-logger", {"--out", out(), "--lcm-url", "udpm://239.255.76.67:24800"}), 2);
-  EXPECT_TRUE(said("already a record")) << output();
+  EXPECT_TRUE(printed("already a record")) << output();
   EXPECT_EQ(text_of(record), "old");
 }
 
 TEST_F(BadInput, WithoutAMulticastRouteTheCommandsThatMendItAreNamed) {
   ASSERT_EQ(std::system("ip route del 224.0.0.0/4 dev lo"), 0);
   EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--out", out()}), 3);
-  EXPECT_TRUE(said("ip route add 224.0.0.0/4 dev lo")) << output();
+  EXPECT_TRUE(printed("ip route add 224.0.0.0/4 dev lo")) << output();
   EXPECT_FALSE(std::filesystem::exists(out()));
   EXPECT_EQ(run("ergocast-agent", {}), 3);
-  EXPECT_TRUE(said("ip route add 224.0.0.0/4 dev lo")) << output();
+  EXPECT_TRUE(printed("ip route add 224.0.0.0/4 dev lo")) << output();
   ASSERT_EQ(std::system("ip route add 224.0.0.0/4 dev lo"), 0);
 }
 
 TEST_F(BadInput, ReportAndVerifyNameWhatIsMissing) {
   EXPECT_EQ(ergocast({"report", folder_ / "nothing"}), 2);
-  EXPECT_TRUE(said("plan.binpb")) << output();
+  EXPECT_TRUE(printed("plan.binpb")) << output();
   EXPECT_EQ(ergocast({"verify", folder_ / "nothing"}), 2);
-  EXPECT_TRUE(said("plan.binpb")) << output();
+  EXPECT_TRUE(printed("plan.binpb")) << output();
 }
 
 /// Files of at most 16 MB that would take gigabytes, read by programs that may have half of one.
@@ -146,7 +146,7 @@ class LittleMemory : public BadInput {
                        text_of(scenario_file("quadrimodal_corners"));
     text.insert(text.find("target {") + 8, ' ' + part + ' ');
     EXPECT_EQ(in_half_a_gigabyte({"check", write("s.textproto", text)}), 2) << name;
-    EXPECT_TRUE(said(name) && said(why)) << output().substr(0, 1000);
+    EXPECT_TRUE(printed(name) && printed(why)) << output().substr(0, 1000);
   }
 };
 
@@ -176,14 +176,14 @@ TEST_F(LittleMemory, IsEnoughToRefuseARecordThatIsDamaged) {
   const auto precious = text_of(out() / "summary.json");
   write("run/summary.json", std::string(16000000, '['));
   EXPECT_EQ(in_half_a_gigabyte({"verify", out()}), 2);
-  EXPECT_TRUE(said("summary.json") && said("nested in more than 64 levels")) << output();
+  EXPECT_TRUE(printed("summary.json") && printed("nested in more than 64 levels")) << output();
   write("run/summary.json", precious);
   const auto rows = out() / "trajectory.csv";
   std::filesystem::resize_file(rows, std::filesystem::file_size(rows) + (std::uintmax_t{1} << 30));
   EXPECT_EQ(in_half_a_gigabyte({"report", out()}), 0) << "as after a power failure: " << output();
   std::ofstream(rows, std::ios::app) << "\n";
   EXPECT_EQ(in_half_a_gigabyte({"report", out()}), 2);
-  EXPECT_TRUE(said("trajectory.csv") && said("longer than any row")) << output();
+  EXPECT_TRUE(printed("trajectory.csv") && printed("longer than any row")) << output();
 }
 
 }  // namespace

@@ -23,11 +23,11 @@ class BusObserver {
     transport_ = std::get<0>(Transport::open(
         std::get<LcmUrl>(LcmUrl::parse(url)), 0, authenticator,
         {kTypes<MissionPart, Contribution, Digest, AgentStatus>, 0, kTypes<Command, RecordAck>},
-        {.on_message = [this](const Message& message, Bus, AgentId) { hear(message); }}));
+        {.on_message = [this](const Message& message, Bus, AgentId) { receive(message); }}));
   }
 
   /// Listens until `condition` holds; false if it never does.
-  bool hears(const std::function<bool()>& condition) {
+  bool observes(const std::function<bool()>& condition) {
     return eventually(condition, [this] { listen(); });
   }
   /// Listens for a moment; for conditions on several witnesses.
@@ -55,7 +55,7 @@ class BusObserver {
     return block == blocks_.end() ? Contribution{} : block->second;
   }
   /// Steps of the oldest of its blocks, one or two: what a digest calls held.
-  std::int64_t said(const Author& author) const {
+  std::int64_t steps_sent(const Author& author) const {
     const std::int64_t first = block(author, 0).steps;
     return blocks_.contains({author, 1}) ? std::min(first, block(author, 1).steps) : first;
   }
@@ -73,7 +73,7 @@ class BusObserver {
   }
 
  private:
-  void hear(const Message& message) {
+  void receive(const Message& message) {
     const Author author{header_of(message).sender, header_of(message).incarnation};
     if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
     if (const auto* ack = std::get_if<RecordAck>(&message)) recorded_ = ack->header.tick;

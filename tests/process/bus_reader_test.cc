@@ -14,8 +14,8 @@ namespace {
 class OneBus : public OwnHost {
  protected:
   static LcmUrl url(const std::string& text) { return std::get<LcmUrl>(LcmUrl::parse(text)); }
-  static std::unique_ptr<BusReader> reader(const LcmUrl& url, MessageTypes hears = kEveryType) {
-    return std::get<0>(BusReader::open(url, Bus::kSwarm, hears));
+  static std::unique_ptr<BusReader> reader(const LcmUrl& url, MessageTypes receives = kEveryType) {
+    return std::get<0>(BusReader::open(url, Bus::kSwarm, receives));
   }
   static std::unique_ptr<BusWriter> writer(const LcmUrl& url) {
     return std::get<0>(BusWriter::open(url));
@@ -46,7 +46,7 @@ class OneBus : public OwnHost {
     return all;
   }
   /// Reads until a message of that kind has come.
-  bool hears(BusReader& reader, const Message& message) {
+  bool receives(BusReader& reader, const Message& message) {
     return eventually([&] {
       read(reader);
       return !heard_.empty() && heard_.back() == channel_of(message);
@@ -64,14 +64,14 @@ TEST_F(OneBus, HearsNoOtherGroupAtItsPort) {
   const auto our_ear = reader(here_), their_ear = reader(there);
   const auto our_mouth = writer(here_), their_mouth = writer(there);
   for (int i = 0; i < 100; ++i) send(*their_mouth, contribution());
-  ASSERT_TRUE(hears(*their_ear, contribution()));
+  ASSERT_TRUE(receives(*their_ear, contribution()));
   heard_.clear();
   send(*our_mouth, hello());
-  ASSERT_TRUE(hears(*our_ear, hello()));
+  ASSERT_TRUE(receives(*our_ear, hello()));
   EXPECT_EQ(heard_, std::vector<std::string>{channel_of(hello())});
   heard_.clear();
   send(*their_mouth, stop());
-  ASSERT_TRUE(hears(*their_ear, stop()));
+  ASSERT_TRUE(receives(*their_ear, stop()));
   EXPECT_EQ(std::count(heard_.begin(), heard_.end(), channel_of(hello())), 0);
 }
 
@@ -84,7 +84,7 @@ TEST_F(OneBus, HearsNothingThatIsSentToThisHostAlone) {
     send_bytes("127.0.0.1", std::string("LC02\0\0\0\1ERGOCAST_STOP\0", 22) + message);
   }
   send(*writer(here_), hello());
-  ASSERT_TRUE(hears(*ear, hello()));
+  ASSERT_TRUE(receives(*ear, hello()));
   EXPECT_EQ(heard_, std::vector<std::string>{channel_of(hello())});
 }
 
@@ -113,7 +113,7 @@ TEST_F(OneBus, CountsAsLostWhatABufferHadNoRoomForAndNothingElse) {
     for (int i = 0; i < 3; ++i) {
       send(*mouth, team_status(), kSent);
       send(*mouth, contribution());
-      ASSERT_TRUE(hears(*ear, contribution()));
+      ASSERT_TRUE(receives(*ear, contribution()));
     }
     EXPECT_TRUE(eventually([&] { return (rejected += ear->take_rejected()) >= 3 * kSent; }));
     EXPECT_EQ(rejected, 3 * kSent);
@@ -165,7 +165,7 @@ TEST_F(OneBus, ReadsAnyBytesWhereTheKernelHasNoFilter) {
                                             "LC02    " + std::string(65000, 'E')};
   for (const std::string& bytes : hostile) send_bytes(kGroup, bytes);
   send(*writer(here_), hello());
-  ASSERT_TRUE(hears(*ear, hello()));
+  ASSERT_TRUE(receives(*ear, hello()));
   EXPECT_EQ(heard_.size(), hostile.size() + 1);
 }
 

@@ -12,7 +12,7 @@ class StartedByHand : public ByHand {
   Program& begin_mission(const std::filesystem::path& scenario) {
     Program& coordinator = hand_all_but_agents(scenario);
     for (const char* id : {"0", "1"}) hand("ergocast-agent", {"--id", id});
-    EXPECT_TRUE(recorded(20000)) << coordinator.said();
+    EXPECT_TRUE(recorded(20000)) << coordinator.printed();
     return coordinator;
   }
   /// A scenario of two agents that lasts as long as the test needs.
@@ -31,57 +31,58 @@ class StartedByHand : public ByHand {
 TEST_F(StartedByHand, AnAgentThatIsToldToLeaveIsReportedAndNotWaitedFor) {
   Program& coordinator = begin_mission(endless_pair());
   BusObserver observer(kUrl);
-  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > 0; }));
+  ASSERT_TRUE(observer.observes([&] { return observer.answered(observer.member(0)) > 0; }));
   const Author left = observer.member(1);
   signal_to(agent(1), SIGTERM);
-  ASSERT_TRUE(observer.hears([&] {
+  ASSERT_TRUE(observer.observes([&] {
     const RosterEntry* entry = observer.entry(left);
     return entry != nullptr && entry->active_until >= 0;
-  })) << coordinator.said();
+  })) << coordinator.printed();
   const Tick tick = observer.entry(left)->active_until;
-  EXPECT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > tick + 100; }));
-  EXPECT_TRUE(coordinator.says("agent 1 (" + to_hex(left.incarnation) + ") is gone at tick"))
-      << coordinator.said();
+  EXPECT_TRUE(
+      observer.observes([&] { return observer.answered(observer.member(0)) > tick + 100; }));
+  EXPECT_TRUE(coordinator.prints("agent 1 (" + to_hex(left.incarnation) + ") is gone at tick"))
+      << coordinator.printed();
 }
 
 TEST_F(StartedByHand, ASecondCoordinatorLeavesTheMissionToTheFirst) {
   const auto file = endless_pair();
   Program& first = begin_mission(file);
   Program& second = hand("ergocast-coordinator", {file});
-  EXPECT_EQ(wait_for(second.child), 4) << second.said();
-  EXPECT_TRUE(second.says("is led by the coordinator on ")) << second.said();
-  EXPECT_TRUE(second.says("take the mission over with --resume")) << second.said();
-  EXPECT_TRUE(moves_on()) << first.said();
-  EXPECT_TRUE(first.child.running()) << first.said();
+  EXPECT_EQ(wait_for(second.child), 4) << second.printed();
+  EXPECT_TRUE(second.prints("is led by the coordinator on ")) << second.printed();
+  EXPECT_TRUE(second.prints("take the mission over with --resume")) << second.printed();
+  EXPECT_TRUE(moves_on()) << first.printed();
+  EXPECT_TRUE(first.child.running()) << first.printed();
 }
 
 TEST_F(StartedByHand, ASecondCoordinatorLeavesALeaderAloneThatHasNoAgentsYet) {
   const auto file = endless_pair();
   Program& first = hand("ergocast-coordinator", {file});
-  ASSERT_TRUE(first.says("quorum of 2 agents")) << first.said();
+  ASSERT_TRUE(first.prints("quorum of 2 agents")) << first.printed();
   Program& second = hand("ergocast-coordinator", {file});
-  EXPECT_EQ(wait_for(second.child), 4) << second.said();
-  EXPECT_TRUE(second.says("is led by the coordinator on ")) << second.said();
+  EXPECT_EQ(wait_for(second.child), 4) << second.printed();
+  EXPECT_TRUE(second.prints("is led by the coordinator on ")) << second.printed();
 }
 
 TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOverWhenItIsToldTo) {
   const auto file = endless_pair();
   Program& first = begin_mission(file);
   Program& second = hand("ergocast-coordinator", {file, "--resume"});
-  ASSERT_TRUE(second.says("taken over")) << second.said();
-  EXPECT_EQ(wait_for(first.child), 4) << first.said();
-  EXPECT_TRUE(first.says("another coordinator has taken the mission over")) << first.said();
-  EXPECT_TRUE(moves_on()) << second.said();
+  ASSERT_TRUE(second.prints("taken over")) << second.printed();
+  EXPECT_EQ(wait_for(first.child), 4) << first.printed();
+  EXPECT_TRUE(first.prints("another coordinator has taken the mission over")) << first.printed();
+  EXPECT_TRUE(moves_on()) << second.printed();
 }
 
 TEST_F(StartedByHand, ACoordinatorTakesTheMissionOfALauncherOver) {
   Child mission = launch_held(scenario("duration_s: 20"), {"--lcm-url", kUrl});
   hand("ergocast-coordinator", {"--resume"});
-  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); }))
-      << said();
+  ASSERT_TRUE(eventually([this] { return printed("the team goes on to the plan's last tick"); }))
+      << printed();
   release();
-  EXPECT_EQ(wait_for(mission), 0) << said();
-  EXPECT_TRUE(said("another coordinator has taken the mission over")) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_TRUE(printed("another coordinator has taken the mission over")) << printed();
   EXPECT_EQ(summary()["reason"], "mission complete; coordinator exited with code 4");
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
@@ -89,8 +90,8 @@ TEST_F(StartedByHand, ACoordinatorTakesTheMissionOfALauncherOver) {
 TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
   begin_mission(endless_pair());
   Program& other = hand("ergocast-coordinator", {scenario_file("paper_fig2b")});
-  EXPECT_EQ(wait_for(other.child), 4) << other.said();
-  EXPECT_TRUE(other.says("is flying on this URL: choose another URL")) << other.said();
+  EXPECT_EQ(wait_for(other.child), 4) << other.printed();
+  EXPECT_TRUE(other.prints("is flying on this URL: choose another URL")) << other.printed();
   EXPECT_TRUE(moves_on());
 }
 
@@ -108,16 +109,17 @@ TEST_F(StartedByHand, AMissionGoesOnOnAnotherNetworkInterface) {
   for (int i = 0; i < 2; ++i) {
     ASSERT_EQ(std::system("ip link delete wire"), 0);
     ASSERT_EQ(plug_in(), 0);
-    EXPECT_TRUE(moves_on()) << coordinator.said();
+    EXPECT_TRUE(moves_on()) << coordinator.printed();
   }
-  EXPECT_TRUE(coordinator.says("listening on another network interface")) << coordinator.said();
+  EXPECT_TRUE(coordinator.prints("listening on another network interface"))
+      << coordinator.printed();
 }
 
 TEST_F(StartedByHand, ACoordinatorThatFindsNothingToTakeOverCanBeStopped) {
   Program& coordinator = hand("ergocast-coordinator", {"--resume"});
-  ASSERT_TRUE(coordinator.says("looking for a mission")) << coordinator.said();
+  ASSERT_TRUE(coordinator.prints("looking for a mission")) << coordinator.printed();
   coordinator.child.send(SIGTERM);
-  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.printed();
 }
 
 }  // namespace

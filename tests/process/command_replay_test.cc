@@ -19,7 +19,7 @@ class Tape {
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
       ears_.push_back({bus, std::make_unique<lcm::LCM>(buses.of(bus)), &recorded_});
       Ear& ear = ears_.back();
-      ear.lcm->subscribe("ERGOCAST_(PAUSE|STOP)", &Ear::hear, &ear)->setQueueCapacity(0);
+      ear.lcm->subscribe("ERGOCAST_(PAUSE|STOP)", &Ear::receive, &ear)->setQueueCapacity(0);
     }
   }
   /// Takes in what has arrived; how much there is.
@@ -52,7 +52,7 @@ class Tape {
     Bus bus;
     std::unique_ptr<lcm::LCM> lcm;
     std::vector<Recorded>* recorded;
-    void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
       const auto* data = static_cast<const std::uint8_t*>(buffer->data);
       recorded->push_back({bus, channel, {data, data + buffer->data_size}});
     }
@@ -81,10 +81,11 @@ class CommandReplay : public ByHand {
                                        to_hex(kRun), "--key-file", coordinator_key_});
     for (const char* id : {"0", "1", "2", "3"})
       hand("ergocast-agent", {"--id", id, "--key-file", team_key_});
-    ASSERT_TRUE(recorded(30000)) << coordinator_->said();
+    ASSERT_TRUE(recorded(30000)) << coordinator_->printed();
   }
   /// The operator's command, as a person gives it.
-  int say(const std::string& command, std::vector<std::string> more = {}, const char* url = kUrl) {
+  int send_command(const std::string& command, std::vector<std::string> more = {},
+                   const char* url = kUrl) {
     more.insert(more.begin(), {command, "--lcm-url", url, "--key-file", coordinator_key_});
     return ergocast(more);
   }
@@ -96,21 +97,22 @@ class CommandReplay : public ByHand {
   void resume_coordinator() {
     ASSERT_TRUE(moves_on());
     coordinator_ = &hand("ergocast-coordinator", {"--resume", "--key-file", coordinator_key_});
-    ASSERT_TRUE(coordinator_->says("taken over")) << coordinator_->said();
+    ASSERT_TRUE(coordinator_->prints("taken over")) << coordinator_->printed();
   }
   /// Plays the tape until `program` says that it ignores that, or does something else.
   void play_until_ignored(const Tape& tape, const Program& program) const {
     EXPECT_TRUE(eventually(
         [&] {
           tape.play(kUrl);
-          return ignores(program) || program.said().find("mission is paused") != std::string::npos;
+          return ignores(program) ||
+                 program.printed().find("mission is paused") != std::string::npos;
         },
         program.child.pid()))
-        << program.said();
-    EXPECT_TRUE(ignores(program)) << program.said();
+        << program.printed();
+    EXPECT_TRUE(ignores(program)) << program.printed();
   }
   static bool ignores(const Program& program) {
-    return program.said().find("late=") != std::string::npos;
+    return program.printed().find("late=") != std::string::npos;
   }
   /// Until the world refuses a command that names the mission's first tick; and longer, for those
   /// that began later. The world leaves a stop in order to the coordinator, which does not hear it.
@@ -118,20 +120,20 @@ class CommandReplay : public ByHand {
     Stranger operator_(kUrl,
                        MessageAuthenticator(std::get<MissionKey>(read_key_file(coordinator_key_))));
     ASSERT_TRUE(eventually([&] {
-      operator_.say(Bus::kCommand, Stop{{kRun, kOperator, 1, 0, 0}, false, "of the first tick"});
+      operator_.send(Bus::kCommand, Stop{{kRun, kOperator, 1, 0, 0}, false, "of the first tick"});
       return ignores(*world_);
-    })) << world_->said();
+    })) << world_->printed();
     std::this_thread::sleep_for(CommandWindow::kLength);
   }
   /// The team still obeys its operator.
   void expect_obedience() {
-    ASSERT_TRUE(moves_on()) << coordinator_->said();
-    EXPECT_EQ(say("pause"), 0) << output();
-    EXPECT_EQ(say("resume"), 0) << output();
-    EXPECT_EQ(say("stop"), 0) << output();
-    EXPECT_EQ(wait_for(coordinator_->child), 0) << coordinator_->said();
+    ASSERT_TRUE(moves_on()) << coordinator_->printed();
+    EXPECT_EQ(send_command("pause"), 0) << output();
+    EXPECT_EQ(send_command("resume"), 0) << output();
+    EXPECT_EQ(send_command("stop"), 0) << output();
+    EXPECT_EQ(wait_for(coordinator_->child), 0) << coordinator_->printed();
     ASSERT_TRUE(eventually([&] { return std::filesystem::exists(out() / "summary.json"); }));
-    EXPECT_EQ(summary()["holds"].size(), 1U) << coordinator_->said();
+    EXPECT_EQ(summary()["holds"].size(), 1U) << coordinator_->printed();
     EXPECT_TRUE(summary()["reason"].get<std::string>().starts_with("stopped by `ergocast stop`"));
   }
 
@@ -146,15 +148,15 @@ TEST_F(CommandReplay, APauseThatNoCoordinatorObeyedDoesNotPauseLater) {
   hold_next("ERGOCAST_PAUSE", 0);  // the operator's command, once it knows the mission
   Program& pause = hand("ergocast", {"pause", "--key-file", coordinator_key_});
   hold_none();
-  ASSERT_TRUE(eventually([&] { return stopped({pause.child.pid()}); })) << pause.said();
+  ASSERT_TRUE(eventually([&] { return stopped({pause.child.pid()}); })) << pause.printed();
   stop_coordinator();
   pause.child.send(SIGCONT);
-  EXPECT_EQ(wait_for(pause.child), 4) << pause.said();
+  EXPECT_EQ(wait_for(pause.child), 4) << pause.printed();
   ASSERT_GT(tape.size(), 0U);
   resume_coordinator();
   play_until_ignored(tape, *coordinator_);
-  EXPECT_EQ(coordinator_->said().find("mission is paused"), std::string::npos)
-      << coordinator_->said();
+  EXPECT_EQ(coordinator_->printed().find("mission is paused"), std::string::npos)
+      << coordinator_->printed();
   expect_obedience();
 }
 
@@ -162,7 +164,7 @@ TEST_F(CommandReplay, AStopThatNoCoordinatorObeyedDoesNotEndTheMissionLater) {
   start_mission();
   Tape tape(kUrl);
   stop_coordinator();
-  EXPECT_EQ(say("stop"), 4) << output();
+  EXPECT_EQ(send_command("stop"), 4) << output();
   EXPECT_NE(output().find("no coordinator is heard"), output().npos) << output();
   ASSERT_GT(tape.size(), 0U);
   resume_coordinator();
@@ -174,15 +176,15 @@ TEST_F(CommandReplay, AStopAtOnceThatTheTeamDidNotHearDoesNotStopItLater) {
   constexpr const char* kElsewhere = "udpm://239.255.76.67:24800?ttl=0";
   start_mission();
   Tape tape(kElsewhere);
-  EXPECT_EQ(say("stop", {"--now", "--run-id", to_hex(kRun)}, kElsewhere), 4) << output();
+  EXPECT_EQ(send_command("stop", {"--now", "--run-id", to_hex(kRun)}, kElsewhere), 4) << output();
   ASSERT_GT(tape.size(), 0U);
   pass_the_first_tick();
   play_until_ignored(tape, *coordinator_);
-  EXPECT_TRUE(world_->child.running()) << world_->said();
-  ASSERT_TRUE(moves_on()) << coordinator_->said();
-  EXPECT_EQ(say("stop", {"--now", "--run-id", to_hex(kRun)}), 0) << output();
-  EXPECT_EQ(wait_for(world_->child), 0) << world_->said();
-  EXPECT_TRUE(world_->says("stopped at once by `ergocast stop --now`")) << world_->said();
+  EXPECT_TRUE(world_->child.running()) << world_->printed();
+  ASSERT_TRUE(moves_on()) << coordinator_->printed();
+  EXPECT_EQ(send_command("stop", {"--now", "--run-id", to_hex(kRun)}), 0) << output();
+  EXPECT_EQ(wait_for(world_->child), 0) << world_->printed();
+  EXPECT_TRUE(world_->prints("stopped at once by `ergocast stop --now`")) << world_->printed();
 }
 
 }  // namespace

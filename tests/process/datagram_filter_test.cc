@@ -32,7 +32,7 @@ class DatagramFilter : public ::testing::Test {
   }
   bool passes(const Message& message) { return passes(message, channel_of(message)); }
 
-  static Message said(Message message, Incarnation life, std::int64_t sequence) {
+  static Message stamped(Message message, Incarnation life, std::int64_t sequence) {
     std::visit([&](auto& m) { m.header.incarnation = life, m.header.sequence = sequence; },
                message);
     return message;
@@ -74,7 +74,7 @@ TEST_F(DatagramFilter, PassesOnToEachRoleWhatItSubscribesTo) {
       const MessageTypes types = subscriptions[static_cast<std::size_t>(bus)];
       ASSERT_TRUE(admit_only(ear_.fd(), types));
       for (const Message& message : every_message()) {
-        EXPECT_EQ(passes(message), hears(subscriptions, static_cast<Bus>(bus), message))
+        EXPECT_EQ(passes(message), subscribes(subscriptions, static_cast<Bus>(bus), message))
             << channel_of(message) << " on bus " << bus;
       }
     }
@@ -86,10 +86,10 @@ TEST_F(DatagramFilter, InAFloodPassesOnAllThatIsNew) {
   ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, flooded));
   for (const Message& message : every_message()) {
     for (std::int64_t later = 1; later < 50; ++later) {
-      EXPECT_TRUE(passes(said(message, 0x700000001, 100 + later))) << channel_of(message);
-      EXPECT_TRUE(passes(said(message, 2, later))) << channel_of(message);
-      EXPECT_TRUE(passes(said(message, 4, later))) << "a life that nobody repeats";
-      EXPECT_TRUE(passes(said(message, 3, 5000000000 + later)));
+      EXPECT_TRUE(passes(stamped(message, 0x700000001, 100 + later))) << channel_of(message);
+      EXPECT_TRUE(passes(stamped(message, 2, later))) << channel_of(message);
+      EXPECT_TRUE(passes(stamped(message, 4, later))) << "a life that nobody repeats";
+      EXPECT_TRUE(passes(stamped(message, 3, 5000000000 + later)));
     }
   }
 }
@@ -100,7 +100,8 @@ TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
   for (const Message& message : every_message()) {
     int passed = 0;
     constexpr int kSent = 3200;
-    for (int i = 0; i < kSent; ++i) passed += passes(said(message, 0x700000001, i % 101)) ? 1 : 0;
+    for (int i = 0; i < kSent; ++i)
+      passed += passes(stamped(message, 0x700000001, i % 101)) ? 1 : 0;
     // 100 are expected: six standard deviations to either side.
     EXPECT_GT(passed, 40) << channel_of(message);
     EXPECT_LT(passed, 160) << channel_of(message);
@@ -109,12 +110,14 @@ TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
   for (const char* number : {"7", "42", "127", "1023", "NEW"}) {
     int passed = 0;
     for (int i = 0; i < 3200; ++i) {
-      passed += passes(said(command(), 2, 100), std::string("ERGOCAST_COMMAND_") + number) ? 1 : 0;
+      passed +=
+          passes(stamped(command(), 2, 100), std::string("ERGOCAST_COMMAND_") + number) ? 1 : 0;
     }
     EXPECT_LT(passed, 160) << number;
   }
   ASSERT_TRUE(admit_only(ear_.fd(), kEveryType));
-  for (int i = 0; i < 100; ++i) EXPECT_TRUE(passes(said(command(), 2, 100))) << "after the flood";
+  for (int i = 0; i < 100; ++i)
+    EXPECT_TRUE(passes(stamped(command(), 2, 100))) << "after the flood";
 }
 
 TEST_F(DatagramFilter, HasRoomForAsManyLivesAsATeamHas) {
@@ -125,8 +128,8 @@ TEST_F(DatagramFilter, HasRoomForAsManyLivesAsATeamHas) {
   int passed = 0;
   for (int i = 0; i < 1440; ++i) {
     const auto life = static_cast<Incarnation>(1 + i % 144);
-    passed += passes(said(command(), life, 100)) ? 1 : 0;
-    EXPECT_TRUE(passes(said(command(), life, 101)));
+    passed += passes(stamped(command(), life, 100)) ? 1 : 0;
+    EXPECT_TRUE(passes(stamped(command(), life, 101)));
   }
   EXPECT_LT(passed, 144);
 }

@@ -16,7 +16,7 @@ class Deploy : public OwnHost {
                 {"deploy", scenario_file("lake_search"), "--to", to, "--hosts", hosts(text)});
     return ergocast(more);
   }
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
 };
 
 constexpr const char* kTwoHosts = "ground coordinator logger sim\nrover agents=5\n";
@@ -25,8 +25,8 @@ TEST_F(Deploy, PrintsAScriptWithTheScenarioAndItsMap) {
   for (const char* to : {"ssh", "systemd"}) {
     ASSERT_EQ(deploy(to, kTwoHosts), 0) << output();
     EXPECT_TRUE(output().starts_with("#!/usr/bin/env bash\n"));
-    EXPECT_TRUE(said("scenario_files=(lake_search.textproto maps/lake.png)")) << output();
-    EXPECT_TRUE(said("url='udpm://239.255.76.67:7667?ttl=1'")) << output();
+    EXPECT_TRUE(printed("scenario_files=(lake_search.textproto maps/lake.png)")) << output();
+    EXPECT_TRUE(printed("url='udpm://239.255.76.67:7667?ttl=1'")) << output();
   }
 }
 
@@ -44,7 +44,7 @@ TEST_F(Deploy, WritesIntoAFolderAndNeverOverAFile) {
   EXPECT_EQ(deploy("compose", "ground coordinator logger sim\nrover agent 7 8 9 10 11\n",
                    {"--out", out()}),
             2);
-  EXPECT_TRUE(said("rover.compose.yaml is there already")) << output();
+  EXPECT_TRUE(printed("rover.compose.yaml is there already")) << output();
   EXPECT_EQ(text_of(out() / "rover.compose.yaml"), before);
   EXPECT_FALSE(std::filesystem::exists(out() / "ground.compose.yaml"));
 }
@@ -58,10 +58,10 @@ TEST_F(Deploy, HandsTheTableOfModesToEveryHost) {
                         hosts("ground coordinator logger sim\nrover agents=6\n"), "--out", into}),
               0)
         << output();
-    const std::string said = output();
-    const auto table = said.find("modes-");
-    ASSERT_NE(table, std::string::npos) << said;
-    const std::string name = said.substr(table, said.find('\n', table) - table);
+    const std::string printed = output();
+    const auto table = printed.find("modes-");
+    ASSERT_NE(table, std::string::npos) << printed;
+    const std::string name = printed.substr(table, printed.find('\n', table) - table);
     EXPECT_GT(std::filesystem::file_size(into / name), 1000000U);
     std::string texts;
     for (const auto& entry : std::filesystem::directory_iterator(into))
@@ -78,9 +78,9 @@ TEST_F(Deploy, SaysThatEachRobotNeedsItsOwnDriver) {
                      hosts("ground coordinator\nrover agents=40 " + roles + "\n")});
   };
   ASSERT_EQ(deployed("driver"), 0) << output();
-  EXPECT_TRUE(said("beside agent N start it as ergocast-example-driver --id N")) << output();
+  EXPECT_TRUE(printed("beside agent N start it as ergocast-example-driver --id N")) << output();
   ASSERT_EQ(deployed("sim"), 0) << output();
-  EXPECT_FALSE(said("ergocast-example-driver")) << output();
+  EXPECT_FALSE(printed("ergocast-example-driver")) << output();
 }
 
 TEST_F(Deploy, NamesEveryProblemAtOnce) {
@@ -88,27 +88,28 @@ TEST_F(Deploy, NamesEveryProblemAtOnce) {
       deploy("ssh", "ground sim\nrover agents=4\n", {"--lcm-url", "udpm://239.1.2.3:7000?ttl=0"}),
       2);
   for (const char* part : {"no host is the coordinator", "fewer than the quorum", "ttl=1"})
-    EXPECT_TRUE(said(part)) << output();
+    EXPECT_TRUE(printed(part)) << output();
   EXPECT_EQ(deploy("ssh", "ground captain\nrover agents=x\n"), 2);
-  EXPECT_TRUE(said("hosts.txt:1:8: \"captain\" is no role") && said("hosts.txt:2:7: ")) << output();
+  EXPECT_TRUE(printed("hosts.txt:1:8: \"captain\" is no role") && printed("hosts.txt:2:7: "))
+      << output();
   EXPECT_EQ(deploy("compose", "box coordinator sim agents=5\n",
                    {"--lcm-url", "udpm://239.1.2.3:7000?ttl=0"}),
             2);
-  EXPECT_TRUE(said("container")) << output();
+  EXPECT_TRUE(printed("container")) << output();
   EXPECT_EQ(deploy("rsh", kTwoHosts), 2);
   EXPECT_EQ(ergocast({"deploy", scenario_file("lake_search"), "--to", "ssh", "--hosts",
                       folder_ / "none"}),
             2);
-  EXPECT_TRUE(said("there is no such file")) << output();
+  EXPECT_TRUE(printed("there is no such file")) << output();
 }
 
 TEST_F(Deploy, RefusesKeysThatWouldNotDo) {
   const std::string name = folder_ / "team";
   EXPECT_EQ(deploy("ssh", kTwoHosts, {"--keys", name}), 2);
-  EXPECT_TRUE(said(name + ".key: there is no such file; `ergocast keygen " + name)) << output();
+  EXPECT_TRUE(printed(name + ".key: there is no such file; `ergocast keygen " + name)) << output();
   ASSERT_EQ(ergocast({"keygen", name}), 0);
   EXPECT_EQ(deploy("ssh", kTwoHosts, {"--keys", name}), 0) << output();
-  EXPECT_TRUE(said("keys=" + name + "\n")) << output();
+  EXPECT_TRUE(printed("keys=" + name + "\n")) << output();
 
   const std::string other = folder_ / "other";
   ASSERT_EQ(ergocast({"keygen", other}), 0);
@@ -118,17 +119,17 @@ TEST_F(Deploy, RefusesKeysThatWouldNotDo) {
   };
   exchange((other + ".coordinator").c_str(), (name + ".coordinator").c_str());
   EXPECT_EQ(deploy("systemd", kTwoHosts, {"--keys", name}), 2);
-  EXPECT_TRUE(said("different keys")) << output();
+  EXPECT_TRUE(printed("different keys")) << output();
   exchange((other + ".coordinator").c_str(), name.c_str());
   EXPECT_EQ(deploy("compose", kTwoHosts, {"--keys", name}), 2);
-  EXPECT_TRUE(said("every host could begin and end missions")) << output();
+  EXPECT_TRUE(printed("every host could begin and end missions")) << output();
   exchange(other.c_str(), name.c_str());
   exchange(other.c_str(), (name + ".coordinator").c_str());
   EXPECT_EQ(deploy("compose", kTwoHosts, {"--keys", name}), 2);
-  EXPECT_TRUE(said("cannot begin or end missions")) << output();
+  EXPECT_TRUE(printed("cannot begin or end missions")) << output();
   std::filesystem::permissions(name + ".key", std::filesystem::perms(0644));
   EXPECT_EQ(deploy("ssh", kTwoHosts, {"--keys", name}), 2);
-  EXPECT_TRUE(said("chmod 600")) << output();
+  EXPECT_TRUE(printed("chmod 600")) << output();
 }
 
 TEST_F(Deploy, RefusesAFileThatTheScenarioNamesByItsWholePath) {
@@ -147,16 +148,16 @@ TEST_F(Deploy, RefusesAFileThatTheScenarioNamesByItsWholePath) {
                      hosts("ground coordinator logger sim agent 0\n")});
   };
   ASSERT_EQ(walled("room.svg"), 0) << output();
-  EXPECT_TRUE(said("scenario_files=(walled.textproto room.svg)")) << output();
+  EXPECT_TRUE(printed("scenario_files=(walled.textproto room.svg)")) << output();
   EXPECT_EQ(walled((folder_ / "room.svg").string()), 2);
-  EXPECT_TRUE(said("room.svg\" is a whole path") && said("name it relative to that folder"))
+  EXPECT_TRUE(printed("room.svg\" is a whole path") && printed("name it relative to that folder"))
       << output();
 }
 
 TEST_F(Deploy, RefusesDriversOfAMissionInLockstep) {
   const char* driven = "ground coordinator logger driver\nrover agents=5\n";
   EXPECT_EQ(deploy("ssh", driven, {"--lockstep"}), 2);
-  EXPECT_TRUE(said("is in lockstep, and robots follow the clock") && said("give --realtime"))
+  EXPECT_TRUE(printed("is in lockstep, and robots follow the clock") && printed("give --realtime"))
       << output();
   EXPECT_EQ(deploy("ssh", driven, {"--realtime"}), 0) << output();
 }
@@ -165,17 +166,17 @@ TEST_F(Deploy, TheCoordinatorChangesTheScenarioAsItWasChangedHere) {
   const std::vector<std::string> changes{"--set", "law.epsilon=0.2", "--realtime", "--seed", "7"};
   ASSERT_EQ(deploy("ssh", kTwoHosts, changes), 0) << output();
   EXPECT_TRUE(
-      said("ergocast-coordinator ./lake_search.textproto '--realtime=1' --set "
-           "'law.epsilon=0.2' --seed 7"))
+      printed("ergocast-coordinator ./lake_search.textproto '--realtime=1' --set "
+              "'law.epsilon=0.2' --seed 7"))
       << output();
   ASSERT_EQ(deploy("compose", kTwoHosts, changes), 0) << output();
-  EXPECT_TRUE(said(R"("--realtime=1", "--set", "law.epsilon=0.2", "--seed", "7"])")) << output();
+  EXPECT_TRUE(printed(R"("--realtime=1", "--set", "law.epsilon=0.2", "--seed", "7"])")) << output();
   ASSERT_EQ(deploy("systemd", kTwoHosts, changes), 0) << output();
-  EXPECT_TRUE(said("overrides='--realtime=1 --set law.epsilon=0.2 --seed 7'")) << output();
+  EXPECT_TRUE(printed("overrides='--realtime=1 --set law.epsilon=0.2 --seed 7'")) << output();
   EXPECT_EQ(deploy("ssh", kTwoHosts, {"--set", "law.epsilom=0.2"}), 2);
-  EXPECT_TRUE(said("unknown field")) << output();
+  EXPECT_TRUE(printed("unknown field")) << output();
   EXPECT_EQ(deploy("systemd", kTwoHosts, {"--set", "law.epsilon= 0.2"}), 2);
-  EXPECT_TRUE(said("a service's settings cannot hold")) << output();
+  EXPECT_TRUE(printed("a service's settings cannot hold")) << output();
 }
 
 TEST_F(Deploy, SaysThatOnlyFilesTakeTheTableOfModesAlong) {
@@ -184,7 +185,7 @@ TEST_F(Deploy, SaysThatOnlyFilesTakeTheTableOfModesAlong) {
   ASSERT_EQ(ergocast({"deploy", office, "--to", "ssh", "--hosts",
                       hosts("ground coordinator logger sim\nrover agents=6\n")}),
             0);
-  EXPECT_TRUE(said("note: the table of the free domain's modes is written only with --out DIR"))
+  EXPECT_TRUE(printed("note: the table of the free domain's modes is written only with --out DIR"))
       << output();
 }
 
@@ -196,7 +197,7 @@ TEST_F(Deploy, RefusesAMapThatLiesElsewhere) {
   EXPECT_EQ(
       ergocast({"deploy", folder_ / "far.textproto", "--to", "ssh", "--hosts", hosts(kTwoHosts)}),
       2);
-  EXPECT_TRUE(said("cannot be copied to another host")) << output();
+  EXPECT_TRUE(printed("cannot be copied to another host")) << output();
 }
 
 /// Programs and scenarios as an installation has them.
@@ -222,7 +223,7 @@ class Installed : public Deploy {
 TEST_F(Installed, ShippedScenariosAreKnownByName) {
   EXPECT_EQ(installed({"check", "lake_search"}), 0) << output();
   EXPECT_TRUE(
-      said((folder_ / "share/ergocast/scenarios/lake_search.textproto: no problems").string()))
+      printed((folder_ / "share/ergocast/scenarios/lake_search.textproto: no problems").string()))
       << output();
   EXPECT_EQ(installed({"simulate", "uniform_square", "--duration", "1", "--out", out()}), 0)
       << output();
@@ -230,11 +231,11 @@ TEST_F(Installed, ShippedScenariosAreKnownByName) {
 
 TEST_F(Installed, ANameThatNothingHasIsRefusedWithThoseThatAre) {
   EXPECT_EQ(installed({"check", "lake_serch"}), 2);
-  EXPECT_TRUE(said("lake_serch") &&
-              said("harbour_patrol, home_by_dusk, lake_search, mixed_team, office, paper_fig1a"))
+  EXPECT_TRUE(printed("lake_serch") &&
+              printed("harbour_patrol, home_by_dusk, lake_search, mixed_team, office, paper_fig1a"))
       << output();
   EXPECT_EQ(installed({"check", "lake_serch.textproto"}), 2);
-  EXPECT_TRUE(said("lake_serch.textproto: there is no such file")) << output();
+  EXPECT_TRUE(printed("lake_serch.textproto: there is no such file")) << output();
 }
 
 TEST_F(Installed, AFileGoesBeforeAShippedScenarioOfItsName) {
@@ -243,7 +244,7 @@ TEST_F(Installed, AFileGoesBeforeAShippedScenarioOfItsName) {
   std::filesystem::current_path(folder_);
   EXPECT_EQ(installed({"check", "lake_search"}), 0);
   std::filesystem::current_path(before);
-  EXPECT_TRUE(said("lake_search: no problems. ") && !said("share")) << output();
+  EXPECT_TRUE(printed("lake_search: no problems. ") && !printed("share")) << output();
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class Doctor : public OwnHost {
     }
     return {};
   }
-  bool says(const std::string& check, const std::string& part) const {
+  bool prints(const std::string& check, const std::string& part) const {
     return finding(check).dump().find(part) != std::string::npos;
   }
   json told_;
@@ -81,7 +81,7 @@ TEST_F(Doctor, WithoutARouteItsOwnCommandMendsTheHost) {
   EXPECT_EQ(finding("route")["level"], "problem");
   EXPECT_EQ(finding("self test")["level"], "problem");
   EXPECT_EQ(doctor({"--peer", "1"}), 3) << output();
-  EXPECT_TRUE(says("peers", "not tried"));
+  EXPECT_TRUE(prints("peers", "not tried"));
   ASSERT_EQ(std::system(finding("route")["remedy"].get<std::string>().c_str()), 0);
   EXPECT_EQ(doctor({}), 0) << output();
 }
@@ -95,7 +95,7 @@ TEST_F(Doctor, WhoIsOnAPortIsNamed) {
   const Squatter shares(24001, true);
   EXPECT_EQ(doctor({}), 1);
   EXPECT_EQ(finding("ports")["level"], "warning");
-  EXPECT_TRUE(says("ports", "24001: process_tests (pid " + std::to_string(getpid()) + ")"))
+  EXPECT_TRUE(prints("ports", "24001: process_tests (pid " + std::to_string(getpid()) + ")"))
       << output();
 }
 
@@ -103,14 +103,14 @@ TEST_F(Doctor, APortThatSomebodyKeepsForItselfIsAProblem) {
   const Squatter alone(24000, false);
   EXPECT_EQ(doctor({"--peer", "1"}), 1);
   EXPECT_EQ(finding("ports")["level"], "problem");
-  EXPECT_TRUE(says("ports", "process_tests")) << output();
+  EXPECT_TRUE(prints("ports", "process_tests")) << output();
 }
 
 TEST_F(Doctor, NothingIsSentToARunsPorts) {
   const Squatter swarm(24000, true), world(24001, true), command(24002, true);
   doctor({});
   doctor({"--peer", "1"});  // the port is in use
-  EXPECT_TRUE(says("peers", "not tried")) << output();
+  EXPECT_TRUE(prints("peers", "not tried")) << output();
   EXPECT_EQ(swarm.datagrams_heard(), 0);
   EXPECT_EQ(world.datagrams_heard(), 0);
   EXPECT_EQ(command.datagrams_heard(), 0);
@@ -121,11 +121,11 @@ TEST_F(Doctor, ARunIsOverheardAndLeftInPeace) {
                                  out(), "--lcm-url", kUrl});
   ASSERT_TRUE(recorded(1000));
   EXPECT_EQ(doctor({"--peer", "1"}), 1);  // because --peer is not tried
-  EXPECT_TRUE(says("swarm bus", "run ")) << output();
-  EXPECT_TRUE(says("swarm bus", "running")) << output();
+  EXPECT_TRUE(prints("swarm bus", "run ")) << output();
+  EXPECT_TRUE(prints("swarm bus", "running")) << output();
   EXPECT_EQ(finding("ports")["level"], "note");
-  EXPECT_TRUE(says("ports", "ergocast-")) << output();
-  EXPECT_TRUE(says("peers", "not tried")) << output();
+  EXPECT_TRUE(prints("ports", "ergocast-")) << output();
+  EXPECT_TRUE(prints("peers", "not tried")) << output();
   run.send(SIGTERM);
   wait_for(run);
 }

@@ -26,10 +26,10 @@ TEST_F(DrivenRobots, FlyAWholeMissionWhoseRecordIsComplete) {
   Program& driver = hand("ergocast-example-driver");
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
   Program& coordinator = hand("ergocast-coordinator", {realtime_scenario("30")});
-  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
-  EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
-  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
-  EXPECT_TRUE(driver.says("finished at tick 300: mission complete")) << driver.said();
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.printed();
+  EXPECT_EQ(wait_for(driver.child), 0) << driver.printed();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.printed();
+  EXPECT_TRUE(driver.prints("finished at tick 300: mission complete")) << driver.printed();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["ticks"], 300);
 }
@@ -40,11 +40,11 @@ TEST_F(DrivenRobots, StandStillAtOnceWhenTheyAreToldToStop) {
   Program& driver = hand("ergocast-example-driver");
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
   hand("ergocast-coordinator", {realtime_scenario(kEndless)});
-  ASSERT_TRUE(recorded(30000)) << driver.said();
+  ASSERT_TRUE(recorded(30000)) << driver.printed();
   ASSERT_EQ(ergocast({"stop", "--now", "--lcm-url", kUrl}), 0) << output();
-  EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
-  EXPECT_TRUE(driver.says("stopped at once")) << driver.said();
-  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+  EXPECT_EQ(wait_for(driver.child), 0) << driver.printed();
+  EXPECT_TRUE(driver.prints("stopped at once")) << driver.printed();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.printed();
   const auto rows = recorded_rows(out());
   ASSERT_FALSE(rows.empty());
   for (const auto& [id, row] : rows.rbegin()->second) EXPECT_TRUE(row.stands()) << id;
@@ -56,24 +56,25 @@ TEST_F(DrivenRobots, RefuseASimulatedWorldBesideThem) {
   Program& driver = hand("ergocast-example-driver");
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
   hand("ergocast-coordinator", {realtime_scenario(kEndless)});
-  ASSERT_TRUE(recorded(30000)) << driver.said();
+  ASSERT_TRUE(recorded(30000)) << driver.printed();
   Program& sim = hand("ergocast-sim");
-  EXPECT_EQ(wait_for(sim.child), 4) << sim.said();
-  EXPECT_TRUE(sim.says("a driver, or another world, moves its vehicles already")) << sim.said();
-  EXPECT_EQ(sim.said().find("moving from tick"), std::string::npos) << "it has moved nothing";
-  ASSERT_TRUE(moves_on()) << driver.said();
+  EXPECT_EQ(wait_for(sim.child), 4) << sim.printed();
+  EXPECT_TRUE(sim.prints("a driver, or another world, moves its vehicles already"))
+      << sim.printed();
+  EXPECT_EQ(sim.printed().find("moving from tick"), std::string::npos) << "it has moved nothing";
+  ASSERT_TRUE(moves_on()) << driver.printed();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
-  EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
-  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+  EXPECT_EQ(wait_for(driver.child), 0) << driver.printed();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.printed();
 }
 
 TEST_F(DrivenRobots, RefuseAMissionInLockstep) {
   Program& driver = hand("ergocast-example-driver");
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
   Program& coordinator = hand("ergocast-coordinator", {scenario()});
-  EXPECT_EQ(wait_for(driver.child), 4) << driver.said();
-  EXPECT_TRUE(driver.says("give it pace: REALTIME")) << driver.said();
-  EXPECT_TRUE(coordinator.says("running")) << coordinator.said();
+  EXPECT_EQ(wait_for(driver.child), 4) << driver.printed();
+  EXPECT_TRUE(driver.prints("give it pace: REALTIME")) << driver.printed();
+  EXPECT_TRUE(coordinator.prints("running")) << coordinator.printed();
 }
 
 /// Each robot has a driver of its own, which knows no other place.
@@ -135,12 +136,12 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver)
     hand("ergocast-agent", {"--id", id});
   }
   Program& coordinator = hand("ergocast-coordinator", {team_of_four()});
-  ASSERT_TRUE(eventually_all({0, 1, 2, 3}, true)) << coordinator.said() << drivers[2]->said();
+  ASSERT_TRUE(eventually_all({0, 1, 2, 3}, true)) << coordinator.printed() << drivers[2]->printed();
 
   Program& second = hand("ergocast-example-driver", {"--id", "2"});
-  EXPECT_EQ(wait_for(second.child), 4) << second.said();
-  EXPECT_TRUE(second.says("robot 2 is driven by another driver already")) << second.said();
-  EXPECT_TRUE(drivers[2]->child.running()) << drivers[2]->said();
+  EXPECT_EQ(wait_for(second.child), 4) << second.printed();
+  EXPECT_TRUE(second.prints("robot 2 is driven by another driver already")) << second.printed();
+  EXPECT_TRUE(drivers[2]->child.running()) << drivers[2]->printed();
 
   drivers[2]->child.send(SIGKILL);
   EXPECT_TRUE(eventually_all({0, 1, 3}, false)) << "nobody echoes for robot 2: the lease is over";
@@ -148,7 +149,7 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver)
   EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << "all are heard again";
 
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
-  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.printed();
   // The rows of a tick are as far apart in time as the drivers' ticks.
   EXPECT_GE(least_distance_m(), kDistance_m - 2 * kStep_m);
 }
@@ -162,28 +163,28 @@ TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsOutOfOrderAndFromTheFuture) 
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-example-driver", {"--id", id});
   BusObserver observer(kUrl);
   Program& coordinator = hand("ergocast-coordinator", {team_of_four()});
-  ASSERT_TRUE(eventually_all({0, 1, 2, 3}, true)) << coordinator.said();
-  ASSERT_TRUE(observer.hears([&] { return observer.said(observer.member(1)) > 0; }));
+  ASSERT_TRUE(eventually_all({0, 1, 2, 3}, true)) << coordinator.printed();
+  ASSERT_TRUE(observer.observes([&] { return observer.steps_sent(observer.member(1)) > 0; }));
   Beacon late;
   late.header = observer.block(observer.member(1)).header;
   late.position_m = {12, 12, 0};
   late.echo_count = 4;
   Stranger stranger(kUrl);
   EXPECT_TRUE(eventually([&] {
-    stranger.say(Bus::kSwarm, late);
-    return first.said().find("beacons of teammates overtake each other") != std::string::npos;
-  })) << first.said();
+    stranger.send(Bus::kSwarm, late);
+    return first.printed().find("beacons of teammates overtake each other") != std::string::npos;
+  })) << first.printed();
   // It echoes what nobody has sent.
   Beacon early = late;
   early.roster_revision = std::int64_t{1} << 40;
   early.echoes.fill(40000);
   EXPECT_TRUE(eventually([&] {
     early.header.sequence += 3;  // soon newer than the newest of agent 1
-    stranger.say(Bus::kSwarm, early);
-    return first.said().find("answers to one that this agent has not sent yet") !=
+    stranger.send(Bus::kSwarm, early);
+    return first.printed().find("answers to one that this agent has not sent yet") !=
            std::string::npos;
-  })) << first.said();
-  EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << first.said();
+  })) << first.printed();
+  EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << first.printed();
   EXPECT_GE(least_distance_m(), kDistance_m - 2 * kStep_m);
 }
 

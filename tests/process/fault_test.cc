@@ -16,7 +16,7 @@ using Fault = RunningMission;
 TEST_F(Fault, CtrlCEndsTheMissionInOrderWithACompleteRecord) {
   Child mission = launch_endless(scenario());
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "stopped");
   EXPECT_EQ(summary()["record_complete"], true);
   EXPECT_TRUE(std::filesystem::exists(out() / "report.html"));
@@ -37,7 +37,7 @@ TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
   release();
   ASSERT_TRUE(eventually([] { return processes_on_own_host().size() == 1; }));
   mission.send(SIGCONT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["restarts"], 0);
 }
@@ -50,10 +50,10 @@ TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
   signal_to({"ergocast-logger"}, SIGSTOP);
   release();
   // The world continues without it after its time-out, to the end.
-  ASSERT_TRUE(logs("coordinator", "mission ended")) << said();
+  ASSERT_TRUE(logs("coordinator", "mission ended")) << printed();
   EXPECT_NE(log_of("sim").find("going on without"), std::string::npos);
   signal_to({"ergocast-logger"}, SIGCONT);
-  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
   EXPECT_EQ(summary()["record_complete"], false);
   EXPECT_EQ(summary()["result"], "failed");
 }
@@ -72,7 +72,7 @@ TEST_F(Fault, ParentThatIgnoresItsChildrenIsNoObstacle) {
 TEST_F(Fault, HangingAgentIsNamedByTheTimeOut) {
   Child mission = launch_endless(scenario("lockstep_timeout_s: 5"));
   signal_to(agent(3), SIGSTOP);
-  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
   const std::string reason = summary()["reason"];
   EXPECT_NE(reason.find("agent 3 has not answered tick"), std::string::npos) << reason;
 }
@@ -82,7 +82,7 @@ TEST_F(Fault, YoungerOfTwoAgentsWithOneIdStopsAndSaysWhy) {
   EXPECT_EQ(run("ergocast-agent", {"--id", "0", "--lcm-url", kUrl}), 4);
   EXPECT_NE(output().find("agent 0 is already running on"), std::string::npos) << output();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
@@ -126,9 +126,9 @@ TEST_F(Fault, ForeignAndDamagedDatagramsAreCountedAndHaveNoEffect) {
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
   Adversary adversary(std::get<LcmUrl>(LcmUrl::parse(kUrl)));
   for (std::uint64_t round = 0; round < 200; ++round) adversary.strike(round);
-  ASSERT_TRUE(moves_on(200000)) << said();
+  ASSERT_TRUE(moves_on(200000)) << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   const auto refused = summary()["messages"]["refused"];
   EXPECT_GT(refused["size"], 0);

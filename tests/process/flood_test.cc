@@ -58,7 +58,7 @@ TEST_F(Flood, OfDatagramsLongerThanOursCostsNoMemory) {
   send_long_datagrams(Bus::kSwarm);
   EXPECT_LT(resident_kb(who) - before_kb, 2000);
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
 TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
@@ -74,7 +74,7 @@ TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
     EXPECT_LT(grown_kb, kGrowth_kb) << (i == 0 ? "agent" : "logger");
   }
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["restarts"], 0);
 }
 
@@ -83,7 +83,7 @@ class RateOffender {
  public:
   RateOffender(const std::string& url, bool in_its_place)
       : bus_(std::get<LcmUrl>(LcmUrl::parse(url)).of(Bus::kSwarm)), in_its_place_(in_its_place) {
-    bus_.subscribe("ERGOCAST_AGENT_STATUS_3", &RateOffender::hear, this)->setQueueCapacity(0);
+    bus_.subscribe("ERGOCAST_AGENT_STATUS_3", &RateOffender::receive, this)->setQueueCapacity(0);
   }
   void exceed_rate() {
     bus_.handleTimeout(5);
@@ -95,7 +95,7 @@ class RateOffender {
   bool has_heard() const { return !bytes_.empty(); }
 
  private:
-  void hear(const lcm::ReceiveBuffer* heard, const std::string& /*channel*/) {
+  void receive(const lcm::ReceiveBuffer* heard, const std::string& /*channel*/) {
     const auto* data = static_cast<const std::byte*>(heard->data);
     if (bytes_.empty()) bytes_.assign(data, data + heard->data_size);
   }
@@ -144,7 +144,7 @@ TEST_F(Babble, AnAgentThatSaysAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamFlie
   EXPECT_TRUE(moves_on(10000));
   signal_to(agent(3), SIGCONT);
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["restarts"], 0);
 }
 
@@ -160,7 +160,7 @@ TEST_F(Babble, WhatOthersRepeatOfAnAgentIsLimitedAndNotItsFault) {
     EXPECT_TRUE(is_alive(agent)) << agent;
   }
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(log_of("coordinator").find("silent"), std::string::npos) << log_of("coordinator");
 }
 
@@ -205,7 +205,7 @@ TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
     replayer.replay(kAtOnce);
     return recorded_bytes() > from + 30000;
   })) << "stands still\n"
-      << said();
+      << printed();
   // A new coordinator asks the agents for the mission, whose parts are repeats, too.
   const pid_t first = pids({"ergocast-coordinator"}).front();
   kill(first, SIGKILL);
@@ -213,9 +213,9 @@ TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
     replayer.replay(kAtOnce);
     return log_of("coordinator").find("taken over") != std::string::npos;
   })) << log_of("coordinator");
-  EXPECT_TRUE(moves_on()) << said();
+  EXPECT_TRUE(moves_on()) << printed();
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["restarts"], 1) << "the test's own";
   EXPECT_EQ(summary()["messages"]["refused"]["range"], 0);
 }
@@ -234,9 +234,9 @@ TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
   kill_next(agent(2));
   BusObserver observer(kUrl);
   const auto run_to = [&observer](Tick tick) {
-    return observer.hears([&] { return observer.answered(observer.member(0)) >= tick; });
+    return observer.observes([&] { return observer.answered(observer.member(0)) >= tick; });
   };
-  ASSERT_TRUE(run_to(kWarmUp)) << said();
+  ASSERT_TRUE(run_to(kWarmUp)) << printed();
   std::map<std::string, std::pair<pid_t, long>> before;
   for (const char* program :
        {"ergocast-logger", "ergocast-sim", "ergocast-coordinator", "--id 0", "--id 2"}) {
@@ -244,14 +244,15 @@ TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
     ASSERT_EQ(found.size(), 1U) << program;
     before[program] = {found.front(), resident_kb(found.front())};
   }
-  for (Tick tick = kWarmUp; tick < ticks; tick += 3000) ASSERT_TRUE(run_to(tick + 3000)) << said();
+  for (Tick tick = kWarmUp; tick < ticks; tick += 3000)
+    ASSERT_TRUE(run_to(tick + 3000)) << printed();
   for (const auto& [program, at] : before) {
     const long grown_kb = resident_kb(at.first) - at.second;
     RecordProperty(program + "_grown_kb", std::to_string(grown_kb));
     EXPECT_LT(grown_kb, kGrowth_kb) << program;
   }
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["messages"]["refused"]["rate"], 0);
 }
 

@@ -19,7 +19,7 @@ class Found : public OwnHost {
     }
     return files;
   }
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
 
   /// Starts a mission that flies until it is stopped, and waits for its entry and first rows.
   Child start_mission(const std::string& name, const std::vector<std::string>& more = {}) {
@@ -55,18 +55,18 @@ class Found : public OwnHost {
 
 TEST_F(Found, TheOnlyLiveRunNeedsNoUrl) {
   EXPECT_EQ(ergocast({"list"}), 0);
-  EXPECT_TRUE(said("no run of this user is live on this host")) << output();
+  EXPECT_TRUE(printed("no run of this user is live on this host")) << output();
   Child run = start_mission("one");
   const auto runs = listed();
   ASSERT_EQ(runs.size(), 1U);
   EXPECT_EQ(runs[0]["run_dir"], (folder_ / "one").string());
   const std::string id = runs[0]["run_id"];
   EXPECT_EQ(ergocast({"list"}), 0);
-  EXPECT_TRUE(said(id + "  quadrimodal_corners, since ")) << output();
+  EXPECT_TRUE(printed(id + "  quadrimodal_corners, since ")) << output();
   ergocast({"status"});
-  EXPECT_TRUE(said("quadrimodal_corners, run " + id + ", running")) << output();
+  EXPECT_TRUE(printed("quadrimodal_corners, run " + id + ", running")) << output();
   EXPECT_EQ(ergocast({"stop"}), 0) << output();
-  EXPECT_TRUE(said("run " + id + ": asking the coordinator")) << output();
+  EXPECT_TRUE(printed("run " + id + ": asking the coordinator")) << output();
   EXPECT_EQ(wait_for(run), 0);
   EXPECT_TRUE(entries().empty());
 }
@@ -76,7 +76,7 @@ TEST_F(Found, ItsKeyIsTakenWithIt) {
   ASSERT_EQ(ergocast({"keygen", key}), 0) << output();
   Child run = start_mission("one", {"--key-file", key.string() + ".coordinator.key"});
   ergocast({"status"});
-  EXPECT_TRUE(said(", running")) << output();
+  EXPECT_TRUE(printed(", running")) << output();
   EXPECT_EQ(ergocast({"stop", "--now"}), 0) << output();
   wait_for(run);
 }
@@ -85,7 +85,8 @@ TEST_F(Found, OfTwoOneMustBeChosen) {
   Child first = start_mission("one"), second = start_mission("two");
   for (const char* command : {"status", "stop", "watch"}) {
     EXPECT_EQ(ergocast({command}), 2);
-    EXPECT_TRUE(said("several runs of this user are live; choose one with --run-id:\n  --run-id "))
+    EXPECT_TRUE(
+        printed("several runs of this user are live; choose one with --run-id:\n  --run-id "))
         << output();
   }
   EXPECT_TRUE(first.running() && second.running());
@@ -105,7 +106,7 @@ TEST_F(Found, AnEmergencyStopsAllLiveRunsOfThisUser) {
     const auto summary = nlohmann::json::parse(text_of(folder_ / name / "summary.json"));
     EXPECT_EQ(summary["emergency_stop"], true) << name;
     const std::string id = summary["run_id"];
-    EXPECT_TRUE(said("run " + id + ": stopped at tick ")) << output();
+    EXPECT_TRUE(printed("run " + id + ": stopped at tick ")) << output();
   }
 }
 
@@ -113,12 +114,12 @@ TEST_F(Found, AnEmergencyStopsOnlyTheRunThatIsNamed) {
   Child first = start_mission("one"), second = start_mission("two");
   const std::string named = id_of("one"), other = id_of("two");
   EXPECT_EQ(ergocast({"stop", "--now", "--run-id", named}), 0) << output();
-  EXPECT_FALSE(said(other)) << output();
+  EXPECT_FALSE(printed(other)) << output();
   EXPECT_EQ(wait_for(first), 0);
   ASSERT_EQ(listed().size(), 1U);
   EXPECT_TRUE(second.running());
   EXPECT_EQ(ergocast({"stop", "--now"}), 0) << output();
-  EXPECT_TRUE(said(other)) << output();
+  EXPECT_TRUE(printed(other)) << output();
   EXPECT_EQ(wait_for(second), 0);
 }
 
@@ -131,7 +132,7 @@ TEST_F(Found, AnEmergencyOfARunThatCannotBeTakenStopsTheOthers) {
   text.replace(at, text.find('"', at) - at, "9.9.9");
   std::ofstream(file) << text;  // the same file: its lock stays
   EXPECT_EQ(ergocast({"stop", "--now"}), 2);
-  EXPECT_TRUE(said("is flown by ergocast 9.9.9, this is ")) << output();
+  EXPECT_TRUE(printed("is flown by ergocast 9.9.9, this is ")) << output();
   EXPECT_EQ(wait_for(second), 0);
   EXPECT_TRUE(first.running());
   first.send(SIGINT);
@@ -141,7 +142,7 @@ TEST_F(Found, AnEmergencyOfARunThatCannotBeTakenStopsTheOthers) {
 TEST_F(Found, ItsProcessesAreNamedWithTheirIds) {
   Child run = start_mission("one");
   EXPECT_EQ(ergocast({"list"}), 0);
-  EXPECT_TRUE(said("processes: run " + std::to_string(run.pid()) + ", logger ")) << output();
+  EXPECT_TRUE(printed("processes: run " + std::to_string(run.pid()) + ", logger ")) << output();
   ASSERT_EQ(ergocast({"list", "--pid", "agent-2"}), 0) << output();
   const std::string pid = output();
   EXPECT_NE(text_of("/proc/" + pid.substr(0, pid.find('\n')) + "/cmdline").find("ergocast-agent"),
@@ -149,7 +150,7 @@ TEST_F(Found, ItsProcessesAreNamedWithTheirIds) {
       << pid;
   EXPECT_EQ(std::to_string(listed()[0]["processes"]["agent-2"].get<int>()) + '\n', pid);
   EXPECT_EQ(ergocast({"list", "--pid", "agent-9"}), 2);
-  EXPECT_TRUE(said("has no process agent-9 now; it has logger, sim, coordinator, agent-0"))
+  EXPECT_TRUE(printed("has no process agent-9 now; it has logger, sim, coordinator, agent-0"))
       << output();
   EXPECT_EQ(kill(std::stoi(pid), SIGKILL), 0);
   ASSERT_TRUE(eventually([&] {
@@ -162,8 +163,8 @@ TEST_F(Found, ItsProcessesAreNamedWithTheirIds) {
 TEST_F(Found, HelpSaysWhereACommandLooks) {
   for (const char* command : {"status", "watch", "stop", "pause", "resume"}) {
     EXPECT_EQ(ergocast({command, "--help"}), 0);
-    EXPECT_TRUE(said("default: that of your live run on this host")) << command << output();
-    EXPECT_FALSE(said("URL=udpm")) << command << output();
+    EXPECT_TRUE(printed("default: that of your live run on this host")) << command << output();
+    EXPECT_FALSE(printed("URL=udpm")) << command << output();
   }
 }
 
@@ -173,7 +174,8 @@ TEST_F(Found, ARunThatWasKilledIsSaidAndNotTaken) {
   wait_for(run);
   ASSERT_EQ(entries().size(), 1U);
   EXPECT_EQ(ergocast({"list"}), 0);
-  EXPECT_TRUE(said("warning: run ") && said("was killed") && said("no run of this user is live"))
+  EXPECT_TRUE(printed("warning: run ") && printed("was killed") &&
+              printed("no run of this user is live"))
       << output();
   EXPECT_TRUE(entries().empty());
 }
@@ -186,7 +188,7 @@ TEST_F(Found, ARunOfAnotherVersionIsNotTaken) {
   text.replace(at, text.find('"', at) - at, "9.9.9");
   std::ofstream(file) << text;  // the same file: its lock stays
   EXPECT_EQ(ergocast({"stop"}), 2);
-  EXPECT_TRUE(said("is flown by ergocast 9.9.9, this is ")) << output();
+  EXPECT_TRUE(printed("is flown by ergocast 9.9.9, this is ")) << output();
   EXPECT_TRUE(run.running());
   run.send(SIGINT);
   EXPECT_EQ(wait_for(run), 0);
@@ -210,7 +212,7 @@ TEST_F(Found, AMissionRunsWhereNothingCanBeRegistered) {
   EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--duration", "5", "--out",
                       folder_ / "one"}),
             0);
-  EXPECT_TRUE(said("warning: " + registry().string() + ": other users own it, read it or write"))
+  EXPECT_TRUE(printed("warning: " + registry().string() + ": other users own it, read it or write"))
       << output();
   EXPECT_TRUE(fs::is_empty(registry()));
 }

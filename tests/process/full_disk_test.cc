@@ -56,17 +56,17 @@ TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
   const Tick full_at = recorded_rows(out()).rbegin()->first;
   // Twice as many ticks as a recorder buffers: some of them it had not yet tried to write.
   BusObserver observer(kUrl);
-  ASSERT_TRUE(observer.hears([&] {
+  ASSERT_TRUE(observer.observes([&] {
     return observer.answered(observer.member(0)) > full_at + 2200;
-  })) << said();
+  })) << printed();
   EXPECT_LT(recorded_bytes(), bytes + 200000);
   ASSERT_TRUE(resize_disk(kRoomy));
   // The buffered rows are written first; the gap comes after them.
   ASSERT_TRUE(eventually([&] { return recorded_rows(out()).rbegin()->first > full_at + 2200; }))
       << log_of("logger");
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
-  EXPECT_EQ(summary()["restarts"], 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_EQ(summary()["restarts"], 0) << printed();
   EXPECT_EQ(summary()["interruptions"], 1) << log_of("logger");
   EXPECT_GT(summary()["gaps"], 0);
   EXPECT_NE(log_of("logger").find("written again"), std::string::npos) << log_of("logger");

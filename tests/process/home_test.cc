@@ -22,15 +22,15 @@ TEST_F(AgentsWithAStation, RestAtHomeAsStatusAndSummarySay) {
   const auto file = scenario(
       "", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } reserve_s: 9999800 }\n");
   Child mission = launch_endless(file, {"--lcm-url", kUrl});
-  EXPECT_TRUE(eventually([&] { return shown("rests") == 4; })) << output() << said();
+  EXPECT_TRUE(eventually([&] { return shown("rests") == 4; })) << output() << printed();
   ASSERT_TRUE(moves_on());
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
-  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
   const auto stations = summary()["stations"];
   EXPECT_EQ(stations["agents"], 4);
   EXPECT_EQ(stations["home"], 4) << stations;
   EXPECT_TRUE(stations["late"].empty()) << stations;
-  EXPECT_TRUE(said("4 of 4 agents home in time")) << said();
+  EXPECT_TRUE(printed("4 of 4 agents home in time")) << printed();
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
@@ -49,8 +49,8 @@ TEST_F(AgentsWithAStation, AreNotJudgedWhereTheMissionEndsBefore) {
       scenario("", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } }\n");
   Child mission = launch_endless(file, {"--lcm-url", kUrl});
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
-  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
-  EXPECT_TRUE(said("no agent had to be home yet")) << said();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
+  EXPECT_TRUE(printed("no agent had to be home yet")) << printed();
   EXPECT_EQ(summary()["stations"]["agents"], 0);
 }
 

@@ -25,7 +25,7 @@ class Outsider {
                lcm::LCM(url.of(Bus::kCommand))},
         ears_{Ear{this, 0}, Ear{this, 1}, Ear{this, 2}} {
     for (std::size_t bus = 0; bus < buses_.size(); ++bus) {
-      buses_[bus].subscribe(".*", &Ear::hear, &ears_[bus])->setQueueCapacity(0);
+      buses_[bus].subscribe(".*", &Ear::receive, &ears_[bus])->setQueueCapacity(0);
     }
   }
 
@@ -53,7 +53,7 @@ class Outsider {
   struct Ear {
     Outsider* owner;
     std::size_t bus;
-    void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
       const auto* data = static_cast<const std::byte*>(buffer->data);
       owner->keep({bus, channel, {data, data + buffer->data_size}});
     }
@@ -126,8 +126,8 @@ TEST_F(Keyed, OutsidersChangeNotOneBitOfTheMission) {
   ASSERT_TRUE(eventually([&] {
     outsider.turn();
     return !mission.running();
-  })) << said();
-  EXPECT_EQ(mission.exit_code(), 0) << said();
+  })) << printed();
+  EXPECT_EQ(mission.exit_code(), 0) << printed();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["restarts"], 0);
   EXPECT_EQ(summary()["record_complete"], true);
@@ -148,17 +148,17 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
   Stranger outsider(kUrl), member(kUrl, authenticator(team_)),
       coordinator(kUrl, authenticator(coordinator_));
   for (int i = 0; i < 20; ++i) {
-    outsider.say(Bus::kSwarm, stop("no key"));
-    member.say(Bus::kSwarm, stop("an agent's key"));
-    outsider.say(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
-    member.say(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
+    outsider.send(Bus::kSwarm, stop("no key"));
+    member.send(Bus::kSwarm, stop("an agent's key"));
+    outsider.send(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
+    member.send(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
   }
   EXPECT_TRUE(logs("coordinator", "somebody speaks without our --key-file"));
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   EXPECT_EQ(ergocast({"pause", "--lcm-url", kUrl, "--key-file", team_}), 2) << output();
   ASSERT_TRUE(eventually([&] {
-    coordinator.say(Bus::kSwarm, stop("the operator"));
-    coordinator.say(Bus::kCommand, stop("the operator"));
+    coordinator.send(Bus::kSwarm, stop("the operator"));
+    coordinator.send(Bus::kCommand, stop("the operator"));
     return !mission.running();
   }));
   EXPECT_TRUE(logs("coordinator", "the operator"));
@@ -170,15 +170,15 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
 
 TEST_F(Keyed, TheCoordinatorsKeyPausesAMissionAndLetsItGoOn) {
   Child mission = launch_endless(scenario(), {"--key-file", coordinator_, "--lcm-url", kUrl});
-  const auto say = [&](const std::string& command) {
+  const auto send = [&](const std::string& command) {
     return ergocast({command, "--lcm-url", kUrl, "--key-file", coordinator_});
   };
-  ASSERT_EQ(say("pause"), 0) << output();
+  ASSERT_EQ(send("pause"), 0) << output();
   EXPECT_NE(output().find("paused at tick "), output().npos) << output();
-  ASSERT_EQ(say("resume"), 0) << output();
-  ASSERT_TRUE(moves_on()) << said();
-  ASSERT_EQ(say("stop"), 0) << output();
-  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  ASSERT_EQ(send("resume"), 0) << output();
+  ASSERT_TRUE(moves_on()) << printed();
+  ASSERT_EQ(send("stop"), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
   EXPECT_EQ(summary()["holds"].size(), 1U);
 }
 
@@ -189,7 +189,7 @@ TEST_F(Keyed, ProcessesByHandFlyWithTheirOwnFiles) {
   Program& coordinator =
       hand("ergocast-coordinator", {scenario(), "--duration", "20", "--key-file", coordinator_});
   for (int id = 0; id < 4; ++id) hand("ergocast-agent", {"--key-file", team_});
-  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.printed();
   ASSERT_TRUE(eventually([&] { return std::filesystem::exists(out() / "summary.json"); }));
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
@@ -206,9 +206,9 @@ TEST_F(Keyed, WhoeverLacksTheKeyIsToldSo) {
   EXPECT_NE(output().find(", authenticated"), output().npos) << output();
 
   Program& agent = hand("ergocast-agent");
-  EXPECT_TRUE(agent.says("a team with a --key-file is on this URL"));
+  EXPECT_TRUE(agent.prints("a team with a --key-file is on this URL"));
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
 TEST_F(Keyed, KeysThatWouldNotDoAreRefusedAtOnce) {

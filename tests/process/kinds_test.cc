@@ -50,9 +50,9 @@ class KindByHand : public ByHand {};
 TEST_F(KindByHand, ThatTheMissionDoesNotHaveEndsTheAgentWithASentence) {
   Program& coordinator = hand("ergocast-coordinator", {scenario_file("mixed_team")});
   Program& stranger = hand("ergocast-agent", {"--id", "0", "--kind", "diver"});
-  EXPECT_EQ(wait_for(stranger.child), 4) << stranger.said();
-  EXPECT_TRUE(stranger.says("the mission has no kind \"diver\": its kinds are scout, inspector"))
-      << stranger.said() << coordinator.said();
+  EXPECT_EQ(wait_for(stranger.child), 4) << stranger.printed();
+  EXPECT_TRUE(stranger.prints("the mission has no kind \"diver\": its kinds are scout, inspector"))
+      << stranger.printed() << coordinator.printed();
 }
 
 }  // namespace

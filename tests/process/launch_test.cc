@@ -21,13 +21,13 @@ class Launch : public RunningMission {
     RunningMission::TearDown();
   }
   bool comes_to_say(const std::string& part) const {
-    return eventually([&] { return said(part); });
+    return eventually([&] { return printed(part); });
   }
   void end(Child& mission, int restarts) {
     mission.send(SIGINT);
-    EXPECT_EQ(wait_for(mission), 0) << said();
-    EXPECT_EQ(summary()["restarts"], restarts) << said();
-    EXPECT_EQ(summary()["record_complete"], true) << said();
+    EXPECT_EQ(wait_for(mission), 0) << printed();
+    EXPECT_EQ(summary()["restarts"], restarts) << printed();
+    EXPECT_EQ(summary()["record_complete"], true) << printed();
   }
 };
 
@@ -35,8 +35,8 @@ TEST_F(Launch, WithoutTheFolderOfLogsADeadAgentComesBackAndLogsNowhere) {
   Child mission = launch_endless(scenario());
   fs::remove_all(out() / "log");
   kill_next(agent(2));
-  ASSERT_TRUE(comes_to_say("agent-2: restarted (1 of 3)")) << said();
-  EXPECT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(comes_to_say("agent-2: restarted (1 of 3)")) << printed();
+  EXPECT_TRUE(moves_on()) << printed();
   end(mission, 1);
   EXPECT_FALSE(fs::exists(out() / "log"));
 }
@@ -48,10 +48,10 @@ TEST_F(Launch, WithoutARoomForOneMoreFileADeadAgentComesBackOnceThereIs) {
   const rlimit none{3, former.rlim_max};
   ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, &none, nullptr), 0);
   kill_next(agent(2));
-  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << said();
-  EXPECT_TRUE(said("could not be executed")) << said();
+  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << printed();
+  EXPECT_TRUE(printed("could not be executed")) << printed();
   ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, &former, nullptr), 0);
-  EXPECT_TRUE(moves_on()) << said();
+  EXPECT_TRUE(moves_on()) << printed();
   end(mission, 1);
 }
 
@@ -62,9 +62,9 @@ TEST_F(Launch, WithoutRoomForOneMoreProcessADeadAgentComesBackOnceThereIs) {
   Child mission = launch_endless(scenario());
   std::ofstream(full).close();
   kill_next(agent(2));
-  ASSERT_TRUE(comes_to_say("Resource temporarily unavailable")) << said();
+  ASSERT_TRUE(comes_to_say("Resource temporarily unavailable")) << printed();
   fs::remove(full);
-  EXPECT_TRUE(moves_on()) << said();
+  EXPECT_TRUE(moves_on()) << printed();
   end(mission, 1);
 }
 
@@ -90,11 +90,11 @@ TEST_F(OwnPrograms, AreReplacedWhileAnAgentDiesAndItComesBackWithTheNewOne) {
   fs::remove(agent_program());
   std::ofstream(agent_program()) << "half of a program";
   kill_next(agent(2));
-  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << said();
-  ASSERT_TRUE(logs("agent-2", "cannot be executed: Permission denied", 2)) << said();
+  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << printed();
+  ASSERT_TRUE(logs("agent-2", "cannot be executed: Permission denied", 2)) << printed();
   fs::remove(agent_program());
   fs::create_symlink(real, agent_program());
-  EXPECT_TRUE(moves_on()) << said();
+  EXPECT_TRUE(moves_on()) << printed();
   end(mission, 1);
 }
 
@@ -102,8 +102,8 @@ TEST_F(OwnPrograms, ThatAreGoneForGoodFailTheMission) {
   Child mission = launch_endless(scenario());
   fs::remove(agent_program());
   kill_next(agent(2));
-  EXPECT_EQ(wait_for(mission), 4) << said();
-  EXPECT_EQ(summary()["reason"], "agent-2 could not be started again") << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
+  EXPECT_EQ(summary()["reason"], "agent-2 could not be started again") << printed();
 }
 
 TEST_F(Launch, WhileTheRouteIsAwayTheDeadAreWaitedForAndNoRestartIsCounted) {
@@ -115,10 +115,10 @@ TEST_F(Launch, WhileTheRouteIsAwayTheDeadAreWaitedForAndNoRestartIsCounted) {
   kill_next(kLoggerProgram);
   // More often than a dead process is restarted.
   for (const char* name : {"agent-1", "coordinator", "sim", "logger"}) {
-    EXPECT_TRUE(logs(name, "LCM needs a multicast route", 4)) << said();
+    EXPECT_TRUE(logs(name, "LCM needs a multicast route", 4)) << printed();
   }
   ASSERT_EQ(std::system("ip route add 224.0.0.0/4 dev lo"), 0);
-  EXPECT_TRUE(moves_on()) << said();
+  EXPECT_TRUE(moves_on()) << printed();
   end(mission, 4);
 }
 
@@ -144,30 +144,30 @@ TEST_F(DamagedRecord, GoesOnInAFreshSegmentWithoutWhatCannotBeRead) {
     rows.replace(rows.find('\n', 10000) + 1, 200, 200, '\1');
     write("trajectory.csv", rows);
   });
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   EXPECT_TRUE(logs("logger", "goes on in a fresh segment")) << log_of("logger");
   while_the_logger_is_dead(mission, [this] { write("trajectory-001.csv", ""); });
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   while_the_logger_is_dead(mission, [this] { fs::remove(out() / "metrics-002.csv"); });
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   end(mission, 3);
-  EXPECT_EQ(summary()["segments"], 4) << said();
-  EXPECT_GT(summary()["gaps"], 0) << said();
+  EXPECT_EQ(summary()["segments"], 4) << printed();
+  EXPECT_GT(summary()["gaps"], 0) << printed();
   EXPECT_GT(fs::file_size(out() / "trajectory-003.csv"), 1000U);
-  EXPECT_TRUE(said("no report: ")) << said();
+  EXPECT_TRUE(printed("no report: ")) << printed();
 }
 
 TEST_F(DamagedRecord, GoesOnWithoutAReadablePlanWhichIsThenWrittenAgain) {
   Child mission = launch_endless(scenario());
   const std::string plan = text_of(out() / "plan.binpb");
   while_the_logger_is_dead(mission, [this] { write("plan.binpb", "no plan"); });
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   EXPECT_TRUE(text_of(out() / "plan.binpb") == plan);
   while_the_logger_is_dead(mission, [this] { fs::remove(out() / "plan.binpb"); });
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   EXPECT_TRUE(text_of(out() / "plan.binpb") == plan);
   end(mission, 2);
-  EXPECT_EQ(summary()["gaps"], 0) << said();
+  EXPECT_EQ(summary()["gaps"], 0) << printed();
 }
 
 }  // namespace

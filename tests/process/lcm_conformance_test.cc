@@ -21,7 +21,7 @@ struct Said {
   bool operator==(const Said&) const = default;
 };
 
-Said said(const Message& message) { return {channel_of(message), encoded(message)}; }
+Said printed(const Message& message) { return {channel_of(message), encoded(message)}; }
 
 /// Each kind of message, with names of all lengths.
 std::vector<Message> under_every_name() {
@@ -46,7 +46,7 @@ class Conformance : public OwnHost {
   class LcmEar {
    public:
     explicit LcmEar(const std::string& url) : lcm_(url) {
-      lcm_.subscribe(".*", &LcmEar::hear, this)->setQueueCapacity(0);
+      lcm_.subscribe(".*", &LcmEar::receive, this)->setQueueCapacity(0);
       EXPECT_GE(lcm_.getFileno(), 0);
     }
     Heard& listen() {
@@ -56,7 +56,7 @@ class Conformance : public OwnHost {
     }
 
    private:
-    void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
       if (channel == "LCM_SELF_TEST") return;  // the library's own
       const auto* bytes = static_cast<const std::byte*>(buffer->data);
       heard_.push_back({channel, {bytes, bytes + buffer->data_size}});
@@ -67,9 +67,10 @@ class Conformance : public OwnHost {
 
   Conformance() : ours_(open({kEveryType, kEveryType, kEveryType}, &heard_)) {}
 
-  static std::unique_ptr<Transport> open(const Subscriptions& hears, std::map<Bus, Heard>* heard) {
+  static std::unique_ptr<Transport> open(const Subscriptions& observes,
+                                         std::map<Bus, Heard>* heard) {
     return std::get<0>(Transport::open(
-        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, hears,
+        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, observes,
         {.on_message = [](const Message&, Bus, AgentId) {},
          .on_accepted =
              [heard](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
@@ -91,7 +92,7 @@ TEST_F(Conformance, LcmReadsEveryMessageThatWePublish) {
   std::deque<LcmEar> theirs;
   Outbox outbox;
   Heard expected;
-  for (const Message& message : under_every_name()) expected.push_back(said(message));
+  for (const Message& message : under_every_name()) expected.push_back(printed(message));
   ASSERT_GT(expected.size(), 20U);
   for (const Bus bus : kBuses) {
     theirs.emplace_back(url(bus));
@@ -111,7 +112,7 @@ TEST_F(Conformance, WeReadEveryMessageThatLcmPublishes) {
     lcm::LCM theirs(url(bus));
     Heard expected;
     for (const Message& message : under_every_name()) {
-      expected.push_back(said(message));
+      expected.push_back(printed(message));
       const auto& [channel, bytes] = expected.back();
       theirs.publish("NOT_OURS", bytes.data(), static_cast<unsigned>(bytes.size()));
       theirs.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
@@ -137,10 +138,11 @@ TEST_F(Conformance, EachHearsWhatItSubscribesToAndNothingElseCounts) {
     some->deliver_until(now(), -1);
     return heard[Bus::kSwarm].size() >= 6 && heard[Bus::kCommand].size() >= 2;
   }));
-  EXPECT_EQ(heard[Bus::kSwarm], (Heard{said(hello()), said(contribution()), said(averages()),
-                                       said(low_sums()), said(low_averages()), said(hello())}));
+  EXPECT_EQ(heard[Bus::kSwarm],
+            (Heard{printed(hello()), printed(contribution()), printed(averages()),
+                   printed(low_sums()), printed(low_averages()), printed(hello())}));
   EXPECT_EQ(heard[Bus::kWorld], Heard{});
-  EXPECT_EQ(heard[Bus::kCommand], (Heard{said(command()), said(command())}));
+  EXPECT_EQ(heard[Bus::kCommand], (Heard{printed(command()), printed(command())}));
   EXPECT_EQ(some->refused(), RefusalCounts{});
   EXPECT_EQ(some->kernel_drops(), 0);
 }
@@ -172,7 +174,7 @@ TEST_F(Conformance, LcmsLoggerRecordsUsAndItsPlayerReachesUs) {
   // Each is repeated until it is in the file, for the logger's beginning cannot be seen, and it
   // keeps few messages that wait.
   for (const Message& message : under_every_name()) {
-    expected.push_back(said(message));
+    expected.push_back(printed(message));
     ASSERT_TRUE(eventually(
         [&] {
           ours_->publish({Bus::kSwarm, message});

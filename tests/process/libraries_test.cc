@@ -13,23 +13,23 @@ namespace {
 std::string loaded_by(const std::string& program) {
   const std::string command = "LC_ALL=C ldd '" + (program_folder() / program).string() + "' 2>&1";
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), &pclose);
-  std::string said;
+  std::string printed;
   for (std::array<char, 512> part;
        pipe && fgets(part.data(), part.size(), pipe.get()) != nullptr;) {
-    said += part.data();
+    printed += part.data();
   }
-  return said;
+  return printed;
 }
-bool loads(const std::string& said, const std::string& library) {
-  return said.find(library + ".so") != std::string::npos;
+bool loads(const std::string& printed, const std::string& library) {
+  return printed.find(library + ".so") != std::string::npos;
 }
 
 TEST(Libraries, ProgramsThatReadNoScenarioLoadNoParserAndNoPictures) {
   for (const char* program : {"ergocast-agent", "ergocast-sim", "ergocast-logger"}) {
-    const std::string said = loaded_by(program);
+    const std::string printed = loaded_by(program);
     for (const char* library : {"liblcm", "libnetcdf", "libproj", "libprotobuf", "libprotobuf-lite",
                                 "libpng16", "libz"}) {
-      EXPECT_FALSE(loads(said, library)) << program << " loads " << library << ":\n" << said;
+      EXPECT_FALSE(loads(printed, library)) << program << " loads " << library << ":\n" << printed;
     }
   }
 }

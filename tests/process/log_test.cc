@@ -24,17 +24,17 @@ class Log : public ByHand {
 
 TEST_F(Log, KeepsToItsLevel) {
   Program& quiet = hand("ergocast-agent", {"--log-level", "warn"});
-  ASSERT_TRUE(quiet.says("warning agent: no coordinator is heard")) << quiet.said();
-  EXPECT_FALSE(has(quiet.said(), "joining on")) << quiet.said();
+  ASSERT_TRUE(quiet.prints("warning agent: no coordinator is heard")) << quiet.printed();
+  EXPECT_FALSE(has(quiet.printed(), "joining on")) << quiet.printed();
 }
 
 TEST_F(Log, TakesItsLevelFromTheEnvironmentUnlessTheCommandLineHasOne) {
   setenv("ERGOCAST_LOG_LEVEL", "error", 1);
   Program& silent = hand("ergocast-agent");
   Program& told = hand("ergocast-agent", {"--log-level", "info"});
-  ASSERT_TRUE(told.says("no coordinator is heard")) << told.said();
-  EXPECT_TRUE(has(told.said(), "info agent: joining on")) << told.said();
-  EXPECT_EQ(silent.said(), "");
+  ASSERT_TRUE(told.prints("no coordinator is heard")) << told.printed();
+  EXPECT_TRUE(has(told.printed(), "info agent: joining on")) << told.printed();
+  EXPECT_EQ(silent.printed(), "");
 }
 
 TEST_F(Log, RefusesALevelThatIsNone) {
@@ -54,12 +54,12 @@ TEST_F(Log, InTheJournalHasAPriorityOnEveryLineAndNoTimeOfItsOwn) {
          (std::to_string(info.st_dev) + ':' + std::to_string(info.st_ino)).c_str(), 1);
   ASSERT_EQ(std::system("ip route del 224.0.0.0/4 dev lo"), 0);
   EXPECT_EQ(run("ergocast-sim", {}), 3);
-  const std::string said = output();
+  const std::string printed = output();
   EXPECT_EQ(run("ergocast-sim", {}), 3);
   EXPECT_TRUE(has(output(), " error sim: ")) << "another file is no journal";
   ASSERT_EQ(std::system("ip route add 224.0.0.0/4 dev lo"), 0);
-  EXPECT_TRUE(has(said, "<3>sim:   ip route add 224.0.0.0/4 dev lo")) << said;
-  std::istringstream lines(said);
+  EXPECT_TRUE(has(printed, "<3>sim:   ip route add 224.0.0.0/4 dev lo")) << printed;
+  std::istringstream lines(printed);
   for (std::string line; std::getline(lines, line);) {
     EXPECT_TRUE(line.starts_with("<3>sim: ")) << line;
   }

@@ -25,16 +25,16 @@ TEST_F(FailedTest, PrintsTheLogsOfItsProcessesAndEndsThem) {
        SIGKILL}));
   unsetenv(kPlanted);
   EXPECT_EQ(wait_for(planted), 1);
-  const std::string said = text_of(log);
+  const std::string printed = text_of(log);
   for (const char* part :
        {"---- the end of output-1 (ergocast-agent --id 7 --lcm-url ", "agent-7: joining on ",
         "---- the end of output-2 (ergocast run ", "---- the end of run/log/agent-0.log:\n",
         "agent-3: agent 3 of run ", "coordinator: mission running", "sim: moving from tick 0 on",
         "---- the end of run/log/logger.log:\n"}) {
-    EXPECT_NE(said.find(part), said.npos) << part;
+    EXPECT_NE(printed.find(part), printed.npos) << part;
   }
-  EXPECT_EQ(said.find("left behind"), said.npos);
-  if (HasFailure()) std::printf("%s", said.c_str());
+  EXPECT_EQ(printed.find("left behind"), printed.npos);
+  if (HasFailure()) std::printf("%s", printed.c_str());
 }
 
 }  // namespace

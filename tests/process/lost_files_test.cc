@@ -41,7 +41,7 @@ class LostFiles : public RunningMission {
   }
   void restart(const std::vector<std::string>& words, const std::string& name) {
     kill_next(words);
-    ASSERT_TRUE(eventually([&] { return said(name + ": restarted (1 of 3)"); })) << said();
+    ASSERT_TRUE(eventually([&] { return printed(name + ": restarted (1 of 3)"); })) << printed();
   }
 };
 
@@ -58,7 +58,7 @@ TEST_P(HarmedFiles, AreAllThatIsLostWhicheverProcessStartsAgain) {
   Child mission = launch_endless(free_rooms(folder_), {"--lcm-url", kUrl});
   // In lockstep the record goes on with all processes or not at all. Its files are gone.
   BusObserver observer(kUrl);
-  ASSERT_TRUE(observer.hears([&] { return observer.recorded() >= 0; })) << said();
+  ASSERT_TRUE(observer.observes([&] { return observer.recorded() >= 0; })) << printed();
   for (const auto& [name, words] :
        {std::pair{"logger", std::vector<std::string>{"ergocast-logger"}},
         std::pair{"sim", std::vector<std::string>{"ergocast-sim"}},
@@ -67,12 +67,12 @@ TEST_P(HarmedFiles, AreAllThatIsLostWhicheverProcessStartsAgain) {
     for (const fs::path& file : files()) harm(file, GetParam());
     restart(words, name);
     const Tick tick = observer.recorded();
-    ASSERT_TRUE(observer.hears([&] { return observer.recorded() > tick + 200; })) << said();
+    ASSERT_TRUE(observer.observes([&] { return observer.recorded() > tick + 200; })) << printed();
   }
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "stopped");
-  EXPECT_EQ(summary()["restarts"], 4) << said();
+  EXPECT_EQ(summary()["restarts"], 4) << printed();
   EXPECT_TRUE(summary()["ergodic_metric"]["last"].is_number()) << summary()["ergodic_metric"];
 }
 
@@ -80,11 +80,11 @@ TEST_P(HarmedFiles, DisturbNoProcessThatRuns) {
   Child mission = launch_held(free_rooms(folder_));
   for (const fs::path& file : files()) harm(file, GetParam());
   release();
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "done");
-  EXPECT_EQ(summary()["restarts"], 0) << said();
+  EXPECT_EQ(summary()["restarts"], 0) << printed();
   EXPECT_TRUE(summary()["ergodic_metric"]["last"].is_number()) << summary()["ergodic_metric"];
-  EXPECT_TRUE(said("no report: ") || fs::exists(out() / "report.html")) << said();
+  EXPECT_TRUE(printed("no report: ") || fs::exists(out() / "report.html")) << printed();
 }
 
 // What a scenario names may be gone as well: maps, for instance.
@@ -95,12 +95,12 @@ TEST_F(LostFiles, WithoutTheScenarioAndItsMapTheNextCoordinatorBeginsTheMission)
   hold_next("ERGOCAST_MISSION", -1);  // the coordinator, before its first message
   Child mission = start_mission(folder_ / "lake_search.textproto", {"--duration", "10"});
   const std::vector<std::string> coordinator{"ergocast-coordinator"};
-  ASSERT_TRUE(eventually([&] { return stopped(pids(coordinator)); })) << said();
+  ASSERT_TRUE(eventually([&] { return stopped(pids(coordinator)); })) << printed();
   hold_none();
   fs::remove_all(folder_ / "maps");
   fs::remove(out() / "scenario.textproto");
   kill_next(coordinator);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "done");
 }
 
@@ -112,37 +112,38 @@ TEST_F(LostFiles, WithoutTheKeyFileTheKilledComeBackWithTheKey) {
   fs::remove(key);
   ASSERT_EQ(write_key_file(key, key_text(make_mission_key(), true)), std::nullopt);
   restart({"ergocast-coordinator"}, "coordinator");
-  ASSERT_TRUE(logs("coordinator", "taken over")) << said();
+  ASSERT_TRUE(logs("coordinator", "taken over")) << printed();
   fs::remove(key);
   restart(agent(2), "agent-2");
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   restart({"ergocast-sim"}, "sim");
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   restart({"ergocast-logger"}, "logger");
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["authenticated"], true);
-  EXPECT_EQ(summary()["restarts"], 4) << said();
+  EXPECT_EQ(summary()["restarts"], 4) << printed();
 }
 
 TEST_F(LostFiles, WithoutTheRunDirectoryTheTeamGoesOnAndTheRunSaysWhatIsMissing) {
   Child mission = launch_endless(scenario(), {"--realtime=5"});
   fs::remove_all(out());
   kill_next({"ergocast-logger"});
-  ASSERT_TRUE(eventually([this] { return said("the team goes on without a record"); })) << said();
+  ASSERT_TRUE(eventually([this] { return printed("the team goes on without a record"); }))
+      << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 4) << said();
-  EXPECT_TRUE(said("summary.json: No such file or directory")) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
+  EXPECT_TRUE(printed("summary.json: No such file or directory")) << printed();
 }
 
 TEST_F(LostFiles, WhatSomebodyWroteIntoALogControlsNoTerminal) {
   Child mission = launch_endless(scenario());
   std::ofstream(out() / "log" / "agent-1.log") << "\x1b[31m red \xff\n";
   restart(agent(1), "agent-1");
-  EXPECT_TRUE(said("\\x1b[31m red \\xff")) << said();
+  EXPECT_TRUE(printed("\\x1b[31m red \\xff")) << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
 // Something else stands where the logger's summary belongs, and the logger writes none.
@@ -150,9 +151,10 @@ TEST_F(LostFiles, AForeignSummaryIsNotTakenForTheLoggers) {
   Child mission = launch_endless(scenario(), {"--realtime=5"});
   std::ofstream(out() / "summary.json") << R"({"run_id": 7, "result": 7, "reason": 7})";
   for (int death = 0; death <= 3; ++death) kill_next({"ergocast-logger"});
-  ASSERT_TRUE(eventually([this] { return said("the team goes on without a record"); })) << said();
+  ASSERT_TRUE(eventually([this] { return printed("the team goes on without a record"); }))
+      << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
   EXPECT_EQ(summary()["reason"],
             "the logger left no summary; logger was killed by SIGKILL after 3 restarts");
 }

@@ -73,7 +73,7 @@ class RunningMission : public OwnHost {
   /// Starts `ergocast run` and waits until the mission is well under way.
   Child launch(const std::filesystem::path& scenario, const std::vector<std::string>& more = {}) {
     Child mission = start_mission(scenario, more);
-    EXPECT_TRUE(recorded(30000)) << said();
+    EXPECT_TRUE(recorded(30000)) << printed();
     return mission;
   }
   /// A mission that does not end by itself, and does not fill a disk.
@@ -90,7 +90,7 @@ class RunningMission : public OwnHost {
                     const std::vector<std::string>& more = {}) {
     hold_next("ERGOCAST_COMMAND_0", kHeldTick);
     Child mission = start_mission(scenario, more);
-    EXPECT_TRUE(eventually([] { return stopped(pids(agent(0))); })) << said();
+    EXPECT_TRUE(eventually([] { return stopped(pids(agent(0))); })) << printed();
     hold_none();
     return mission;
   }
@@ -120,8 +120,8 @@ class RunningMission : public OwnHost {
   }
 
   /// The output of `ergocast run`, and that of one of its processes.
-  std::string said() const { return text_of(mission_log_); }
-  bool said(const std::string& part) const { return said().find(part) != std::string::npos; }
+  std::string printed() const { return text_of(mission_log_); }
+  bool printed(const std::string& part) const { return printed().find(part) != std::string::npos; }
   std::string log_of(const std::string& process) const {
     return text_of(out() / "log" / (process + ".log"));
   }
@@ -177,9 +177,9 @@ class ByHand : public RunningMission {
   struct Program {
     Child child;
     std::filesystem::path log;
-    std::string said() const { return text_of(log); }
-    bool says(const std::string& part) const {
-      return eventually([&] { return said().find(part) != std::string::npos; }, child.pid());
+    std::string printed() const { return text_of(log); }
+    bool prints(const std::string& part) const {
+      return eventually([&] { return printed().find(part) != std::string::npos; }, child.pid());
     }
   };
 

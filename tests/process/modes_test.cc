@@ -45,11 +45,11 @@ class TablesOfModes : public ByHand {
   /// Starts the process again by killing it.
   void restart(const std::vector<std::string>& words, const std::string& name) {
     kill_next(words);
-    ASSERT_TRUE(eventually([&] { return said(name + ": restarted (1 of 3)"); })) << said();
+    ASSERT_TRUE(eventually([&] { return printed(name + ": restarted (1 of 3)"); })) << printed();
   }
   void end(Child& mission) {
     mission.send(SIGTERM);
-    EXPECT_EQ(wait_for(mission), 0) << said();
+    EXPECT_EQ(wait_for(mission), 0) << printed();
   }
   bool prints(const std::string& part) const { return output().find(part) != std::string::npos; }
 };
@@ -60,8 +60,8 @@ TEST_F(TablesOfModes, ALoggerThatWasStartedByHandWritesItBesideTheRecord) {
   hand("ergocast-sim");
   for (const char* id : {"0", "1"}) hand("ergocast-agent", {"--id", id});
   Program& coordinator = hand("ergocast-coordinator", {two_rooms()});
-  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
-  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.printed();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.printed();
   EXPECT_FALSE(table_in(out()).empty());
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
@@ -69,21 +69,21 @@ TEST_F(TablesOfModes, ALoggerThatWasStartedByHandWritesItBesideTheRecord) {
 TEST_F(TablesOfModes, ARestartedAgentIsHandedItAgain) {
   Child mission = launch_endless(two_rooms());
   ASSERT_FALSE(table_in(out()).empty());
-  EXPECT_TRUE(shares_the_table(agent(1))) << said();
+  EXPECT_TRUE(shares_the_table(agent(1))) << printed();
   kill_next(agent(1));
-  ASSERT_TRUE(logs("agent-1", ": running", 2)) << said();
-  EXPECT_TRUE(shares_the_table(agent(1))) << said();
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(logs("agent-1", ": running", 2)) << printed();
+  EXPECT_TRUE(shares_the_table(agent(1))) << printed();
+  ASSERT_TRUE(moves_on()) << printed();
   end(mission);
 }
 
 TEST_F(TablesOfModes, ARestartedLoggerIsHandedItAgain) {
   const std::vector<std::string> logger{"ergocast-logger"};
   Child mission = launch_endless(two_rooms());
-  EXPECT_TRUE(shares_the_table(logger)) << said();
+  EXPECT_TRUE(shares_the_table(logger)) << printed();
   restart(logger, "logger");
-  EXPECT_TRUE(eventually([&] { return shares_the_table(logger); })) << said();
-  ASSERT_TRUE(moves_on()) << said();
+  EXPECT_TRUE(eventually([&] { return shares_the_table(logger); })) << printed();
+  ASSERT_TRUE(moves_on()) << printed();
   end(mission);
 }
 
@@ -99,10 +99,10 @@ TEST_F(TablesOfModes, WhoComputesAnotherOneStaysOutAndSaysWhatToHandOver) {
   Program& equipped = hand("ergocast-agent", {"--id", "0", "--modes", other});
   Program& bare = hand("ergocast-agent", {"--id", "1"});
   hand("ergocast-coordinator", {two_rooms(), "--modes", other});
-  EXPECT_EQ(wait_for(bare.child), 4) << bare.said();
-  EXPECT_TRUE(bare.says("start it with --modes and that table's file, modes-")) << bare.said();
-  EXPECT_TRUE(equipped.says("admitted")) << equipped.said();
-  EXPECT_TRUE(equipped.child.running()) << equipped.said();
+  EXPECT_EQ(wait_for(bare.child), 4) << bare.printed();
+  EXPECT_TRUE(bare.prints("start it with --modes and that table's file, modes-")) << bare.printed();
+  EXPECT_TRUE(equipped.prints("admitted")) << equipped.printed();
+  EXPECT_TRUE(equipped.child.running()) << equipped.printed();
 }
 
 TEST_F(TablesOfModes, ALoggerThatComputesAnotherOneStaysOut) {
@@ -111,9 +111,10 @@ TEST_F(TablesOfModes, ALoggerThatComputesAnotherOneStaysOut) {
   std::filesystem::create_directory(record);
   Program& logger = hand("ergocast-logger", {"--out", record});
   hand("ergocast-coordinator", {two_rooms(), "--modes", other});
-  EXPECT_EQ(wait_for(logger.child), 4) << logger.said();
-  EXPECT_TRUE(logger.says("start it with --modes and that table's file, modes-")) << logger.said();
-  EXPECT_TRUE(std::filesystem::is_empty(record)) << logger.said();
+  EXPECT_EQ(wait_for(logger.child), 4) << logger.printed();
+  EXPECT_TRUE(logger.prints("start it with --modes and that table's file, modes-"))
+      << logger.printed();
+  EXPECT_TRUE(std::filesystem::is_empty(record)) << logger.printed();
 }
 
 // Its file may have been lost, or have changed, since it was named.
@@ -124,12 +125,12 @@ TEST_F(TablesOfModes, AProcessThatIsHandedAnotherOneOrNoneComputesIt) {
   Program& cut = hand("ergocast-agent", {"--id", "1", "--modes", damaged});
   Program& wrong = hand("ergocast-agent", {"--id", "2", "--modes", other});
   hand("ergocast-coordinator", {two_rooms("", 1)});
-  EXPECT_TRUE(missing.says("missing.bin: cannot be read as a table of modes; it is computed"))
-      << missing.said();
-  EXPECT_TRUE(cut.says("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
-      << cut.said();
+  EXPECT_TRUE(missing.prints("missing.bin: cannot be read as a table of modes; it is computed"))
+      << missing.printed();
+  EXPECT_TRUE(cut.prints("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
+      << cut.printed();
   for (const Program* agent : {&missing, &cut, &wrong})
-    EXPECT_TRUE(agent->says("admitted")) << agent->said();
+    EXPECT_TRUE(agent->prints("admitted")) << agent->printed();
 }
 
 TEST_F(TablesOfModes, ThePrintedAndRecordedMetricsNameTheirBasis) {

@@ -27,11 +27,11 @@ TEST_F(RobotsInPhysics, FlyAWholeMissionInLockstepAndTouchNobody) {
   Program& world = hand("ergocast-example-mujoco");
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
   Program& coordinator = hand("ergocast-coordinator", {four_discs()});
-  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
-  EXPECT_EQ(wait_for(world.child), 0) << world.said();
-  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
-  EXPECT_TRUE(world.says("finished at tick 100: mission complete")) << world.said();
-  EXPECT_TRUE(world.says("0 contacts of two robots, 0 of a robot and a wall")) << world.said();
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.printed();
+  EXPECT_EQ(wait_for(world.child), 0) << world.printed();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.printed();
+  EXPECT_TRUE(world.prints("finished at tick 100: mission complete")) << world.printed();
+  EXPECT_TRUE(world.prints("0 contacts of two robots, 0 of a robot and a wall")) << world.printed();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["ticks"], 100);
   EXPECT_GE(summary()["separation"]["nearest_m"], 0.45);
@@ -45,8 +45,8 @@ TEST_F(RobotsInPhysics, RefuseAMissionOfOtherVehicles) {
   other += "vehicle { kind: UNICYCLE  max_turn_radps: 2 }\n";
   std::ofstream(folder_ / "other.textproto") << other;
   hand("ergocast-coordinator", {folder_ / "other.textproto"});
-  EXPECT_EQ(wait_for(world.child), 4) << world.said();
-  EXPECT_TRUE(world.says("vehicle { kind: POINT }")) << world.said();
+  EXPECT_EQ(wait_for(world.child), 4) << world.printed();
+  EXPECT_TRUE(world.prints("vehicle { kind: POINT }")) << world.printed();
 }
 
 /// What README.md shows: robots with real contacts in the office, held on the way.
@@ -73,9 +73,9 @@ TEST_F(RobotsInTheOffice, ArePausedAndGoOnAndCoverItAndTouchNobody) {
                                           "--world-arg=--robots", "--world-arg=discs"});
   ASSERT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 0) << output();
   ASSERT_EQ(ergocast({"resume", "--lcm-url", kUrl}), 0) << output();
-  ASSERT_TRUE(eventually([&] { return measured_tick() >= kCoveredTick; })) << said();
+  ASSERT_TRUE(eventually([&] { return measured_tick() >= kCoveredTick; })) << printed();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
-  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
   EXPECT_LT(summary()["ergodic_metric"]["last"], kCovered);
   EXPECT_NE(said_by_the_world().find("0 contacts of two robots, 0 of a robot and a wall"),
             std::string::npos)

@@ -43,10 +43,10 @@ class AttackedPage : public RunningMission {
   }
   void end_in_order(Child& mission) {
     release();
-    ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
-    EXPECT_EQ(summary()["result"], "done") << said();
+    ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+    EXPECT_EQ(summary()["result"], "done") << printed();
     mission.send(SIGINT);
-    EXPECT_EQ(wait_for(mission), 0) << said();
+    EXPECT_EQ(wait_for(mission), 0) << printed();
   }
 };
 
@@ -86,7 +86,7 @@ TEST_F(AttackedPage, IsBackWhenItsProcessWasKilledAndTheMissionGoesOn) {
     ASSERT_NO_FATAL_FAILURE(kill_next(page()));
     EXPECT_EQ(get(kPort, "/").status, 200);
   }
-  EXPECT_TRUE(said("killed by SIGKILL, and is started again")) << said();
+  EXPECT_TRUE(printed("killed by SIGKILL, and is started again")) << printed();
   end_in_order(mission);
   EXPECT_EQ(summary()["restarts"], 0);  // of the team's processes
 }
@@ -97,25 +97,25 @@ TEST_F(AttackedPage, MayAllocateLittleUntilTheMissionEnds) {
   const std::string own = memory_limit(mission.pid());
   EXPECT_NE(memory_limit(pids(page()).front()), own);
   release();
-  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   EXPECT_TRUE(eventually([&] { return memory_limit(pids(page()).front()) == own; }));
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
 TEST_F(AttackedPage, IsBackAfterTheMissionToo) {
   Child mission = start_mission(scenario("duration_s: 5"), {"--watch"});
-  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   kill_next(page());
   EXPECT_TRUE(eventually([] { return get(kPort, "/record.json").status == 200; }));
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
 TEST_F(AttackedPage, KeepsItsAddressAndTokenAndDoesNotRevealIt) {
   Child mission = launch_held(scenario("duration_s: 60"),
                               {"--watch", "--listen", "127.0.0.2", "--port", "8801"});
-  const std::string text = said(), begin = "http://127.0.0.2:8801/?token=";
+  const std::string text = printed(), begin = "http://127.0.0.2:8801/?token=";
   const auto at = text.find(begin);
   ASSERT_NE(at, text.npos) << text;
   const std::string token = text.substr(at + begin.size(), 32);

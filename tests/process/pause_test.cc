@@ -11,13 +11,13 @@ namespace {
 
 class PauseCommand : public RunningMission {
  protected:
-  int say(const std::string& command) { return ergocast({command, "--lcm-url", kUrl}); }
+  int send_command(const std::string& command) { return ergocast({command, "--lcm-url", kUrl}); }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// What follows "at tick " in the output: the tick and the time.
   std::string time_said() const {
-    const std::string said = output();
-    const auto at = said.find("at tick ") + 8, end = said.find(" s", at);
-    return said.substr(at, end - at);
+    const std::string printed = output();
+    const auto at = printed.find("at tick ") + 8, end = printed.find(" s", at);
+    return printed.substr(at, end - at);
   }
   /// `status --json` tells the time that counts, as `status` does, and the world's tick beside it.
   void expect_one_clock() {
@@ -51,24 +51,24 @@ class PauseCommand : public RunningMission {
 
 TEST_F(PauseCommand, HoldsAMissionInLockstepWhichItsSimulationRepeats) {
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
-  EXPECT_EQ(say("resume"), 0) << output();
+  EXPECT_EQ(send_command("resume"), 0) << output();
   EXPECT_TRUE(answered("is not paused")) << output();
-  ASSERT_EQ(say("pause"), 0) << output();
+  ASSERT_EQ(send_command("pause"), 0) << output();
   EXPECT_TRUE(answered("paused at tick ")) << output();
   const std::string paused_at = time_said();
   EXPECT_TRUE(shown("paused, tick " + paused_at.substr(0, paused_at.find(',')) + " of "))
       << output();
-  EXPECT_TRUE(logs("coordinator", "mission is paused from tick ")) << said();
-  EXPECT_EQ(say("pause"), 0) << output();
+  EXPECT_TRUE(logs("coordinator", "mission is paused from tick ")) << printed();
+  EXPECT_EQ(send_command("pause"), 0) << output();
   EXPECT_TRUE(answered("paused already")) << output();
   signal_to({"ergocast-coordinator"}, SIGKILL);
-  ASSERT_TRUE(eventually([&] { return say("resume") == 0; })) << output();
+  ASSERT_TRUE(eventually([&] { return send_command("resume") == 0; })) << output();
   EXPECT_TRUE(answered("goes on at tick ")) << output();
   EXPECT_EQ(time_said(), paused_at) << "no mission time passes";
   ASSERT_TRUE(moves_on());
   expect_one_clock();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
-  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
   const auto holds = summary()["holds"];
   ASSERT_EQ(holds.size(), 1U);
   const Tick from = holds[0][0], until = holds[0][1];
@@ -82,14 +82,14 @@ TEST_F(PauseCommand, HoldsAMissionInLockstepWhichItsSimulationRepeats) {
 TEST_F(PauseCommand, HoldsAMissionInRealTimeInWhichAnAgentRestarts) {
   Child mission =
       launch_endless(scenario("pace: REALTIME realtime_factor: 10"), {"--lcm-url", kUrl});
-  ASSERT_EQ(say("pause"), 0) << output();
+  ASSERT_EQ(send_command("pause"), 0) << output();
   signal_to(agent(2), SIGKILL);
   ASSERT_TRUE(eventually([&] { return shown("4 of 4 agents alive") && shown("paused, tick "); }))
       << output();
-  ASSERT_EQ(say("resume"), 0) << output();
+  ASSERT_EQ(send_command("resume"), 0) << output();
   ASSERT_TRUE(moves_on());
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
-  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
   const auto holds = summary()["holds"];
   ASSERT_EQ(holds.size(), 1U);
   // A command may be late by as long as old ones are held.
@@ -98,9 +98,9 @@ TEST_F(PauseCommand, HoldsAMissionInRealTimeInWhichAnAgentRestarts) {
 
 TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
-  ASSERT_EQ(say("pause"), 0) << output();
+  ASSERT_EQ(send_command("pause"), 0) << output();
   ASSERT_TRUE(moves_on(3000));
-  ASSERT_EQ(say("resume"), 0) << output();
+  ASSERT_EQ(send_command("resume"), 0) << output();
   ASSERT_TRUE(moves_on());
   mission.send(SIGSTOP);  // it restarts nobody
   kill_next({"ergocast-logger"});
@@ -114,7 +114,7 @@ TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
 }
 
 TEST_F(PauseCommand, SaysWhyThereIsNothingToPause) {
-  EXPECT_EQ(say("pause"), 4);
+  EXPECT_EQ(send_command("pause"), 4);
   EXPECT_TRUE(answered("nobody of any run")) << output();
 }
 

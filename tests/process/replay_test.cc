@@ -23,16 +23,16 @@ TEST_F(Replay, ShowsTheWholeTeamAndItsEnd) {
             0)
       << output();
   Program& watch = hand("ergocast", {"status", "--watch"});
-  ASSERT_TRUE(watch.says("nobody is heard on ")) << watch.said();
+  ASSERT_TRUE(watch.prints("nobody is heard on ")) << watch.printed();
   Child player = begin({"/usr/bin/lcm-logplayer", std::string("--lcm-url=") + kUrl,
                         (out() / "events-000.lcm").string()});
-  EXPECT_EQ(wait_for(watch.child), 0) << watch.said();
-  const std::string said = watch.said();
+  EXPECT_EQ(wait_for(watch.child), 0) << watch.printed();
+  const std::string printed = watch.printed();
   for (const char* process : {"coordinator  alive", "world        alive", "logger       alive"}) {
-    EXPECT_NE(said.find(process), std::string::npos) << said;
+    EXPECT_NE(printed.find(process), std::string::npos) << printed;
   }
   // An ended mission is not alive, although its messages are recent.
-  const std::string end = said.substr(said.rfind("quadrimodal_corners, run "));
+  const std::string end = printed.substr(printed.rfind("quadrimodal_corners, run "));
   EXPECT_NE(end.find("the mission has ended"), std::string::npos) << end;
   EXPECT_EQ(end.find("alive"), std::string::npos) << end;
   EXPECT_NE(end.find("world        ended"), std::string::npos) << end;
@@ -45,7 +45,7 @@ class Channels {
   explicit Channels(const LcmUrl& url) {
     for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
       buses_.push_back(std::make_unique<lcm::LCM>(url.of(bus)));
-      buses_.back()->subscribe(".*", &Channels::hear, this);
+      buses_.back()->subscribe(".*", &Channels::receive, this);
     }
   }
   const std::set<std::string>& take() {
@@ -57,7 +57,7 @@ class Channels {
   }
 
  private:
-  void hear(const lcm::ReceiveBuffer*, const std::string& channel) { names_.insert(channel); }
+  void receive(const lcm::ReceiveBuffer*, const std::string& channel) { names_.insert(channel); }
   std::vector<std::unique_ptr<lcm::LCM>> buses_;
   std::set<std::string> names_;
 };
@@ -68,10 +68,10 @@ TEST_F(Replay, OfTheCommandIsShownAsAReplayAndNobodyJoinsOrStopsIt) {
             0)
       << output();
   Program& agent = hand("ergocast-agent");
-  ASSERT_TRUE(agent.says("joining on "));
+  ASSERT_TRUE(agent.prints("joining on "));
   Channels channels(std::get<LcmUrl>(LcmUrl::parse(kUrl)));
   Program& replay = hand("ergocast", {"replay", out(), "--from", "100", "--rate", "2"});
-  ASSERT_TRUE(replay.says("replay of quadrimodal_corners from "));
+  ASSERT_TRUE(replay.prints("replay of quadrimodal_corners from "));
   nlohmann::json status;
   ASSERT_TRUE(eventually([&] {
     ergocast({"status", "--json", "--lcm-url", kUrl});
@@ -99,8 +99,8 @@ TEST_F(Replay, OfTheCommandIsShownAsAReplayAndNobodyJoinsOrStopsIt) {
     EXPECT_TRUE(name.starts_with("REPLAYED_") || name == "LCM_SELF_TEST") << name;
   }
   replay.child.send(SIGINT);
-  EXPECT_EQ(wait_for(replay.child), 0) << replay.said();
-  EXPECT_EQ(agent.said().find("run "), std::string::npos) << agent.said();
+  EXPECT_EQ(wait_for(replay.child), 0) << replay.printed();
+  EXPECT_EQ(agent.printed().find("run "), std::string::npos) << agent.printed();
 }
 
 TEST_F(Replay, RefusesWhatIsNoRecordWithAPlaceAndARemedy) {

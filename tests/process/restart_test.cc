@@ -56,12 +56,12 @@ class Restart : public RunningMission {
 TEST_F(Restart, KilledAgentIsNamedAndItsSuccessorTakesPart) {
   Child mission = launch_endless(scenario());
   kill_next(agent(2));
-  ASSERT_TRUE(logs("agent-2", ": running", 2)) << said();
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(logs("agent-2", ": running", 2)) << printed();
+  ASSERT_TRUE(moves_on()) << printed();
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
-  EXPECT_TRUE(said("agent-2 (process")) << said();
-  EXPECT_TRUE(said("was killed by SIGKILL")) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_TRUE(printed("agent-2 (process")) << printed();
+  EXPECT_TRUE(printed("was killed by SIGKILL")) << printed();
   EXPECT_EQ(summary()["restarts"], 1);
   EXPECT_EQ(summary()["agents"].size(), 5U);
   EXPECT_EQ(ergocast({"verify", out()}), 2);
@@ -81,26 +81,27 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
       launch_endless(scenario("broadcast_period_ticks: 5"), {GetParam(), "--lcm-url", kUrl});
   BusObserver observer(kUrl);
   const auto member = [&observer] { return observer.member(1); };
-  ASSERT_TRUE(observer.hears(
-      [&] { return observer.said(member()) > 0 && observer.answered(member()) > 0; }));
+  ASSERT_TRUE(observer.observes(
+      [&] { return observer.steps_sent(member()) > 0 && observer.answered(member()) > 0; }));
   const Author former = member();
   // An agent that does not answer holds the tick until the last messages have been repeated.
   if (lockstep) signal_to(agent(2), SIGSTOP);
-  ASSERT_TRUE(observer.hears([&] { return !lockstep || observer.stands_still(former); }));
+  ASSERT_TRUE(observer.observes([&] { return !lockstep || observer.stands_still(former); }));
   kill_next(agent(1));
   const Instant killed = now();
   const auto since_kill = [killed] { return std::to_string((now() - killed) / 1.0s); };
   if (lockstep) signal_to(agent(2), SIGCONT);
-  ASSERT_TRUE(observer.hears([&] { return member() != former && member().incarnation != 0; }));
+  ASSERT_TRUE(observer.observes([&] { return member() != former && member().incarnation != 0; }));
   RecordProperty("admitted_after_s", since_kill());
-  ASSERT_TRUE(
-      observer.hears([&] { return observer.held(member(), former) >= observer.said(former); }));
+  ASSERT_TRUE(observer.observes(
+      [&] { return observer.held(member(), former) >= observer.steps_sent(former); }));
   RecordProperty("recovered_after_s", since_kill());
-  ASSERT_TRUE(observer.hears([&] { return observer.said(member()) > 10; }));
+  ASSERT_TRUE(observer.observes([&] { return observer.steps_sent(member()) > 10; }));
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
 
-  EXPECT_EQ(observer.held(member(), former), observer.said(former)) << "no more than it had said";
+  EXPECT_EQ(observer.held(member(), former), observer.steps_sent(former))
+      << "no more than it had said";
   EXPECT_LT(observer.answered(former), observer.block(former).next_broadcast_tick)
       << "lost is only what it covered since its last broadcast";
   for (const Author& life : {former, member()}) {
@@ -141,15 +142,15 @@ TEST_P(AllAgentsAtOnce, AreReplacedAndTheMissionGoesOn) {
   for (const std::string& program : victims.programs) processes.push_back({"ergocast-" + program});
   kill_at_once(processes);
   for (const std::string& program : victims.programs) {
-    ASSERT_TRUE(eventually([&] { return said(program + ": restarted (1 of 3)"); })) << said();
-    ASSERT_TRUE(program != "coordinator" || logs(program, "taken over")) << said();
+    ASSERT_TRUE(eventually([&] { return printed(program + ": restarted (1 of 3)"); })) << printed();
+    ASSERT_TRUE(program != "coordinator" || logs(program, "taken over")) << printed();
   }
   for (int id = 0; id < 4; ++id) {
-    ASSERT_TRUE(logs("agent-" + std::to_string(id), ": running", 2)) << said();
+    ASSERT_TRUE(logs("agent-" + std::to_string(id), ": running", 2)) << printed();
   }
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["restarts"], processes.size());
   EXPECT_EQ(summary()["record_complete"], true);
   EXPECT_EQ(summary()["agents"].size(), 8U) << "the roster of before is still known";
@@ -161,7 +162,7 @@ TEST_P(AllAgentsAtOnce, AreReplacedAndTheMissionGoesOn) {
 TEST_F(Restart, AMissionWhoseCoordinatorAndAgentsDieAtOnceComesToItsEnd) {
   Child mission = launch_held(scenario("duration_s: 20"));
   kill_at_once({kCoordinatorProcess, agent(0), agent(1), agent(2), agent(3)});
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["ticks"], summary()["tick_count"]);
   EXPECT_EQ(summary()["gaps"], 0);
@@ -171,24 +172,24 @@ TEST_F(Restart, APausedMissionWhoseCoordinatorAndAgentsDieAtOnceStaysPaused) {
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
   ASSERT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 0) << output();
   kill_at_once({kCoordinatorProcess, agent(0), agent(1), agent(2), agent(3)});
-  ASSERT_TRUE(logs("coordinator", "taken over")) << said();
-  ASSERT_TRUE(logs("coordinator", "mission is paused", 2)) << said();
+  ASSERT_TRUE(logs("coordinator", "taken over")) << printed();
+  ASSERT_TRUE(logs("coordinator", "mission is paused", 2)) << printed();
   ASSERT_TRUE(eventually([&] { return ergocast({"resume", "--lcm-url", kUrl}) == 0; })) << output();
   EXPECT_NE(output().find("goes on at tick "), output().npos) << output();
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["holds"].size(), 1U);
 }
 
 TEST_F(Restart, KilledWorldGoesOnWhereTheAgentsWere) {
   Child mission = launch_endless(scenario());
   kill_next(kSimProcess);
-  ASSERT_TRUE(logs("sim", "moving from tick", 2)) << said();
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(logs("sim", "moving from tick", 2)) << printed();
+  ASSERT_TRUE(moves_on()) << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
-  EXPECT_TRUE(said("sim: restarted (1 of 3)")) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_TRUE(printed("sim: restarted (1 of 3)")) << printed();
   EXPECT_EQ(summary()["result"], "stopped");
   EXPECT_EQ(summary()["restarts"], 1);
   expect_identical_to_its_simulation(false);
@@ -197,9 +198,9 @@ TEST_F(Restart, KilledWorldGoesOnWhereTheAgentsWere) {
 TEST_F(Restart, KilledCoordinatorTakesTheMissionOver) {
   Child mission = launch_held(scenario("duration_s: 20"));
   kill_next(kCoordinatorProcess);
-  ASSERT_TRUE(logs("coordinator", "taken over")) << said();
+  ASSERT_TRUE(logs("coordinator", "taken over")) << printed();
   release();
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["reason"], "mission complete");
   EXPECT_EQ(summary()["restarts"], 1);
@@ -209,10 +210,10 @@ TEST_F(Restart, KilledCoordinatorTakesTheMissionOver) {
 TEST_F(Restart, KilledLoggerGoesOnInASecondSegmentAndLosesNothing) {
   Child mission = launch_endless(scenario());
   kill_next(kLoggerProcess);
-  ASSERT_TRUE(logs("logger", "recording", 2)) << said();
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(logs("logger", "recording", 2)) << printed();
+  ASSERT_TRUE(moves_on()) << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "stopped");
   EXPECT_EQ(summary()["segments"], 2);
   EXPECT_EQ(summary()["record_complete"], true);
@@ -224,18 +225,18 @@ TEST_F(Restart, KilledLoggerGoesOnInASecondSegmentAndLosesNothing) {
 TEST_F(Restart, InRealTimeTheMissionOutlivesEachOfThem) {
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
   kill_next(kCoordinatorProcess);
-  ASSERT_TRUE(logs("coordinator", "taken over")) << said();
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(logs("coordinator", "taken over")) << printed();
+  ASSERT_TRUE(moves_on()) << printed();
   kill_next(kSimProcess);
-  ASSERT_TRUE(logs("sim", "moving from tick", 2)) << said();
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(logs("sim", "moving from tick", 2)) << printed();
+  ASSERT_TRUE(moves_on()) << printed();
   BusObserver observer(kUrl);
-  ASSERT_TRUE(observer.hears([&] { return observer.recorded() > 0; }));
+  ASSERT_TRUE(observer.observes([&] { return observer.recorded() > 0; }));
   kill_next(kLoggerProcess);
   EXPECT_GE(last_tick(out() / "trajectory.csv"), observer.recorded()) << "what it had acknowledged";
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(moves_on()) << printed();
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["restarts"], 3);
   EXPECT_EQ(summary()["segments"], 2);
   EXPECT_EQ(summary()["record_complete"], true);
@@ -247,10 +248,10 @@ TEST_F(Restart, InRealTimeTheMissionOutlivesEachOfThem) {
 TEST_F(Restart, WithoutACoordinatorTheTeamEndsByItselfAtTheLastTick) {
   Child mission = launch_held(scenario("duration_s: 20"));
   kill_for_good(kCoordinatorProcess);
-  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); }))
-      << said();
+  ASSERT_TRUE(eventually([this] { return printed("the team goes on to the plan's last tick"); }))
+      << printed();
   release();
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["reason"],
             "mission complete; coordinator was killed by SIGKILL after 3 restarts");
@@ -262,10 +263,10 @@ TEST_F(Restart, WithoutACoordinatorTheTeamEndsByItselfAtTheLastTick) {
 TEST_F(Restart, WithoutACoordinatorATickThatStaysUnansweredFailsTheMission) {
   Child mission = launch_endless(scenario("lockstep_timeout_s: 5"));
   kill_for_good(kCoordinatorProcess);
-  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); }))
-      << said();
+  ASSERT_TRUE(eventually([this] { return printed("the team goes on to the plan's last tick"); }))
+      << printed();
   kill_next(agent(1));
-  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
   const std::string reason = summary()["reason"];
   EXPECT_NE(reason.find("was not answered in time, and no coordinator is left"), std::string::npos)
       << reason;
@@ -274,10 +275,10 @@ TEST_F(Restart, WithoutACoordinatorATickThatStaysUnansweredFailsTheMission) {
 TEST_F(Restart, WithoutACoordinatorAndAnyAgentTheMissionFailsInRealTime) {
   Child mission = launch_endless(scenario(), {"--realtime=5"});
   kill_for_good(kCoordinatorProcess);
-  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); }))
-      << said();
+  ASSERT_TRUE(eventually([this] { return printed("the team goes on to the plan's last tick"); }))
+      << printed();
   kill_at_once({agent(0), agent(1), agent(2), agent(3)});
-  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
   EXPECT_EQ(std::string(summary()["reason"]).find("no agent flies any more, and no coordinator"),
             0U)
       << summary()["reason"];
@@ -286,10 +287,10 @@ TEST_F(Restart, WithoutACoordinatorAndAnyAgentTheMissionFailsInRealTime) {
 TEST_F(Restart, AMissionThatNobodyKnowsYetIsBegunByTheNextCoordinator) {
   hold_next("ERGOCAST_MISSION", -1);  // the coordinator, before its first message
   Child mission = start_mission(scenario(), {"--duration", "20"});
-  ASSERT_TRUE(eventually([] { return stopped(pids(kCoordinatorProcess)); })) << said();
+  ASSERT_TRUE(eventually([] { return stopped(pids(kCoordinatorProcess)); })) << printed();
   hold_none();
   kill_next(kCoordinatorProcess);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "done");
   expect_identical_to_its_simulation();
 }
@@ -297,7 +298,7 @@ TEST_F(Restart, AMissionThatNobodyKnowsYetIsBegunByTheNextCoordinator) {
 TEST_F(Restart, WorldThatDiesAgainAndAgainFailsTheMission) {
   Child mission = launch_endless(scenario());
   kill_for_good(kSimProcess);
-  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
   EXPECT_EQ(summary()["result"], "failed");
   EXPECT_EQ(summary()["reason"], "sim was killed by SIGKILL after 3 restarts");
 }
@@ -305,7 +306,7 @@ TEST_F(Restart, WorldThatDiesAgainAndAgainFailsTheMission) {
 TEST_F(Restart, AgentThatDiesAgainAndAgainFailsTheMission) {
   Child mission = launch_endless(scenario());
   kill_for_good(agent(1));
-  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
   EXPECT_EQ(summary()["result"], "failed");
   EXPECT_EQ(summary()["restarts"], 3);
   EXPECT_EQ(summary()["reason"], "agent-1 was killed by SIGKILL after 3 restarts");
@@ -314,13 +315,14 @@ TEST_F(Restart, AgentThatDiesAgainAndAgainFailsTheMission) {
 TEST_F(Restart, WithoutALoggerTheTeamGoesOnAndTheRunSaysThatTheRecordIsNotComplete) {
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
   kill_for_good(kLoggerProcess);
-  ASSERT_TRUE(eventually([this] { return said("the team goes on without a record"); })) << said();
+  ASSERT_TRUE(eventually([this] { return printed("the team goes on without a record"); }))
+      << printed();
   BusObserver observer(kUrl);
-  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > 0; }));
+  ASSERT_TRUE(observer.observes([&] { return observer.answered(observer.member(0)) > 0; }));
   const Tick tick = observer.answered(observer.member(0));
-  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > tick + 20; }));
+  ASSERT_TRUE(observer.observes([&] { return observer.answered(observer.member(0)) > tick + 20; }));
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(wait_for(mission), 4) << printed();
   EXPECT_EQ(summary()["record_complete"], false);
   EXPECT_EQ(summary()["reason"],
             "the logger left no summary; logger was killed by SIGKILL after 3 restarts");
@@ -330,15 +332,15 @@ TEST_F(Restart, WithoutALoggerTheTeamGoesOnAndTheRunSaysThatTheRecordIsNotComple
 TEST_F(Restart, AgentOrWorldThatIsToldToStopIsNamedAndReplaced) {
   Child mission = launch_endless(scenario());
   signal_to(agent(0), SIGTERM);
-  ASSERT_TRUE(logs("agent-0", ": running", 2)) << said();
+  ASSERT_TRUE(logs("agent-0", ": running", 2)) << printed();
   signal_to(kSimProcess, SIGTERM);
-  ASSERT_TRUE(logs("sim", "moving from tick", 2)) << said();
-  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(logs("sim", "moving from tick", 2)) << printed();
+  ASSERT_TRUE(moves_on()) << printed();
   mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
-  EXPECT_TRUE(said("agent-0 (process")) << said();
-  EXPECT_TRUE(said("told to stop by a signal")) << said();
-  EXPECT_TRUE(said("the world was told to stop")) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_TRUE(printed("agent-0 (process")) << printed();
+  EXPECT_TRUE(printed("told to stop by a signal")) << printed();
+  EXPECT_TRUE(printed("the world was told to stop")) << printed();
   EXPECT_EQ(summary()["restarts"], 2);
 }
 

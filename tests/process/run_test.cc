@@ -62,13 +62,14 @@ TEST_F(MissionRun, WarnsOfLateCommandsWithTheRemedy) {
       << text_of(log);
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0) << text_of(log);
-  const std::string said = text_of(log);
-  EXPECT_NE(said.find(" % of the commands came too late for their tick, and vehicles went on with "
-                      "older ones: this machine or the network is too slow. Choose a smaller "
-                      "--realtime factor"),
-            std::string::npos)
-      << said;
-  EXPECT_EQ(said.find("warning: "), said.rfind("warning: ")) << "once";
+  const std::string printed = text_of(log);
+  EXPECT_NE(
+      printed.find(" % of the commands came too late for their tick, and vehicles went on with "
+                   "older ones: this machine or the network is too slow. Choose a smaller "
+                   "--realtime factor"),
+      std::string::npos)
+      << printed;
+  EXPECT_EQ(printed.find("warning: "), printed.rfind("warning: ")) << "once";
 }
 
 // Agents get the coefficients with the plan, and the report a picture with the record.

@@ -32,22 +32,22 @@ class Segments : public OwnHost {
     std::filesystem::remove(out() / "report.html");
     std::filesystem::remove_all(out() / "figures");
   }
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
 };
 
 TEST_F(Segments, VerifyReadsThemAsOneTable) {
   split("40,", "40,");
   forget_the_end();
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
-  EXPECT_TRUE(said("identical") && said("up to tick 99")) << output();
-  EXPECT_FALSE(said("missing")) << output();
+  EXPECT_TRUE(printed("identical") && printed("up to tick 99")) << output();
+  EXPECT_FALSE(printed("missing")) << output();
 }
 
 TEST_F(Segments, VerifyCountsTheTicksBetweenThem) {
   split("40,4,2,", "47,");
   forget_the_end();
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
-  EXPECT_TRUE(said("7 ticks") && said("missing")) << output();
+  EXPECT_TRUE(printed("7 ticks") && printed("missing")) << output();
 }
 
 TEST_F(Segments, VerifyFindsADifferenceBehindAGap) {
@@ -57,13 +57,13 @@ TEST_F(Segments, VerifyFindsADifferenceBehindAGap) {
   table[end - 1] = table[end - 1] == '1' ? '2' : '1';
   write("trajectory-001.csv", table);
   EXPECT_EQ(ergocast({"verify", out()}), 1);
-  EXPECT_TRUE(said("first at tick 52, agent 0")) << output();
+  EXPECT_TRUE(printed("first at tick 52, agent 0")) << output();
 }
 
 TEST_F(Segments, VerifyFindsARowThatIsThereTwice) {
   split("40,", "39,");
   EXPECT_EQ(ergocast({"verify", out()}), 1);
-  EXPECT_TRUE(said("first at tick 40, agent 0")) << output();
+  EXPECT_TRUE(printed("first at tick 40, agent 0")) << output();
 }
 
 TEST_F(Segments, VerifyFindsThatTheEndIsMissing) {
@@ -71,7 +71,7 @@ TEST_F(Segments, VerifyFindsThatTheEndIsMissing) {
   const std::string table = text_of(out() / "trajectory-001.csv");
   write("trajectory-001.csv", table.substr(0, table.find("\n80,") + 1));
   EXPECT_EQ(ergocast({"verify", out()}), 1);
-  EXPECT_TRUE(said("ends after tick 79")) << output();
+  EXPECT_TRUE(printed("ends after tick 79")) << output();
 }
 
 TEST_F(Segments, TheEventLogBeginsWithTheFirstFreeNumber) {
@@ -93,7 +93,7 @@ TEST_F(Segments, ALoggerThatHearsOfNoMissionLeavesTheRecordAsItWas) {
   const std::string summary_before = text_of(out() / "summary.json");
   Child logger = start("ergocast-logger", {"--out", out(), "--resume", "--lcm-url",
                                            "udpm://239.255.76.67:24800?ttl=0"});
-  ASSERT_TRUE(eventually([this] { return said("recording"); })) << output();
+  ASSERT_TRUE(eventually([this] { return printed("recording"); })) << output();
   logger.send(SIGTERM);
   EXPECT_EQ(wait_for(logger), 0) << output();
   EXPECT_EQ(text_of(out() / "summary.json"), summary_before);
@@ -108,7 +108,7 @@ TEST_F(Segments, ALoggerRefusesToGoOnWithARecordWhosePlanCannotBeRead) {
     EXPECT_EQ(run("ergocast-logger",
                   {"--out", out(), "--resume", "--lcm-url", "udpm://239.255.76.67:24800?ttl=0"}),
               2);
-    EXPECT_TRUE(said("plan.binpb: missing or not readable")) << output();
+    EXPECT_TRUE(printed("plan.binpb: missing or not readable")) << output();
     EXPECT_FALSE(std::filesystem::exists(out() / "trajectory-002.csv"));
     EXPECT_FALSE(std::filesystem::exists(out() / "events-000.lcm"));
   }
@@ -121,7 +121,7 @@ TEST_F(Segments, ALoggerRefusesToGoOnWithTheRecordOfAnotherMission) {
       start("ergocast-coordinator", {"--lcm-url", url, scenario_file("paper_fig2b")});
   Child logger = start("ergocast-logger", {"--out", out(), "--resume", "--lcm-url", url});
   EXPECT_EQ(wait_for(logger), 2) << output();
-  EXPECT_TRUE(said("of another mission")) << output();
+  EXPECT_TRUE(printed("of another mission")) << output();
   EXPECT_FALSE(std::filesystem::exists(out() / "trajectory-002.csv"));
   EXPECT_FALSE(std::filesystem::exists(out() / "events-000.lcm"));
   coordinator.send(SIGTERM);

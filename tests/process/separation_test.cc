@@ -67,20 +67,20 @@ TEST_P(CrowdRun, KeepsItsDistanceAndSaysWhatThatCost) {
 
 class CheckedScenario : public OwnHost {
  protected:
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
 };
 
 TEST_F(CheckedScenario, SaysWhatBodiesThatFollowLateKeep) {
   const std::string late = "separation.response_s=0.25";
   ASSERT_EQ(ergocast({"check", scenario_file("crowded_team"), "--set", late}), 0) << output();
   EXPECT_TRUE(
-      said("bodies follow 0.25 s late: they close 10 % of a gap in a tick, and keep 5 m "
-           "more, in all 13 m from each other, 5 m from the edges\n"))
+      printed("bodies follow 0.25 s late: they close 10 % of a gap in a tick, and keep 5 m "
+              "more, in all 13 m from each other, 5 m from the edges\n"))
       << output();
   ASSERT_EQ(ergocast({"check", scenario_file("office")}), 0);
-  EXPECT_TRUE(said(" m from the edges and 0.55 m from walls\n")) << output();
+  EXPECT_TRUE(printed(" m from the edges and 0.55 m from walls\n")) << output();
   ASSERT_EQ(ergocast({"check", scenario_file("crowded_team")}), 0);
-  EXPECT_FALSE(said("late")) << output();
+  EXPECT_FALSE(printed("late")) << output();
 }
 
 }  // namespace

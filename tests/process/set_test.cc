@@ -7,7 +7,7 @@ namespace {
 
 class Set : public OwnHost {
  protected:
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// The hash of the plan that `check` prints.
   std::string plan(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "check");
@@ -50,19 +50,19 @@ TEST_F(Set, ChecksAllFieldsAtOnceBeforeAnythingIsWritten) {
     if (command != std::string("check")) words.insert(words.end(), {"--out", out()});
     EXPECT_EQ(ergocast(words), 2);
     EXPECT_TRUE(
-        said("--set law.epsilom=0.3: unknown field \"epsilom\" in Law (did you mean "
-             "law.epsilon?)\n"))
+        printed("--set law.epsilom=0.3: unknown field \"epsilom\" in Law (did you mean "
+                "law.epsilon?)\n"))
         << output();
-    EXPECT_TRUE(said("--set law.epsilon=-1: -1 is below the limit 0")) << output();
-    EXPECT_TRUE(said("--set seed=4: --seed says it too (leave out one of them)\n")) << output();
-    EXPECT_TRUE(said("--set agents.quorum=x: x is not a whole number")) << output();
-    EXPECT_TRUE(said("\n4 problems\n")) << output();
+    EXPECT_TRUE(printed("--set law.epsilon=-1: -1 is below the limit 0")) << output();
+    EXPECT_TRUE(printed("--set seed=4: --seed says it too (leave out one of them)\n")) << output();
+    EXPECT_TRUE(printed("--set agents.quorum=x: x is not a whole number")) << output();
+    EXPECT_TRUE(printed("\n4 problems\n")) << output();
     EXPECT_FALSE(std::filesystem::exists(out()));
   }
   EXPECT_EQ(ergocast({"check", scenario_, "--set", "=3"}), 2);
-  EXPECT_TRUE(said("--set: \"=3\" is not FIELD=VALUE")) << output();
+  EXPECT_TRUE(printed("--set: \"=3\" is not FIELD=VALUE")) << output();
   EXPECT_EQ(ergocast({"simulate", scenario_, "--seeds", "1:3", "--set", "seed=4"}), 2);
-  EXPECT_TRUE(said("--set seed=4: --seeds says it too")) << output();
+  EXPECT_TRUE(printed("--set seed=4: --seeds says it too")) << output();
 }
 
 }  // namespace

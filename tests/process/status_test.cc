@@ -16,7 +16,7 @@ class Status : public ByHand {
   Child start_mission() { return launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl}); }
   void end(Child& mission) {
     mission.send(SIGINT);
-    EXPECT_EQ(wait_for(mission), 0) << said();
+    EXPECT_EQ(wait_for(mission), 0) << printed();
   }
 
   int status(std::vector<std::string> more = {}) {
@@ -43,8 +43,10 @@ class Status : public ByHand {
   }
   /// Every datagram on a bus, by channel.
   struct Ear {
-    explicit Ear(const std::string& url) : lcm(url) { lcm.subscribe(".*", &Ear::hear, this); }
-    void hear(const lcm::ReceiveBuffer*, const std::string& channel) { channels.insert(channel); }
+    explicit Ear(const std::string& url) : lcm(url) { lcm.subscribe(".*", &Ear::receive, this); }
+    void receive(const lcm::ReceiveBuffer*, const std::string& channel) {
+      channels.insert(channel);
+    }
     void listen() {
       while (lcm.handleTimeout(0) > 0) {
       }
@@ -116,7 +118,7 @@ TEST_F(Status, CountsWhatAgentsRefuse) {
   encode(contribution, damaged);
   damaged.back() ^= std::byte{1};
   const auto answer = status_where([&](const auto& json) {
-    stranger.say(Bus::kSwarm, "ERGOCAST_CONTRIBUTION_3", damaged);
+    stranger.send(Bus::kSwarm, "ERGOCAST_CONTRIBUTION_3", damaged);
     return agent_in(json, 0)["refused"]["tag"] > 2;
   });
   EXPECT_EQ(agent_in(answer, 0)["refused"]["size"], 0);
@@ -147,28 +149,28 @@ TEST_F(Status, OfSeveralRunsOnOneUrlAsksWhich) {
     for (const RunId run : {0xa1, 0xb2}) {
       TeamStatus team;
       team.header = {run, kCoordinator, run, 0, 7};
-      stranger.say(Bus::kSwarm, team);
+      stranger.send(Bus::kSwarm, team);
     }
     const bool decided_runs = decided.child.running();
     return !undecided.child.running() && !decided_runs;
   }));
-  EXPECT_EQ(wait_for(undecided.child), 2) << undecided.said();
-  EXPECT_TRUE(undecided.says("--run-id 00000000000000a1")) << undecided.said();
-  EXPECT_TRUE(undecided.says("--run-id 00000000000000b2")) << undecided.said();
+  EXPECT_EQ(wait_for(undecided.child), 2) << undecided.printed();
+  EXPECT_TRUE(undecided.prints("--run-id 00000000000000a1")) << undecided.printed();
+  EXPECT_TRUE(undecided.prints("--run-id 00000000000000b2")) << undecided.printed();
   wait_for(decided.child);
-  EXPECT_TRUE(decided.says("run 00000000000000b2")) << decided.said();
+  EXPECT_TRUE(decided.prints("run 00000000000000b2")) << decided.printed();
 }
 
 TEST_F(Status, WatchGoesOnUntilTheMissionsEndAndSaysHowItEnded) {
   Program& watch = hand("ergocast", {"status", "--watch"});
   Program& lines = hand("ergocast", {"status", "--watch", "--json"});
-  ASSERT_TRUE(watch.says("nobody is heard on ")) << watch.said();
+  ASSERT_TRUE(watch.prints("nobody is heard on ")) << watch.printed();
   Child mission = launch(scenario(), {"--realtime=5", "--duration", "20", "--lcm-url", kUrl});
-  EXPECT_EQ(wait_for(mission), 0) << said();
-  EXPECT_EQ(wait_for(watch.child), 0) << watch.said();
-  EXPECT_TRUE(watch.says("the mission has ended: mission complete")) << watch.said();
-  EXPECT_EQ(wait_for(lines.child), 0) << lines.said();
-  std::istringstream text(lines.said());
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_EQ(wait_for(watch.child), 0) << watch.printed();
+  EXPECT_TRUE(watch.prints("the mission has ended: mission complete")) << watch.printed();
+  EXPECT_EQ(wait_for(lines.child), 0) << lines.printed();
+  std::istringstream text(lines.printed());
   std::string line, last;
   int count = 0;
   for (; std::getline(text, line); ++count) last = line;
@@ -178,7 +180,7 @@ TEST_F(Status, WatchGoesOnUntilTheMissionsEndAndSaysHowItEnded) {
 
 TEST_F(Status, WatchEndsWithCtrlC) {
   Program& watch = hand("ergocast", {"status", "--watch"});
-  ASSERT_TRUE(watch.says("nobody is heard on ")) << watch.said();
+  ASSERT_TRUE(watch.prints("nobody is heard on ")) << watch.printed();
   watch.child.send(SIGINT);
   EXPECT_EQ(wait_for(watch.child), 0);
 }

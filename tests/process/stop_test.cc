@@ -41,7 +41,7 @@ class StopCommand : public ByHand {
   /// Also waits until the mission is under way.
   std::vector<Program*> start_mission(const std::filesystem::path& scenario) {
     const auto all = start_all(scenario);
-    EXPECT_TRUE(recorded(30000)) << all[2]->said();
+    EXPECT_TRUE(recorded(30000)) << all[2]->printed();
     return all;
   }
   /// No vehicle moves in the record's last tick, and all moved before: in lockstep in the tick
@@ -73,7 +73,7 @@ TEST_P(Stopped, InOrderByTheCoordinator) {
   ASSERT_EQ(stop(), 0) << output();
   EXPECT_TRUE(answered("the mission has ended at tick ")) << output();
   EXPECT_TRUE(answered("stopped by `ergocast stop` on " + host_name())) << output();
-  for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->said();
+  for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->printed();
   EXPECT_EQ(summary()["result"], "stopped");
   EXPECT_TRUE(was_ended("stopped by `ergocast stop` on " + host_name()));
   EXPECT_FALSE(summary().contains("emergency_stop"));
@@ -84,7 +84,7 @@ TEST_P(Stopped, AtOnce) {
   const auto all = start_mission(endless(GetParam()));
   ASSERT_EQ(stop({"--now"}), 0) << output();
   EXPECT_TRUE(answered("all stand still")) << output();
-  for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->said();
+  for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->printed();
   EXPECT_EQ(summary()["result"], "stopped");
   EXPECT_TRUE(was_ended("stopped at once by `ergocast stop --now` on " + host_name()));
   expect_halt(GetParam());
@@ -102,7 +102,7 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
   ASSERT_EQ(stop({"--now"}), 0) << output();
   for (Program* program : all) {
     if (program == all[2]) continue;
-    EXPECT_EQ(wait_for(program->child), 0) << program->said();
+    EXPECT_EQ(wait_for(program->child), 0) << program->printed();
   }
   EXPECT_EQ(summary()["result"], "stopped");
   expect_halt(GetParam());
@@ -113,7 +113,7 @@ TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
   constexpr Tick kWaitedFor = 100;
   hold_next("ERGOCAST_COMMAND_2", kWaitedFor);
   const auto all = start_all(endless(false));
-  ASSERT_TRUE(eventually([] { return stopped(pids(agent(2))); })) << all[2]->said();
+  ASSERT_TRUE(eventually([] { return stopped(pids(agent(2))); })) << all[2]->printed();
   hold_none();
   ASSERT_EQ(stop({"--now"}), 0) << output();
   EXPECT_TRUE(answered("agent 2 did not say so")) << output();
@@ -130,9 +130,9 @@ TEST_F(StopCommand, EndsAMissionOfALauncherWhichCallsItStopped) {
     Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
     ASSERT_EQ(stop(at_once ? std::vector<std::string>{"--now"} : std::vector<std::string>{}), 0)
         << output();
-    EXPECT_EQ(wait_for(mission), 0) << said();
-    EXPECT_EQ(summary()["result"], "stopped") << said();
-    EXPECT_EQ(summary()["restarts"], 0) << said();
+    EXPECT_EQ(wait_for(mission), 0) << printed();
+    EXPECT_EQ(summary()["result"], "stopped") << printed();
+    EXPECT_EQ(summary()["restarts"], 0) << printed();
     EXPECT_EQ(summary()["record_complete"], true);
     for (const auto& process : summary()["processes"])
       EXPECT_EQ(process["end"], "exited with code 0");
@@ -143,9 +143,9 @@ TEST_F(StopCommand, ALauncherEndsAMissionWhoseCoordinatorIsDeaf) {
   Child mission = launch_endless(scenario());
   signal_to({"ergocast-coordinator"}, SIGSTOP);
   mission.send(SIGINT);
-  EXPECT_TRUE(logs("sim", "finished at tick")) << said();
+  EXPECT_TRUE(logs("sim", "finished at tick")) << printed();
   signal_to({"ergocast-coordinator"}, SIGCONT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["result"], "stopped");
 }
 
@@ -159,7 +159,7 @@ TEST_F(StopCommand, NeedsTheCoordinatorsKeyIfTheTeamHasOne) {
   hand("ergocast-coordinator", {endless(false), "--run-id", "ab", "--key-file", coordinator});
   for (const char* id : {"0", "1", "2", "3"})
     hand("ergocast-agent", {"--id", id, "--key-file", team});
-  ASSERT_TRUE(recorded(30000)) << sim.said();
+  ASSERT_TRUE(recorded(30000)) << sim.printed();
   for (const bool at_once : {false, true}) {
     std::vector<std::string> how{"--run-id", "ab"};
     if (at_once) how.push_back("--now");
@@ -171,8 +171,8 @@ TEST_F(StopCommand, NeedsTheCoordinatorsKeyIfTheTeamHasOne) {
     EXPECT_TRUE(moves_on()) << "nobody obeys who is not the coordinator's";
   }
   ASSERT_EQ(stop({"--now", "--key-file", coordinator}), 0) << output();
-  EXPECT_EQ(wait_for(sim.child), 0) << sim.said();
-  EXPECT_TRUE(sim.says("stopped at once")) << sim.said();
+  EXPECT_EQ(wait_for(sim.child), 0) << sim.printed();
+  EXPECT_TRUE(sim.prints("stopped at once")) << sim.printed();
 }
 
 TEST_F(StopCommand, WithNobodyThereSaysWhatToCheck) {
@@ -189,7 +189,7 @@ void two_runs_speak_until(const std::function<bool()>& done) {
     for (const RunId run : {0xa1, 0xb2}) {
       TeamStatus team;
       team.header = {run, kCoordinator, run, 0, 7};
-      stranger.say(Bus::kSwarm, team);
+      stranger.send(Bus::kSwarm, team);
     }
     return done();
   }));
@@ -198,27 +198,27 @@ void two_runs_speak_until(const std::function<bool()>& done) {
 TEST_F(StopCommand, OfSeveralRunsOnOneUrlEndsNoneInOrder) {
   Program& undecided = hand("ergocast", {"stop"});
   two_runs_speak_until([&] { return !undecided.child.running(); });
-  EXPECT_EQ(wait_for(undecided.child), 2) << undecided.said();
-  EXPECT_TRUE(undecided.says("--run-id 00000000000000a1")) << undecided.said();
-  EXPECT_TRUE(undecided.says("--run-id 00000000000000b2")) << undecided.said();
+  EXPECT_EQ(wait_for(undecided.child), 2) << undecided.printed();
+  EXPECT_TRUE(undecided.prints("--run-id 00000000000000a1")) << undecided.printed();
+  EXPECT_TRUE(undecided.prints("--run-id 00000000000000b2")) << undecided.printed();
 }
 
 TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
   Program& decided = hand("ergocast", {"stop", "--now"});
-  two_runs_speak_until([&] { return decided.said().find("telling") != std::string::npos; });
-  EXPECT_TRUE(decided.says("run 00000000000000a1: telling everybody to stand still"));
-  EXPECT_TRUE(decided.says("run 00000000000000b2: telling everybody to stand still"));
-  EXPECT_EQ(wait_for(decided.child), 4) << decided.said();
-  EXPECT_TRUE(decided.says("no world or driver was heard")) << "so nobody knows about vehicles";
+  two_runs_speak_until([&] { return decided.printed().find("telling") != std::string::npos; });
+  EXPECT_TRUE(decided.prints("run 00000000000000a1: telling everybody to stand still"));
+  EXPECT_TRUE(decided.prints("run 00000000000000b2: telling everybody to stand still"));
+  EXPECT_EQ(wait_for(decided.child), 4) << decided.printed();
+  EXPECT_TRUE(decided.prints("no world or driver was heard")) << "so nobody knows about vehicles";
 }
 
 // An attacker with recordings of many runs of the same key cannot hide another run behind them.
 TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
-  std::set<RunId> told;
+  std::set<RunId> reached;
   const auto listener =
       std::get<0>(Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {kTypes<Stop>},
                                   {.on_message = [&](const Message& stop, Bus, AgentId) {
-                                    told.insert(header_of(stop).run);
+                                    reached.insert(header_of(stop).run);
                                   }}));
   Stranger stranger(kUrl);
   Program& decided = hand("ergocast", {"stop", "--now"});
@@ -226,13 +226,13 @@ TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
     for (RunId run = 1; run <= 20; ++run) {
       TeamStatus team;
       team.header = {run, kCoordinator, run, 0, 7};
-      stranger.say(Bus::kSwarm, team);
+      stranger.send(Bus::kSwarm, team);
     }
     listener->deliver_until(now(), -1);
-    return told.size() == 20;
+    return reached.size() == 20;
   }));
-  EXPECT_EQ(wait_for(decided.child), 4) << decided.said();
-  EXPECT_TRUE(decided.says("more than 16 runs were heard")) << decided.said();
+  EXPECT_EQ(wait_for(decided.child), 4) << decided.printed();
+  EXPECT_TRUE(decided.prints("more than 16 runs were heard")) << decided.printed();
 }
 
 TEST_F(StopCommand, InAnEmergencyDoesNotSayThatVehiclesStandWhoseWorldIsSilent) {

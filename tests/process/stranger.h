@@ -22,12 +22,12 @@ class Stranger {
             std::get<0>(Transport::open(url_, 0, authenticator, Subscriptions{},
                                         {.on_message = [](const Message&, Bus, AgentId) {}}))) {}
 
-  void say(Bus bus, Message message) {
+  void send(Bus bus, Message message) {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);
     transport_->publish({bus, message});
   }
   /// Sends bytes unchanged.
-  void say(Bus bus, const std::string& channel, const std::vector<std::byte>& bytes) {
+  void send(Bus bus, const std::string& channel, const std::vector<std::byte>& bytes) {
     lcm::LCM raw(url_.of(bus));
     raw.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
   }

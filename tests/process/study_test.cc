@@ -26,7 +26,7 @@ class Study : public OwnHost {
   void write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name) << text;
   }
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
 
   /// The arguments of a study of two noises.
   std::vector<std::string> arguments(const std::string& seeds,
@@ -71,7 +71,7 @@ TEST_F(Study, FliesEveryCombinationOnceInOrder) {
   auto words = arguments("4:6", out());
   words.insert(words.end(), {"--vary", "law.regularization=ABSOLUTE,RELATIVE"});
   ASSERT_EQ(ergocast(words), 0) << output();
-  EXPECT_TRUE(said("law.noise_intensity = 0.1, law.regularization = RELATIVE")) << output();
+  EXPECT_TRUE(printed("law.noise_intensity = 0.1, law.regularization = RELATIVE")) << output();
   const auto rows = rows_of(table());
   ASSERT_EQ(rows.size(), 12U);
   std::size_t row = 0;
@@ -114,9 +114,9 @@ TEST_F(Study, SetsFieldsOfEveryPointAndNamesTheCommandOfEachRow) {
   words.insert(words.end(), {"--set", "agents.starts[0].x_m=40", "--set", "law.epsilon=0.2"});
   ASSERT_EQ(ergocast(words), 0) << output();
   const std::string mission = folder_ / "mission.textproto";
-  EXPECT_TRUE(said("\n  ergocast run " + mission +
-                   " --set 'agents.starts[0].x_m'=40 --set law.epsilon=0.2"
-                   " --set law.noise_intensity=1 --seed 7\n"))
+  EXPECT_TRUE(printed("\n  ergocast run " + mission +
+                      " --set 'agents.starts[0].x_m'=40 --set law.epsilon=0.2"
+                      " --set law.noise_intensity=1 --seed 7\n"))
       << output();
   const auto study = nlohmann::json::parse(text_of(out() / "study.json"));
   EXPECT_EQ(study["set"],
@@ -139,14 +139,15 @@ TEST_F(Study, GoesOnAfterCtrlCAndLosesNothing) {
   ASSERT_TRUE(eventually([this] { return lines(table()) > 20; }));
   child.send(SIGINT);
   EXPECT_EQ(wait_for(child), 0);
-  EXPECT_TRUE(said("runs are missing: the same command flies them")) << output();
+  EXPECT_TRUE(printed("runs are missing: the same command flies them")) << output();
   const auto before = rows_of(table());
   ASSERT_LT(before.size(), 1000000U);
   unsigned long last = 0;
   for (const auto& row : before) last = std::max(last, std::stoul(row[2]));
   const std::string seeds = "1:" + std::to_string(last + 5);
   ASSERT_EQ(study(seeds, out()), 0) << output();
-  EXPECT_TRUE(said(std::to_string(2 * (last + 5) - before.size()) + " runs flown now")) << output();
+  EXPECT_TRUE(printed(std::to_string(2 * (last + 5) - before.size()) + " runs flown now"))
+      << output();
   EXPECT_EQ(table(), fresh(seeds));
 }
 
@@ -155,14 +156,14 @@ TEST_F(Study, DropsALastLineThatIsTorn) {
   const std::string whole = table();
   write("run/study.csv", whole.substr(0, whole.size() - 7));
   ASSERT_EQ(study("1:3", out()), 0);
-  EXPECT_TRUE(said("1 runs flown now")) << output();
+  EXPECT_TRUE(printed("1 runs flown now")) << output();
   EXPECT_EQ(table(), whole);
 }
 
 TEST_F(Study, TakesMoreSeedsLaterAndKeepsThoseItHas) {
   ASSERT_EQ(study("1:3", out()), 0);
   ASSERT_EQ(study("2:8", out()), 0);
-  EXPECT_TRUE(said("10 runs flown now, 16 in")) << output();
+  EXPECT_TRUE(printed("10 runs flown now, 16 in")) << output();
   EXPECT_EQ(table(), fresh("1:8"));
 }
 
@@ -171,7 +172,7 @@ TEST_F(Study, DrawsAFinishedStudyAgain) {
   const std::string page = text_of(out() / "report.html");
   std::filesystem::remove(out() / "report.html");
   ASSERT_EQ(study("1:3", out()), 0);
-  EXPECT_TRUE(said("0 runs flown now, 6 in")) << output();
+  EXPECT_TRUE(printed("0 runs flown now, 6 in")) << output();
   EXPECT_EQ(text_of(out() / "report.html"), page);
 }
 
@@ -186,8 +187,8 @@ TEST_F(Study, AWorkerThatDiesCostsItsRun) {
     if (pid != child.pid()) kill(pid, SIGKILL);
   }
   EXPECT_EQ(wait_for(child), 4);
-  EXPECT_TRUE(said("law.noise_intensity = 1, seed 1: its process died of SIGKILL")) << output();
-  EXPECT_TRUE(said("2 runs are missing, 2 of them failed")) << output();
+  EXPECT_TRUE(printed("law.noise_intensity = 1, seed 1: its process died of SIGKILL")) << output();
+  EXPECT_TRUE(printed("2 runs are missing, 2 of them failed")) << output();
   EXPECT_EQ(lines(table()), 1U);
 }
 
@@ -209,7 +210,7 @@ class Shards : public Study {
   }
   void refused(const std::vector<std::filesystem::path>& parts, const std::string& why) {
     EXPECT_EQ(merge(parts), 2) << why;
-    EXPECT_TRUE(said(why)) << why << " in\n" << output();
+    EXPECT_TRUE(printed(why)) << why << " in\n" << output();
     EXPECT_FALSE(std::filesystem::exists(out()));
   }
 };
@@ -222,12 +223,12 @@ TEST_F(Shards, MergedAreTheBytesOfOneRunOfAll) {
   EXPECT_EQ(lines(text_of(part(1) / "study.csv")), 6U);
   EXPECT_EQ(lines(text_of(part(3) / "study.csv")), 5U);
   ASSERT_EQ(merge({part(2), part(3), part(1)}), 0) << output();
-  EXPECT_TRUE(said("ergocast run ")) << output();
+  EXPECT_TRUE(printed("ergocast run ")) << output();
   for (const char* file : {"study.csv", "study.json", "report.html"}) {
     EXPECT_EQ(text_of(out() / file), text_of(whole / file)) << file;
   }
   EXPECT_EQ(merge({part(1), part(2), part(3)}), 2);
-  EXPECT_TRUE(said("is not empty; give a new folder")) << output();
+  EXPECT_TRUE(printed("is not empty; give a new folder")) << output();
 }
 
 TEST_F(Shards, OnlyAllShardsOfOneStudyEachOnceAreMerged) {
@@ -284,7 +285,7 @@ TEST_F(Shards, AFolderIsOfOneShard) {
     auto words = arguments(seeds, part(1));
     words.insert(words.end(), more.begin(), more.end());
     EXPECT_EQ(ergocast(words), 2);
-    EXPECT_TRUE(said("its study is shard 1/3 of seeds 1:3, this one " + why)) << output();
+    EXPECT_TRUE(printed("its study is shard 1/3 of seeds 1:3, this one " + why)) << output();
   };
   again({"--shard", "2/3"}, "1:3", "shard 2/3 of seeds 1:3; give a new folder");
   again({"--shard", "1/3"}, "1:4", "shard 1/3 of seeds 1:4");
@@ -293,10 +294,10 @@ TEST_F(Shards, AFolderIsOfOneShard) {
     auto words = arguments("1:3", out());
     words.insert(words.end(), {"--shard", shard});
     EXPECT_EQ(ergocast(words), 2);
-    EXPECT_TRUE(said("is not I/N with I from 1 to N")) << output();
+    EXPECT_TRUE(printed("is not I/N with I from 1 to N")) << output();
   }
   EXPECT_EQ(ergocast({"study", "--seeds", "1:3", "merge", part(1), "--out", out()}), 2);
-  EXPECT_TRUE(said("stands before all options")) << output();
+  EXPECT_TRUE(printed("stands before all options")) << output();
 }
 
 TEST_F(Study, RefusesAnotherStudysFolder) {
@@ -307,7 +308,7 @@ TEST_F(Study, RefusesAnotherStudysFolder) {
         "study", folder_ / "mission.textproto", "--seeds", "1:2", "--out", out()};
     words.insert(words.end(), more.begin(), more.end());
     EXPECT_EQ(ergocast(words), 2) << why;
-    EXPECT_TRUE(said(why) && said("give a new folder")) << output();
+    EXPECT_TRUE(printed(why) && printed("give a new folder")) << output();
   };
   refused({}, "its study varies [\"law.noise_intensity\"]");
   refused({"--vary", "law.noise_intensity=0.1"}, "its study has 2 points, this one 1");
@@ -321,14 +322,14 @@ TEST_F(Study, RefusesAFolderWithOtherFilesAndADamagedTable) {
   std::filesystem::create_directory(out());
   write("run/precious", "data");
   EXPECT_EQ(study("1", out()), 2);
-  EXPECT_TRUE(said("is not empty and no study")) << output();
+  EXPECT_TRUE(printed("is not empty and no study")) << output();
   std::filesystem::remove(out() / "precious");
   ASSERT_EQ(study("1:3", out()), 0);
   std::string damaged = table();
   damaged.replace(damaged.find("\nmission,1,2,") + 1, 7, "mossion");
   write("run/study.csv", damaged);
   EXPECT_EQ(study("1:4", out()), 2);
-  EXPECT_TRUE(said("study.csv:6: is no row of this study")) << output();
+  EXPECT_TRUE(printed("study.csv:6: is no row of this study")) << output();
   EXPECT_EQ(table(), damaged);
 }
 
@@ -336,7 +337,7 @@ TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
   const auto refused = [&](std::vector<std::string> words, const std::string& why) {
     words.insert(words.begin(), {"study", folder_ / "mission.textproto", "--out", out()});
     EXPECT_EQ(ergocast(words), 2) << why;
-    EXPECT_TRUE(said(why)) << why << " in\n" << output();
+    EXPECT_TRUE(printed(why)) << why << " in\n" << output();
     EXPECT_FALSE(std::filesystem::exists(out()));
   };
   refused({}, "--seeds");
@@ -354,7 +355,7 @@ TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
   vary("law.epsilon=0.1,1e-1", "is the same mission as");
   vary("seed=1,2", "use --seeds");
   vary("law.contraction_gain_per_s=0,1", "u_max_mps: 5 is too weak for contraction_gain_per_s 1");
-  EXPECT_TRUE(said(", with law.contraction_gain_per_s=1")) << output();
+  EXPECT_TRUE(printed(", with law.contraction_gain_per_s=1")) << output();
   refused({"--seeds", "1", "--vary", "law.epsilon=1", "--vary", "law.epsilon=2"},
           "is varied twice");
   refused({"--seeds", "1", "--vary", "time.duration_s=1,2", "--duration", "3"},
@@ -372,7 +373,7 @@ TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
   for (int i = 1; i < 1001; ++i) many += ',' + std::to_string(i);
   vary(many, "1001 combinations are above the limit 1000");
   EXPECT_EQ(ergocast({"study", folder_ / "nothing", "--seeds", "1", "--out", out()}), 2);
-  EXPECT_TRUE(said("there is no such file")) << output();
+  EXPECT_TRUE(printed("there is no such file")) << output();
 }
 
 }  // namespace

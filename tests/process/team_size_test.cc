@@ -27,12 +27,12 @@ TEST_F(TeamSize, TwoSayInRealTimeThatTheyHoldEachOthersCoverage) {
   BusObserver observer(kUrl);
   for (const AgentId id : {0, 1}) {
     const auto held = [&] { return observer.held(observer.member(id), observer.member(1 - id)); };
-    ASSERT_TRUE(observer.hears([&] { return held() > 0; }));
+    ASSERT_TRUE(observer.observes([&] { return held() > 0; }));
     const std::int64_t before = held();
-    EXPECT_TRUE(observer.hears([&] { return held() > before; })) << "and ever more of it";
+    EXPECT_TRUE(observer.observes([&] { return held() > before; })) << "and ever more of it";
   }
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
 TEST_F(TeamSize, HowOftenSeventeenBroadcastDoesNotShowInWhatTheyFly) {
@@ -60,10 +60,10 @@ class LateAgent : public ByHand {
  protected:
   /// It is a member, holds the others' coverage, and they hold its coverage.
   static void expect_to_take_part(BusObserver& observer, AgentId newcomer, AgentId veteran) {
-    ASSERT_TRUE(observer.hears([&] { return observer.member(newcomer).incarnation != 0; }));
+    ASSERT_TRUE(observer.observes([&] { return observer.member(newcomer).incarnation != 0; }));
     const Author late = observer.member(newcomer), early = observer.member(veteran);
     EXPECT_GT(observer.entry(late)->active_from, 0) << "the mission was under way";
-    EXPECT_TRUE(observer.hears([&] {
+    EXPECT_TRUE(observer.observes([&] {
       return observer.held(late, early) >= observer.entry(late)->active_from / 2 &&
              observer.held(early, late) > 0 && observer.answered(late) > 0;
     }));
@@ -98,7 +98,7 @@ TEST_P(LateAgentInEitherPace, IsWelcomeBeyondThePlanAlsoUnderTheLastNumber) {
   expect_to_take_part(observer, 2, 1);
   expect_to_take_part(observer, kMaxAgents - 1, 1);
   mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(summary()["agents"].size(), 4U);
 }
 

@@ -57,7 +57,8 @@ class Trials : public OwnHost {
   }
 
   /// The text after `before` in each line that has it, up to `after` or the line's end.
-  std::vector<std::string> told(const std::string& before, const std::string& after = "\n") const {
+  std::vector<std::string> texts_between(const std::string& before,
+                                         const std::string& after = "\n") const {
     std::vector<std::string> parts;
     const std::string text = output();
     for (auto at = text.find(before); at != text.npos; at = text.find(before, at + 1)) {
@@ -73,13 +74,14 @@ TEST_F(Trials, AGoalOutOfReachFailsEverySeedWithTheMetricThatSimulateRecords) {
   const auto mission =
       write("impossible.textproto", std::string(kSwiftMission) + "goal_ergodic_metric: 1e-9\n");
   EXPECT_EQ(ergocast({"simulate", mission, "--seeds", "1:20"}), 4);
-  EXPECT_EQ(told("failures")[0].substr(told("failures")[0].rfind(' ')), " 20") << output();
+  EXPECT_EQ(texts_between("failures")[0].substr(texts_between("failures")[0].rfind(' ')), " 20")
+      << output();
   std::vector<double> reached;
   for (int seed = 1; seed <= 20; ++seed) {
-    const auto said =
-        told("seed " + std::to_string(seed) + ": the goal is reached: the team at t = ", " > ");
-    ASSERT_EQ(said.size(), 1U) << seed << "\n" << output();
-    reached.push_back(std::stod(said[0].substr(said[0].find("phi^2 = ") + 8)));
+    const auto printed = texts_between(
+        "seed " + std::to_string(seed) + ": the goal is reached: the team at t = ", " > ");
+    ASSERT_EQ(printed.size(), 1U) << seed << "\n" << output();
+    reached.push_back(std::stod(printed[0].substr(printed[0].find("phi^2 = ") + 8)));
   }
   for (const int seed : {1, 7, 20}) {
     const double metric = std::stod(simulated({folder_ / "mission.textproto"}, seed));
@@ -116,8 +118,8 @@ TEST_F(Trials, ThePrintedCommandFliesTheSameMissionAgain) {
     words.insert(words.end(), pace.begin(), pace.end());
     std::filesystem::remove(folder_ / "again.log");
     EXPECT_EQ(ergocast(words), 4) << output();
-    const auto failed = told("seed ");
-    const auto again = told("again: ergocast ");
+    const auto failed = texts_between("seed ");
+    const auto again = texts_between("again: ergocast ");
     ASSERT_EQ(failed.size(), 3U) << output();
     ASSERT_EQ(again.size(), 3U) << output();
     log_ = folder_ / "again.log";
@@ -126,7 +128,7 @@ TEST_F(Trials, ThePrintedCommandFliesTheSameMissionAgain) {
                       log_,
                       SIGKILL}));
     EXPECT_EQ(wait_for(child), 4) << again[1];
-    EXPECT_EQ(told("seed "), std::vector<std::string>{failed[1]}) << again[1];
+    EXPECT_EQ(texts_between("seed "), std::vector<std::string>{failed[1]}) << again[1];
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 class Typing : public OwnHost {
  protected:
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
@@ -28,17 +28,17 @@ class Typing : public OwnHost {
 TEST_F(Typing, UnknownOptionsAndCommandsGetWhatTheyMayHaveMeant) {
   const std::string scenario = scenario_file("quadrimodal_corners");
   EXPECT_EQ(ergocast({"run", "--sed", "3", scenario}), 2);
-  EXPECT_TRUE(said("run: there is no option --sed; did you mean --seed?")) << output();
+  EXPECT_TRUE(printed("run: there is no option --sed; did you mean --seed?")) << output();
   EXPECT_EQ(ergocast({"simulate", "--duraton=3", scenario}), 2);
-  EXPECT_TRUE(said("did you mean --duration?")) << output();
+  EXPECT_TRUE(printed("did you mean --duration?")) << output();
   EXPECT_EQ(ergocast({"stat"}), 2);
-  EXPECT_TRUE(said("there is no command stat; did you mean status?")) << output();
+  EXPECT_TRUE(printed("there is no command stat; did you mean status?")) << output();
   EXPECT_EQ(ergocast({"verfy", out()}), 2);
-  EXPECT_TRUE(said("did you mean verify?")) << output();
+  EXPECT_TRUE(printed("did you mean verify?")) << output();
   EXPECT_EQ(ergocast({"run", scenario, "--quite-unlike-anything", "3"}), 2);
-  EXPECT_TRUE(said("there is no option --quite-unlike-anything; --help lists")) << output();
+  EXPECT_TRUE(printed("there is no option --quite-unlike-anything; --help lists")) << output();
   EXPECT_EQ(run("ergocast-agent", {"--idd", "3"}), 2);
-  EXPECT_TRUE(said("did you mean --id?")) << output();
+  EXPECT_TRUE(printed("did you mean --id?")) << output();
   EXPECT_FALSE(std::filesystem::exists(out()));
 }
 
@@ -56,7 +56,7 @@ TEST_F(Typing, OneSlipInAScenarioIsOneProblem) {
     ASSERT_NE(at, std::string::npos) << right;
     text.replace(at, right.size(), wrong);
     EXPECT_EQ(ergocast({"check", write("slip.textproto", text)}), 2);
-    EXPECT_TRUE(said("\n1 problem\n")) << right << " → " << wrong << ":\n" << output();
+    EXPECT_TRUE(printed("\n1 problem\n")) << right << " → " << wrong << ":\n" << output();
   }
 }
 
@@ -64,9 +64,9 @@ TEST_F(Typing, PlacesAreSaidByTheDomainAndNotByALimitNobodyMeets) {
   std::string text = text_of(scenario_file("quadrimodal_corners"));
   text.insert(text.find("starts {"), "starts { x_m: 1e20  y_m: 1 }\n  ");
   EXPECT_EQ(ergocast({"check", write("far.textproto", text)}), 2);
-  EXPECT_TRUE(said("1e+20 is far outside the domain (write a number in the domain, 0 to 2000)"))
+  EXPECT_TRUE(printed("1e+20 is far outside the domain (write a number in the domain, 0 to 2000)"))
       << output();
-  EXPECT_FALSE(said("1e+13")) << output();
+  EXPECT_FALSE(printed("1e+13")) << output();
 }
 
 // Nothing is ever written into the pipe: a program that opens it to read would wait for ever.
@@ -85,7 +85,7 @@ TEST_F(Typing, PipesAreRefusedWhereverAFileIsNamed) {
       {"deploy", scenario, "--to", "ssh", "--hosts", "/dev/zero"}};
   for (const auto& command : commands) {
     EXPECT_EQ(ergocast(command), 2) << ::testing::PrintToString(command);
-    EXPECT_TRUE(said("not a regular file") || said("not a file")) << output();
+    EXPECT_TRUE(printed("not a regular file") || printed("not a file")) << output();
   }
   EXPECT_EQ(run("ergocast-coordinator", {pipe}), 2) << output();
 }
@@ -100,7 +100,7 @@ TEST_F(Typing, PipesInARunDirectoryAreRefused) {
     ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
     for (const char* command : {"verify", "report"}) {
       EXPECT_EQ(ergocast({command, out()}), 2) << command << ' ' << file;
-      EXPECT_TRUE(said(file) && said("not a regular file")) << output();
+      EXPECT_TRUE(printed(file) && printed("not a regular file")) << output();
     }
     std::filesystem::rename(aside, path);
   }
@@ -116,9 +116,9 @@ TEST_F(Typing, APipeAmongTheEventLogsHoldsNobody) {
     if (first) std::filesystem::rename(path, aside);
     ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
     EXPECT_EQ(ergocast({"replay", out(), "--rate", "1000"}), 2) << name;
-    EXPECT_TRUE(said(name) && said("not a regular file")) << output();
+    EXPECT_TRUE(printed(name) && printed("not a regular file")) << output();
     EXPECT_EQ(ergocast({"report", out()}), 0) << name;
-    EXPECT_TRUE(said(name) && said("not a regular file")) << output();
+    EXPECT_TRUE(printed(name) && printed("not a regular file")) << output();
     std::filesystem::remove(path);
     if (first) std::filesystem::rename(aside, path);
   }
@@ -143,7 +143,7 @@ TEST_F(Typing, PipesAmongTheMapsOfAScenarioAreRefused) {
   for (const auto& [name, scenario] : parts) {
     ASSERT_EQ(mkfifo((folder_ / name).c_str(), 0600), 0);
     EXPECT_EQ(ergocast({"check", write("piped.textproto", scenario)}), 2) << name;
-    EXPECT_TRUE(said(name) && said("not a regular file")) << output();
+    EXPECT_TRUE(printed(name) && printed("not a regular file")) << output();
   }
 }
 
@@ -156,7 +156,7 @@ TEST_F(Typing, PipesInAStudyAreRefusedAndNotWrittenOver) {
     std::filesystem::remove(out() / name);
     ASSERT_EQ(mkfifo((out() / name).c_str(), 0600), 0);
     EXPECT_EQ(ergocast(study), 2) << name;
-    EXPECT_TRUE(said(name) && said("not a regular file")) << output();
+    EXPECT_TRUE(printed(name) && printed("not a regular file")) << output();
     EXPECT_TRUE(std::filesystem::is_fifo(out() / name));
   }
 }
@@ -201,27 +201,27 @@ TEST_F(Typing, ALongListOfProblemsIsCounted) {
   EXPECT_EQ(ergocast({"deploy", scenario, "--to", "ssh", "--hosts", write("hosts", noise)}), 2);
   EXPECT_LE(lines(), 60);
   EXPECT_LT(output().size(), 150000U);
-  EXPECT_TRUE(said(" more\n")) << output().substr(0, 1000);
+  EXPECT_TRUE(printed(" more\n")) << output().substr(0, 1000);
   std::string faults;
   for (int i = 0; i < 5000; ++i) faults += "nonsense_" + std::to_string(i) + " = 1\n";
   EXPECT_EQ(ergocast({"simulate", scenario, "--faults", write("faults", faults), "--seeds", "1"}),
             2);
   EXPECT_LE(lines(), 60);
-  EXPECT_TRUE(said("and 4950 more\n")) << output().substr(0, 1000);
+  EXPECT_TRUE(printed("and 4950 more\n")) << output().substr(0, 1000);
   EXPECT_EQ(ergocast({"deploy", scenario, "--to", "ssh", "--hosts", write("hosts", noise + noise)}),
             2);
-  EXPECT_TRUE(said("longer than the limit")) << output().substr(0, 1000);
+  EXPECT_TRUE(printed("longer than the limit")) << output().substr(0, 1000);
 }
 
 TEST_F(Typing, AnEmptyKeyVariableIsRefused) {
   const std::string scenario = scenario_file("quadrimodal_corners");
   setenv("ERGOCAST_KEY_FILE", "", 1);
   EXPECT_EQ(ergocast({"run", scenario, "--duration", "1", "--out", out()}), 2);
-  EXPECT_TRUE(said("ERGOCAST_KEY_FILE") && said("unset it")) << output();
+  EXPECT_TRUE(printed("ERGOCAST_KEY_FILE") && printed("unset it")) << output();
   EXPECT_EQ(ergocast({"status"}), 2);
   for (const char* program : {"ergocast-agent", "ergocast-sim"}) {
     EXPECT_EQ(run(program, {}), 2) << program;
-    EXPECT_TRUE(said("ERGOCAST_KEY_FILE")) << output();
+    EXPECT_TRUE(printed("ERGOCAST_KEY_FILE")) << output();
   }
   EXPECT_EQ(ergocast({"check", scenario}), 0)
       << "what takes no key does not ask for one: " << output();

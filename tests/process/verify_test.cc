@@ -34,7 +34,7 @@ class Falsified : public OwnHost {
     EXPECT_NE(output().find(place), std::string::npos) << place << " is not in: " << output();
     write(file, honest);
   }
-  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+  bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// `text` with the last digit of cell `column` of line `line`, from 1, changed.
   static std::string with_another_digit(const std::string& text, int line, int column) {
     std::size_t at = 0;
@@ -175,7 +175,7 @@ TEST_F(Falsified, PlanOfAnotherSeedIsFoundThoughEverythingNamesIt) {
   for (const char* key : {"scenario_hash", "seed", "run_id"}) summary[key] = other[key];
   write("summary.json", summary.dump(2));
   EXPECT_EQ(ergocast({"verify", out()}), 1) << output();
-  EXPECT_TRUE(said("trajectory.csv:")) << output();
+  EXPECT_TRUE(printed("trajectory.csv:")) << output();
 }
 
 TEST_F(Falsified, HonestRecordListsWhatWasComparedAndWhatNot) {
@@ -203,15 +203,15 @@ TEST_F(Falsified, MissingFilesAreRefusedOrNamed) {
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
     const auto not_compared = output().find("\nnot compared:");
     EXPECT_NE(output().find(file, not_compared), std::string::npos) << file << ": " << output();
-    EXPECT_TRUE(said("is not there")) << output();
+    EXPECT_TRUE(printed("is not there")) << output();
   }
   std::filesystem::remove(out() / "summary.json");
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
-  EXPECT_TRUE(said("summary.json                 is not there")) << output();
+  EXPECT_TRUE(printed("summary.json                 is not there")) << output();
   for (const char* file : {"metrics.csv", "plan.binpb"}) {
     std::filesystem::remove(out() / file);
     EXPECT_EQ(ergocast({"verify", out()}), 2) << output();
-    EXPECT_TRUE(said(file)) << output();
+    EXPECT_TRUE(printed(file)) << output();
   }
 }
 
@@ -225,7 +225,7 @@ TEST_F(Falsified, EmergencyStopIsBelievedOnlyWhereAllStandStill) {
   summary["emergency_stop"] = true;
   write("summary.json", summary.dump(2));
   EXPECT_EQ(ergocast({"verify", out()}), 1) << output();
-  EXPECT_TRUE(said("summary.json") || said("metrics.csv")) << output();
+  EXPECT_TRUE(printed("summary.json") || printed("metrics.csv")) << output();
 }
 
 }  // namespace

@@ -41,17 +41,17 @@ TEST_F(OtherVersion, OfACoordinatorEndsEverybodyWithBothVersionsNamed) {
                                  &hand("ergocast-agent"),
                                  &hand("ergocast-coordinator", {"--resume"})};
   ASSERT_TRUE(eventually([&] {
-    stranger_.say(Bus::kSwarm, their_status());
-    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) stranger_.say(bus, their_mission());
+    stranger_.send(Bus::kSwarm, their_status());
+    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) stranger_.send(bus, their_mission());
     return std::none_of(programs.begin(), programs.end(),
                         [](Program* p) { return p->child.running(); });
   }));
   for (Program* program : programs) {
-    EXPECT_EQ(wait_for(program->child), 4) << program->said();
-    EXPECT_NE(program->said().find("the mission's plan is of version 9.9.9, this program is " +
-                                   version() + ": install the same version on every host"),
+    EXPECT_EQ(wait_for(program->child), 4) << program->printed();
+    EXPECT_NE(program->printed().find("the mission's plan is of version 9.9.9, this program is " +
+                                      version() + ": install the same version on every host"),
               std::string::npos)
-        << program->said();
+        << program->printed();
   }
   EXPECT_FALSE(std::filesystem::exists(out() / "trajectory.csv")) << "as if no logger had been";
 }
@@ -63,18 +63,18 @@ TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
   const std::string warning = "agent on old-robot runs version 9.9.9, this mission is flown by " +
                               version() + ": install " + version() + " there";
   ASSERT_TRUE(eventually([&] {
-    stranger_.say(Bus::kSwarm, theirs);
-    return coordinator.said().find(warning) != std::string::npos;
-  })) << coordinator.said();
+    stranger_.send(Bus::kSwarm, theirs);
+    return coordinator.printed().find(warning) != std::string::npos;
+  })) << coordinator.printed();
   // A valid agent of our version gets the number that the other has asked for.
   hand("ergocast-agent", {"--id", "2"});
-  ASSERT_TRUE(observer.hears([&] {
-    stranger_.say(Bus::kSwarm, theirs);
+  ASSERT_TRUE(observer.observes([&] {
+    stranger_.send(Bus::kSwarm, theirs);
     return observer.member(2).incarnation != 0;
-  })) << coordinator.said();
+  })) << coordinator.printed();
   EXPECT_EQ(observer.entry({2, 73}), nullptr);
-  const std::string said = coordinator.said();
-  EXPECT_EQ(said.find(warning), said.rfind(warning)) << "once";
+  const std::string printed = coordinator.printed();
+  EXPECT_EQ(printed.find(warning), printed.rfind(warning)) << "once";
 }
 
 TEST_F(OtherVersion, OfAMessagesLayoutIsNamedWithItsChannelByAnAgentThatWaits) {
@@ -82,10 +82,10 @@ TEST_F(OtherVersion, OfAMessagesLayoutIsNamedWithItsChannelByAnAgentThatWaits) {
   const std::string warning = "ERGOCAST_MISSION arrives in a format that version " + version() +
                               " does not know: another version of Ergocast is on this URL";
   ASSERT_TRUE(eventually([&] {
-    stranger_.say(Bus::kSwarm, "ERGOCAST_MISSION", std::vector<std::byte>(300, std::byte{0xAB}));
-    return agent.said().find(warning) != std::string::npos;
-  })) << agent.said();
-  EXPECT_TRUE(agent.says("no coordinator is heard")) << agent.said();
+    stranger_.send(Bus::kSwarm, "ERGOCAST_MISSION", std::vector<std::byte>(300, std::byte{0xAB}));
+    return agent.printed().find(warning) != std::string::npos;
+  })) << agent.printed();
+  EXPECT_TRUE(agent.prints("no coordinator is heard")) << agent.printed();
 }
 
 }  // namespace

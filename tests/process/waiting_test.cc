@@ -46,24 +46,25 @@ class Waiting : public ByHand {
 TEST_F(Waiting, EndsAtOnceWithTheOutputOfAProgramThatFails) {
   hand("ergocast-agent");
   start("ergocast-logger", {"--no-such-option"});
-  const std::string said = failures_of([this] { return recorded(1); });
-  expect_parts(said, {"/ergocast-logger --no-such-option\nexited with code 2 while the test waited",
-                      "there is no option --no-such-option; --help lists what there is"});
+  const std::string printed = failures_of([this] { return recorded(1); });
+  expect_parts(printed,
+               {"/ergocast-logger --no-such-option\nexited with code 2 while the test waited",
+                "there is no option --no-such-option; --help lists what there is"});
   EXPECT_EQ(failures_of([this] { return recorded(1); }), "") << "it is reported once";
 }
 
 TEST_F(Waiting, ForAnotherProcessEndsAtOnceToo) {
   Program& coordinator = hand("ergocast-coordinator", {scenario()});
   hand("ergocast-agent", {"--id", "none"});
-  const std::string said =
+  const std::string printed =
       failures_of([&] { return wait_for(coordinator.child) >= 0; });  // it waits for its team
-  expect_parts(said, {"/ergocast-agent --id none", "exited with code 2 while the test waited"});
+  expect_parts(printed, {"/ergocast-agent --id none", "exited with code 2 while the test waited"});
 }
 
 TEST_F(Waiting, ForAProgramsWordsEndsWithIt) {
   hand("ergocast-agent");
   Program& told = hand("ergocast", {"doctor", "--help"});
-  expect_parts(failures_of([&] { return told.says("what it never says"); }),
+  expect_parts(failures_of([&] { return told.prints("what it never says"); }),
                {"/ergocast doctor --help", "exited with code 0 while the test waited"});
 }
 

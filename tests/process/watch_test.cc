@@ -95,14 +95,14 @@ TEST_F(WatchedPage, OtherSitesGetNothingAndNoLeaveToRead) {
   }
   const HttpAnswer page = get(kPort, "/", {"Origin: http://127.0.0.1:8765"});
   EXPECT_EQ(page.status, 200);
-  EXPECT_FALSE(page.says("Access-Control")) << page.head;
+  EXPECT_FALSE(page.contains("Access-Control")) << page.head;
   for (const char* header : {"Content-Security-Policy: default-src 'none'; script-src 'sha256-",
                              "frame-ancestors 'none'", "X-Content-Type-Options: nosniff",
                              "Cross-Origin-Resource-Policy: same-origin",
                              "Referrer-Policy: no-referrer", "Cache-Control: no-store"}) {
-    EXPECT_TRUE(page.says(header)) << header << " is not in\n" << page.head;
+    EXPECT_TRUE(page.contains(header)) << header << " is not in\n" << page.head;
   }
-  EXPECT_FALSE(page.says("unsafe"));
+  EXPECT_FALSE(page.contains("unsafe"));
   end_server();
 }
 
@@ -147,13 +147,13 @@ TEST_F(WatchedPage, BeyondThisHostATokenIsNeeded) {
     const HttpAnswer answer = ask(target, {});
     EXPECT_EQ(answer.status, 403) << target;
     EXPECT_EQ(answer.body.find("quadrimodal"), std::string::npos);
-    EXPECT_FALSE(answer.says("Set-Cookie"));
+    EXPECT_FALSE(answer.contains("Set-Cookie"));
   }
   const HttpAnswer let_in = ask("/?token=" + right, {});
   EXPECT_EQ(let_in.status, 303);
-  EXPECT_TRUE(let_in.says("Location: /\r\n") || let_in.says("Location: /")) << let_in.head;
+  EXPECT_TRUE(let_in.contains("Location: /\r\n") || let_in.contains("Location: /")) << let_in.head;
   EXPECT_TRUE(
-      let_in.says("Set-Cookie: ergocast-8801=" + right + "; HttpOnly; SameSite=Strict; Path=/"))
+      let_in.contains("Set-Cookie: ergocast-8801=" + right + "; HttpOnly; SameSite=Strict; Path=/"))
       << let_in.head;
   for (const char* other : {"ergocast-8802=", "xergocast-8801=", "ergocast-8801=x"}) {
     EXPECT_EQ(ask("/", {"Cookie: " + (other + right)}).status, 403) << other;
@@ -203,7 +203,7 @@ TEST_F(WatchedPage, SixteenBrowsersWatchATeamAndMoreTakeTurns) {
   streams.clear();
 
   mission.send(SIGINT);
-  EXPECT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  EXPECT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   EXPECT_TRUE(shows(*events(kPort), "event: end"));
   const HttpAnswer record = get(kPort, "/record.json");
   EXPECT_EQ(record.status, 200);

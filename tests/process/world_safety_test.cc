@@ -23,11 +23,12 @@ TEST_P(SilentAgent, ItsVehicleStandsOnceItsLastCommandIsTooOld) {
                                " pace: REALTIME realtime_factor: 5"));
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
   BusObserver observer(kUrl);
-  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(1)) > 20; }));
+  ASSERT_TRUE(observer.observes([&] { return observer.answered(observer.member(1)) > 20; }));
   const Author silent = observer.member(1);
   signal_to(agent(1), GetParam());
   const Tick others = observer.answered(observer.member(0));
-  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > others + 200; }));
+  ASSERT_TRUE(
+      observer.observes([&] { return observer.answered(observer.member(0)) > others + 200; }));
   const Tick last = observer.answered(silent);
   ASSERT_TRUE(eventually([&] {
     const auto rows = recorded_rows(out());

@@ -179,12 +179,12 @@ std::string read_back(const fs::path& folder) {
   auto opened = EventLogReader::open(folder);
   if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
   auto& reader = std::get<EventLogReader>(opened);
-  std::string said;
+  std::string printed;
   while (const LoggedEvent* event = reader.next()) {
     EXPECT_EQ(event->time_us, 1000000 + event->bytes.size());
-    said += event->channel + ' ';
+    printed += event->channel + ' ';
   }
-  return said + reader.problem().value_or("");
+  return printed + reader.problem().value_or("");
 }
 
 class EventLogReaderTest : public EventLogTest {

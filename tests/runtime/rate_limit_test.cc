@@ -70,9 +70,9 @@ TEST(RateLimit, DoesNotMeetAnHonestAgentHoweverFastTheTeamIs) {
 }
 
 TEST(RateLimit, RefusesMostOfAHundredTimesThat) {
-  const int said = 10000 * 100 * kHonest;
-  EXPECT_GT(refused(mission_of(Pace::kRealtime), 100 * kHonest, 10), said * 0.75);
-  EXPECT_GT(refused(mission_of(Pace::kLockstep), 100 * kHonest, 4000), said * 0.75);
+  const int sent = 10000 * 100 * kHonest;
+  EXPECT_GT(refused(mission_of(Pace::kRealtime), 100 * kHonest, 10), sent * 0.75);
+  EXPECT_GT(refused(mission_of(Pace::kLockstep), 100 * kHonest, 4000), sent * 0.75);
 }
 
 TEST(RateLimit, ABacklogOfTenSecondsIsNoBabble) {

@@ -66,18 +66,18 @@ class GeoJsonTarget : public ::testing::Test {
     std::ofstream(folder_ / "mine.textproto") << where << small_with("uniform_weight: 1", target);
     return Scenario::load(folder_ / "mine.textproto");
   }
-  std::string said_of(const std::string& geojson, const std::string& where = kWhere,
-                      const std::string& target = kRegion) {
+  std::string problem_of(const std::string& geojson, const std::string& where = kWhere,
+                         const std::string& target = kRegion) {
     const Loaded result = load(target, geojson, where);
     const auto* problems = std::get_if<std::vector<Problem>>(&result);
     return problems == nullptr ? "" : joined(*problems);
   }
   void expect(const std::string& geojson, const std::string& what) {
-    const std::string said = said_of(geojson);
-    EXPECT_TRUE(has(said, "mine.textproto:3:")) << "of the field";
-    EXPECT_TRUE(has(
-        said, "target.regions[0].polygon.file: " + (folder_ / "a.geojson").string() + ": " + what));
-    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    const std::string printed = problem_of(geojson);
+    EXPECT_TRUE(has(printed, "mine.textproto:3:")) << "of the field";
+    EXPECT_TRUE(has(printed, "target.regions[0].polygon.file: " + (folder_ / "a.geojson").string() +
+                                 ": " + what));
+    EXPECT_EQ(std::count(printed.begin(), printed.end(), '\n'), 1) << printed;
   }
 
   static constexpr const char* kRegion = "regions { polygon { file: \"a.geojson\" } }";
@@ -185,18 +185,19 @@ TEST_F(GeoJsonTarget, RefusesWhatIsNestedDeeperThanAnyPolygon) {
 
 TEST_F(GeoJsonTarget, NeedsAnOriginThatIsAPlace) {
   const std::string text = collection({polygon(box_ring(10, 10, 30))});
-  EXPECT_EQ(said_of(text), "");
-  EXPECT_TRUE(has(said_of(text, ""),
+  EXPECT_EQ(problem_of(text), "");
+  EXPECT_TRUE(has(problem_of(text, ""),
                   "target.regions[0].polygon.file: needs to know where on the earth the scenario "
                   "lies (add origin { latitude_deg: … longitude_deg: … }"));
-  EXPECT_TRUE(has(said_of(text, "origin { latitude_deg: 97.5 longitude_deg: 9.2 }"),
+  EXPECT_TRUE(has(problem_of(text, "origin { latitude_deg: 97.5 longitude_deg: 9.2 }"),
                   "origin.latitude_deg: 97.5 is above the limit 90"));
   EXPECT_TRUE(
-      has(said_of(text, "origin { latitude_deg: 47.5 }"), "origin.longitude_deg: is missing"));
-  EXPECT_TRUE(has(
-      said_of(text, kWhere, "regions { polygon { file: \"a.geojson\" " + vertices(1, 1, 5) + "} }"),
-      "stands beside vertices or holes (keep one of them)"));
-  EXPECT_TRUE(has(said_of(text, kWhere, "regions { polygon { file: \"b.geojson\" } }"),
+      has(problem_of(text, "origin { latitude_deg: 47.5 }"), "origin.longitude_deg: is missing"));
+  EXPECT_TRUE(
+      has(problem_of(text, kWhere,
+                     "regions { polygon { file: \"a.geojson\" " + vertices(1, 1, 5) + "} }"),
+          "stands beside vertices or holes (keep one of them)"));
+  EXPECT_TRUE(has(problem_of(text, kWhere, "regions { polygon { file: \"b.geojson\" } }"),
                   "b.geojson: there is no such file (check the name"));
 }
 
@@ -204,7 +205,7 @@ TEST_F(GeoJsonTarget, AProblemOfALaterPolygonNamesItsMember) {
   const std::string text =
       collection({polygon(box_ring(10, 10, 10)), polygon(box_ring(60, 10, 10))});
   EXPECT_TRUE(has(
-      said_of(text, kWhere, std::string(kRegion) + " keep_outs { " + vertices(55, 5, 30) + " }"),
+      problem_of(text, kWhere, std::string(kRegion) + " keep_outs { " + vertices(55, 5, 30) + " }"),
       (folder_ / "a.geojson").string() + ": features[1].geometry: nothing of it is left"));
 }
 

@@ -31,7 +31,7 @@ class MapTarget : public ::testing::Test {
   Coefficients mu_of(const std::string& target) {
     return loaded(target).mission().target_coefficients;
   }
-  std::string said_of(const std::string& target) {
+  std::string problem_of(const std::string& target) {
     const Loaded result = Scenario::load(scenario_with(target));
     const auto* problems = std::get_if<std::vector<Problem>>(&result);
     return problems == nullptr ? "" : joined(*problems);
@@ -199,9 +199,9 @@ TEST_F(MapTarget, ThatCannotBeUsedIsOneProblemAtItsField) {
        "target.maps[0].first_row: an ESRI ASCII grid always begins"},
   };
   for (const auto& [target, expected] : mistakes) {
-    const std::string said = said_of(target);
-    EXPECT_TRUE(has(said, expected));
-    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    const std::string printed = problem_of(target);
+    EXPECT_TRUE(has(printed, expected));
+    EXPECT_EQ(std::count(printed.begin(), printed.end(), '\n'), 1) << printed;
   }
 }
 
@@ -246,21 +246,21 @@ TEST(PolygonProblems, AreOneEachAtTheirField) {
 }
 
 TEST(PolygonProblems, LimitsOfCountsAreNamed) {
-  const auto said = [](const std::string& part, int count) {
+  const auto printed = [](const std::string& part, int count) {
     std::string target = "uniform_weight: 1 ";
     for (int i = 0; i < count; ++i) target += part;
     return joined(problems_of(small_with("uniform_weight: 1", target)));
   };
   const std::string triangle = kTriangle;
-  EXPECT_TRUE(has(said("regions { polygon { " + triangle + " } } ", 65),
+  EXPECT_TRUE(has(printed("regions { polygon { " + triangle + " } } ", 65),
                   "65 regions are above the limit 64"));
   EXPECT_TRUE(
-      has(said("keep_outs { " + triangle + " } ", 65), "65 keep-outs are above the limit 64"));
-  EXPECT_TRUE(has(said("maps { file: \"a.asc\" } ", 17), "17 maps are above the limit 16"));
+      has(printed("keep_outs { " + triangle + " } ", 65), "65 keep-outs are above the limit 64"));
+  EXPECT_TRUE(has(printed("maps { file: \"a.asc\" } ", 17), "17 maps are above the limit 16"));
   std::string vertices;
   for (int i = 0; i < 4097; ++i) vertices += "vertices { x_m: 1 y_m: 1 } ";
   EXPECT_TRUE(
-      has(said("keep_outs { " + vertices + " } ", 1), "4097 vertices are above the limit 4096"));
+      has(printed("keep_outs { " + vertices + " } ", 1), "4097 vertices are above the limit 4096"));
 }
 
 TEST(PolygonTarget, PrintsWhatReadsBack) {

@@ -20,10 +20,10 @@ void expect_all_said(const pb::Message& message) {
       << at.GetUnknownFields(message).field(0).number() << " is not in team/plan.proto";
   for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
     const pb::FieldDescriptor* field = message.GetDescriptor()->field(i);
-    const bool said =
+    const bool printed =
         field->is_repeated() ? at.FieldSize(message, field) > 0 : at.HasField(message, field);
-    EXPECT_TRUE(said) << field->full_name() << " is in no plan";
-    if (!said || field->type() != pb::FieldDescriptor::TYPE_MESSAGE) continue;
+    EXPECT_TRUE(printed) << field->full_name() << " is in no plan";
+    if (!printed || field->type() != pb::FieldDescriptor::TYPE_MESSAGE) continue;
     expect_all_said(field->is_repeated() ? at.GetRepeatedMessage(message, field, 0)
                                          : at.GetMessage(message, field));
   }

@@ -65,7 +65,7 @@ agents {
 struct Mistake {
   const char* from;
   const char* to;
-  const char* said;
+  const char* printed;
 };
 
 class OneMistake : public ::testing::TestWithParam<Mistake> {};
@@ -73,7 +73,7 @@ class OneMistake : public ::testing::TestWithParam<Mistake> {};
 TEST_P(OneMistake, IsOneProblem) {
   const std::vector<Problem> problems = problems_of(small_with(GetParam().from, GetParam().to));
   ASSERT_EQ(problems.size(), 1u) << joined(problems);
-  EXPECT_TRUE(has(to_string(problems[0]), GetParam().said));
+  EXPECT_TRUE(has(to_string(problems[0]), GetParam().printed));
   EXPECT_FALSE(problems[0].remedy.empty());
 }
 
@@ -258,9 +258,9 @@ TEST(Limits, TooLongADescription) {
 // An unreadable field is unknown, not missing: it must not cause a second problem.
 TEST(ErrorRecovery, UnreadableFieldsAreNotMissingAsWell) {
   for (const char* text : {"domain { size_x_m: a size_y_m: b }", "domain: 5", "domain 5"}) {
-    const std::string said =
+    const std::string printed =
         joined(problems_of(small_with("domain { size_x_m: 100 size_y_m: 50 }", text)));
-    EXPECT_FALSE(has(said, "missing")) << said;
+    EXPECT_FALSE(has(printed, "missing")) << printed;
   }
   EXPECT_FALSE(
       has(joined(problems_of(small_with("x_m: 10 y_m: 20", "x_m: a y_m: 20"))), "missing"));
@@ -271,9 +271,10 @@ TEST(ErrorRecovery, UnreadableFieldsAreNotMissingAsWell) {
 }
 
 TEST(ErrorRecovery, UnterminatedTextEndsWithItsLine) {
-  const std::string said = joined(problems_of(small_with("law {", "name: \"abc\nspeed: 3 law {")));
-  EXPECT_TRUE(has(said, "f:4:7: name: "));
-  EXPECT_TRUE(has(said, "f:5:6: unknown field \"speed\""));
+  const std::string printed =
+      joined(problems_of(small_with("law {", "name: \"abc\nspeed: 3 law {")));
+  EXPECT_TRUE(has(printed, "f:4:7: name: "));
+  EXPECT_TRUE(has(printed, "f:5:6: unknown field \"speed\""));
 }
 
 TEST(Text, HostileTextIsRefusedQuickly) {
@@ -328,7 +329,7 @@ TEST(Text, EveryBeginningOfAFileIsRefused) {
 
 class File : public ::testing::Test {
  protected:
-  std::string said_of(const std::filesystem::path& file) {
+  std::string problem_of(const std::filesystem::path& file) {
     const Loaded loaded = Scenario::load(file);
     const auto* problems = std::get_if<std::vector<Problem>>(&loaded);
     return problems == nullptr ? "" : joined(*problems);
@@ -340,32 +341,32 @@ class File : public ::testing::Test {
 
 TEST_F(File, ThatIsMissingOrAFolderIsNamed) {
   const std::filesystem::path missing = folder_ / "none.textproto";
-  EXPECT_TRUE(has(said_of(missing), missing.string() + ": " + "there is no such file"));
-  EXPECT_TRUE(has(said_of(folder_), folder_.string() + ": " + "is a folder"));
-  EXPECT_TRUE(has(said_of(missing / "x"), "there is no such file"));
-  EXPECT_TRUE(has(said_of(""), "there is no such file"));
+  EXPECT_TRUE(has(problem_of(missing), missing.string() + ": " + "there is no such file"));
+  EXPECT_TRUE(has(problem_of(folder_), folder_.string() + ": " + "is a folder"));
+  EXPECT_TRUE(has(problem_of(missing / "x"), "there is no such file"));
+  EXPECT_TRUE(has(problem_of(""), "there is no such file"));
 }
 
 TEST_F(File, ThatHasNoEndIsRefused) {
-  EXPECT_TRUE(has(said_of("/dev/zero"), "is not a regular file"));
+  EXPECT_TRUE(has(problem_of("/dev/zero"), "is not a regular file"));
   const std::filesystem::path long_file = folder_ / "long.textproto";
   std::ofstream(long_file) << "#";
   std::filesystem::resize_file(long_file, kMaxScenarioBytes + 1);
-  EXPECT_TRUE(has(said_of(long_file), "longer than the limit"));
+  EXPECT_TRUE(has(problem_of(long_file), "longer than the limit"));
 }
 
 TEST_F(File, ThatCannotBeReadIsNamed) {
   // Every user can open it, root included, but reading fails.
-  EXPECT_TRUE(has(said_of("/proc/self/mem"), "cannot be read"));
+  EXPECT_TRUE(has(problem_of("/proc/self/mem"), "cannot be read"));
 }
 
 TEST_F(File, GivesItsNameToProblemsAndScenario) {
   const std::filesystem::path file = folder_ / "mine.textproto";
   std::ofstream(file) << kSmall;
-  EXPECT_EQ(said_of(file), "");
+  EXPECT_EQ(problem_of(file), "");
   EXPECT_EQ(good(Scenario::load(file)).name(), "mine");
   std::ofstream(file) << "seed: x\n" << kSmall;
-  EXPECT_TRUE(has(said_of(file), file.string() + ":1:7: seed: x is not a whole number"));
+  EXPECT_TRUE(has(problem_of(file), file.string() + ":1:7: seed: x is not a whole number"));
 }
 
 }  // namespace

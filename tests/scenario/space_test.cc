@@ -87,7 +87,7 @@ TEST(Space, AMapTimesAProfileIsTheSumOfItsLayers) {
 }
 
 struct MistakeInSpace {
-  std::string from, to, said;
+  std::string from, to, printed;
 };
 
 std::string all_said_of(const std::string& text) {
@@ -130,9 +130,10 @@ TEST(Space, RefusesEachMistakeOnceWithItsLine) {
        "target.regions[0].polygon: its heights 10 to 20 m are outside the domain"},
   };
   for (const MistakeInSpace& mistake : mistakes) {
-    const std::string said = all_said_of(box_with(mistake.from, mistake.to));
-    EXPECT_NE(said.find(mistake.said), std::string::npos) << mistake.to << " says " << said;
-    EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
+    const std::string printed = all_said_of(box_with(mistake.from, mistake.to));
+    EXPECT_NE(printed.find(mistake.printed), std::string::npos)
+        << mistake.to << " says " << printed;
+    EXPECT_EQ(std::ranges::count(printed, '\n'), 1) << printed;
   }
 }
 
@@ -149,11 +150,11 @@ TEST(Space, APlaneRefusesEachFieldOfABox) {
        "target.gaussians[0].covariance.zz_m2: the domain is a plane"},
   };
   for (const MistakeInSpace& mistake : mistakes) {
-    const std::string said = all_said_of(small_with(mistake.from, mistake.to));
-    EXPECT_NE(said.find(mistake.said + " (remove it, or add size_z_m to the domain)"),
+    const std::string printed = all_said_of(small_with(mistake.from, mistake.to));
+    EXPECT_NE(printed.find(mistake.printed + " (remove it, or add size_z_m to the domain)"),
               std::string::npos)
-        << said;
-    EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
+        << printed;
+    EXPECT_EQ(std::ranges::count(printed, '\n'), 1) << printed;
   }
 }
 

@@ -36,11 +36,11 @@ class SvgTarget : public ::testing::Test {
   void expect_problem(const std::string& svg, const std::string& what) {
     const Loaded result = load(kFile, svg);
     const auto* problems = std::get_if<std::vector<Problem>>(&result);
-    const std::string said = problems == nullptr ? "" : joined(*problems);
-    EXPECT_TRUE(has(said, "mine.textproto:3:"));
-    EXPECT_TRUE(has(said, "target.keep_outs[0].file: " + (folder_.path() / "floor.svg").string() +
-                              ": " + what));
-    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    const std::string printed = problems == nullptr ? "" : joined(*problems);
+    EXPECT_TRUE(has(printed, "mine.textproto:3:"));
+    EXPECT_TRUE(has(printed, "target.keep_outs[0].file: " +
+                                 (folder_.path() / "floor.svg").string() + ": " + what));
+    EXPECT_EQ(std::count(printed.begin(), printed.end(), '\n'), 1) << printed;
   }
 
   static constexpr const char* kFile = "keep_outs { file: \"floor.svg\" }";

@@ -157,11 +157,11 @@ TEST_F(WaterColumnTest, RefusesEachMistakeWithItsRemedy) {
        },
        "nothing of it is left inside the domain"},
   };
-  for (const auto& [change, said] : mistakes) {
+  for (const auto& [change, printed] : mistakes) {
     WaterColumn column;
     change(column);
     const std::string heard = said_of_column(column);
-    EXPECT_NE(heard.find(said), std::string::npos) << said << " is not in " << heard;
+    EXPECT_NE(heard.find(printed), std::string::npos) << printed << " is not in " << heard;
     EXPECT_NE(heard.find(":3:10: target.voxels[0]: "), std::string::npos) << heard;
   }
   EXPECT_NE(said_of_column({}, "").find("has 2 times (choose one: time_index: 0 to 1"),
@@ -173,8 +173,8 @@ TEST_F(WaterColumnTest, RefusesEachMistakeWithItsRemedy) {
 TEST_F(WaterColumnTest, OfABillionCellsIsRefused) {
   WaterColumn column;
   column.grow(1000);
-  const std::string said = said_of_column(column, "");
-  EXPECT_NE(said.find("1000000000 cells, above the limit"), std::string::npos) << said;
+  const std::string printed = said_of_column(column, "");
+  EXPECT_NE(printed.find("1000000000 cells, above the limit"), std::string::npos) << printed;
 }
 
 // libnetcdf would take the announced memory, and read zeros where the file has ended.
@@ -210,8 +210,9 @@ TEST_F(WaterColumnTest, WhoseCoordinatesHaveAnotherDimensionIsRefused) {
   column.dimensions.emplace_back("long", 4096);
   column.at("x").dimensions = {"long"};
   column.at("x").values.resize(4096);
-  const std::string said = said_of_column(column);
-  EXPECT_NE(said.find("x: x does not have the shape of its values"), std::string::npos) << said;
+  const std::string printed = said_of_column(column);
+  EXPECT_NE(printed.find("x: x does not have the shape of its values"), std::string::npos)
+      << printed;
 }
 
 /// Writes a file in HDF5, whose x is stored in one compressed part of `chunk` numbers.
@@ -276,8 +277,8 @@ TEST_F(WaterColumnTest, WhoseCoordinatesUnpackToMoreThanAChunkMayHaveIsRefused) 
     return std::holds_alternative<Scenario>(result) ? "nothing" : to_string(std::get<1>(result)[0]);
   };
   EXPECT_EQ(said_with(1000), "nothing");
-  const std::string said = said_with(9'000'000);
-  EXPECT_NE(said.find("x is stored in parts of more than 64 MiB"), std::string::npos) << said;
+  const std::string printed = said_with(9'000'000);
+  EXPECT_NE(printed.find("x is stored in parts of more than 64 MiB"), std::string::npos) << printed;
 }
 
 TEST_F(WaterColumnTest, OfNoNetcdfFileIsRefused) {

@@ -26,7 +26,7 @@ struct Death {
 /// A lockstep flight of three agents. Checks that no tick is sent with two contents.
 class ResumedMission {
  public:
-  using Told = std::map<Tick, std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>>;
+  using Published = std::map<Tick, std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>>;
 
   explicit ResumedMission(const Mission& mission)
       : mission_(mission), team_(mission), world_(begin(1)) {}
@@ -35,7 +35,8 @@ class ResumedMission {
   void run_until(Tick end) {
     while (world_.tick() < end) {
       now_ += 10ms;
-      for (const WorldState& state : only<WorldState>(step_world())) obey(team_.tell(state, now_));
+      for (const WorldState& state : only<WorldState>(step_world()))
+        obey(team_.deliver(state, now_));
     }
   }
 
@@ -52,13 +53,13 @@ class ResumedMission {
     world_ = begin(++lives_);
     while (!world_.begun_at()) {
       now_ += 10ms;
-      for (const Hello& question : only<Hello>(step_world())) obey(team_.tell(question, now_));
+      for (const Hello& question : only<Hello>(step_world())) obey(team_.deliver(question, now_));
     }
     EXPECT_GE(*world_.begun_at(), death.tick - 1);
     EXPECT_LE(*world_.begun_at(), death.tick);
   }
 
-  const Told& told() const { return told_; }
+  const Published& published() const { return published_; }
 
  private:
   World begin(Incarnation life) const {
@@ -77,14 +78,14 @@ class ResumedMission {
         const Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
         vehicles.emplace_back(vehicle.position_m, vehicle.velocity_mps);
       }
-      const auto [known, is_new] = told_.emplace(state.header.tick, vehicles);
+      const auto [known, is_new] = published_.emplace(state.header.tick, vehicles);
       EXPECT_EQ(known->second, vehicles) << "tick " << state.header.tick;
     }
     return out;
   }
 
-  void obey(const Outbox& said) {
-    for (const Command& command : only<Command>(said)) give(world_, command, now_);
+  void obey(const Outbox& sent) {
+    for (const Command& command : only<Command>(sent)) give(world_, command, now_);
   }
 
   Mission mission_;
@@ -92,7 +93,7 @@ class ResumedMission {
   Instant now_ = at(1s);
   Incarnation lives_ = 1;
   World world_;
-  Told told_;
+  Published published_;
 };
 
 /// Broadcasts every fourth tick, so that some agents may answer a tick that others have not
@@ -118,7 +119,7 @@ TEST_P(WorldRestarted, AtEveryMomentOfATickChangesNothing) {
       ResumedMission resumed(mission);
       resumed.restart({tick, {(heard & 1) != 0, (heard & 2) != 0, (heard & 4) != 0}});
       resumed.run_until(16);
-      EXPECT_EQ(resumed.told(), undisturbed.told());
+      EXPECT_EQ(resumed.published(), undisturbed.published());
     }
   }
 }
@@ -129,7 +130,7 @@ TEST_P(WorldRestarted, AgainAndAgainChangesNothing) {
   undisturbed.run_until(16);
   for (Tick tick = 0; tick < 15; ++tick) resumed.restart({tick, {true, tick % 2 == 0, false}});
   resumed.run_until(16);
-  EXPECT_EQ(resumed.told(), undisturbed.told());
+  EXPECT_EQ(resumed.published(), undisturbed.published());
 }
 
 INSTANTIATE_TEST_SUITE_P(Disturbance, WorldRestarted, ::testing::Values(0.0, 3.0),
@@ -240,17 +241,17 @@ TEST(WorldAsks, BeginsAtOnceInADomainFarFromTheOrigin) {
 }
 
 /// The state with which a world of one agent begins that was told these commands, in this order.
-WorldState begun_with(const std::vector<Command>& told) {
+WorldState begun_with(const std::vector<Command>& published) {
   World world = asking_world(small_mission(1));
-  for (const Command& command : told) give(world, command, at(0s));
+  for (const Command& command : published) give(world, command, at(0s));
   return state_after(world, at(1ms));
 }
 
 TEST(WorldAsks, TheOrderOfTheAnswersDoesNotMatter) {
   const Command before = command_from(0, 8, {300, 400, 0}, {1, 0, 0});
   const Command last = command_from(0, 9, {301, 401, 0}, {0, 1, 0});
-  for (const auto& told : {std::vector{before, last}, std::vector{last, before}}) {
-    const WorldState state = begun_with(told);
+  for (const auto& published : {std::vector{before, last}, std::vector{last, before}}) {
+    const WorldState state = begun_with(published);
     EXPECT_EQ(state.header.tick, 9);
     EXPECT_EQ(place(state), Eigen::Vector3d(301, 401, 0));
     EXPECT_EQ(applied(state), Eigen::Vector3d(1, 0, 0));
@@ -269,11 +270,11 @@ TEST(WorldAsks, OneOfTwoCommandsIsHalfAnAnswer) {
 /// Who has answered tick 0 alone says first that it has not answered the tick before.
 TEST(WorldAsks, HalfAnAnswerDoesNotSayThatThereIsNone) {
   const auto halves = [](AgentId id, Tick last, std::int64_t sequence) {
-    std::vector<Command> said = {command_from(id, -1, {0, 0, 0}, {0, 0, 0}),
+    std::vector<Command> sent = {command_from(id, -1, {0, 0, 0}, {0, 0, 0}),
                                  command_from(id, last, {700, 500, 0}, {0, 10, 0})};
-    said[0].header.sequence = sequence;
-    said[1].header.sequence = sequence + 1;
-    return said;
+    sent[0].header.sequence = sequence;
+    sent[1].header.sequence = sequence + 1;
+    return sent;
   };
   for (const Tick last : {0, -1}) {
     World world = asking_world(small_mission(2));

@@ -68,9 +68,9 @@ public final class SpyProbe {
     Set<String> known = new HashSet<>();
     for (String url : urls) {
       new LCM(url).subscribe("ERGOCAST_.*", (lcm, channel, in) -> {
-        String said = judge(database, channel, in);
+        String printed = judge(database, channel, in);
         synchronized (known) {
-          if (known.add(said)) System.out.println(said);
+          if (known.add(printed)) System.out.println(printed);
         }
       });
     }

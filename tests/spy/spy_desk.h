@@ -88,13 +88,13 @@ class WithProbe : public RunningMission {
     return command;
   }
   /// Runs one to its end; returns its output.
-  std::string said_by(const std::vector<std::string>& command) {
+  std::string sent_by(const std::vector<std::string>& command) {
     Child child = begin(command);
     EXPECT_TRUE(eventually([&child] { return !child.running(); })) << command.front();
     return output();
   }
   std::string ask(const std::vector<std::string>& question) {
-    return said_by(probe_command(question));
+    return sent_by(probe_command(question));
   }
 };
 
@@ -108,10 +108,10 @@ class Desk : public WithProbe {
     const auto log = log_;
     ASSERT_TRUE(
         eventually([&] { return text_of(log).find('\n') != std::string::npos; }, screen_->pid()));
-    const std::string said = text_of(log);
-    const auto end = said.rfind('\n');
-    const auto begin_of_number = said.find_last_not_of("0123456789", end - 1) + 1;
-    setenv("DISPLAY", (":" + said.substr(begin_of_number, end - begin_of_number)).c_str(), 1);
+    const std::string printed = text_of(log);
+    const auto end = printed.rfind('\n');
+    const auto begin_of_number = printed.find_last_not_of("0123456789", end - 1) + 1;
+    setenv("DISPLAY", (":" + printed.substr(begin_of_number, end - begin_of_number)).c_str(), 1);
     manager_ = begin({"/usr/bin/openbox"});
   }
   void TearDown() override {
@@ -139,7 +139,7 @@ class Desk : public WithProbe {
   Screenshot look() const { return Screenshot(folder_ / "Xvfb_screen0"); }
   std::string xdotool(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "/usr/bin/xdotool");
-    return said_by(arguments);
+    return sent_by(arguments);
   }
   /// The id of the window with that name, or nothing.
   std::string window(const std::string& name) {

@@ -49,9 +49,9 @@ class SpyJar : public WithProbe {
   std::filesystem::path plan_file() const { return folder_ / "plan.binpb"; }
   /// The places of "agent" and "target" in the map of those axes, as shares of its sides.
   std::map<std::string, std::pair<double, double>> places(const std::string& axes) {
-    std::istringstream said(ask({"map", plan_file(), axes}));
+    std::istringstream printed(ask({"map", plan_file(), axes}));
     std::map<std::string, std::pair<double, double>> found;
-    for (std::string what; said >> what;) said >> found[what].first >> found[what].second;
+    for (std::string what; printed >> what;) printed >> found[what].first >> found[what].second;
     return found;
   }
   static constexpr double kPixels = 0.01;  // four of 400
@@ -108,22 +108,22 @@ TEST_F(SpyJar, APlanIsReadToTheLastBit) {
     SCOPED_TRACE(name);
     const Scenario scenario = plan_of(name);
     const Mission& mission = scenario.mission();
-    std::istringstream said(ask({"plan", plan_file()}));
+    std::istringstream printed(ask({"plan", plan_file()}));
     std::string read_name;
-    said >> read_name;
+    printed >> read_name;
     EXPECT_EQ(read_name, scenario.name());
     for (const double value :
          {mission.domain.origin_m.x(), mission.domain.origin_m.y(), mission.domain.origin_m.z(),
           mission.domain.size_m.x(), mission.domain.size_m.y(), mission.domain.size_m.z(),
           mission.timing.dt_s,
           mission.timing.dt_s * static_cast<double>(mission.timing.tick_count)}) {
-      EXPECT_DOUBLE_EQ(next_number(said), value);
+      EXPECT_DOUBLE_EQ(next_number(printed), value);
     }
-    EXPECT_EQ(next_number(said), mission.basis.modes_x);
-    EXPECT_EQ(next_number(said), mission.basis.modes_y);
-    EXPECT_EQ(next_number(said), mission.basis.modes_z);
+    EXPECT_EQ(next_number(printed), mission.basis.modes_x);
+    EXPECT_EQ(next_number(printed), mission.basis.modes_y);
+    EXPECT_EQ(next_number(printed), mission.basis.modes_z);
     for (const double value : mission.target_coefficients.reshaped<Eigen::RowMajor>()) {
-      ASSERT_EQ(next_number(said), value);
+      ASSERT_EQ(next_number(printed), value);
     }
   }
 }
@@ -183,8 +183,8 @@ TEST_F(SpyJar, StationsAreOpenSquares) {
   std::ofstream(folder_ / "home.textproto") << text;
   plan_of_file(folder_ / "home.textproto");
   const auto ink_at = [&](const char* x, const char* y) {
-    const std::string said = ask({"ink", plan_file(), x, y});
-    return std::stoi("0" + said.substr(std::min(said.size(), said.find("ink ") + 4)));
+    const std::string printed = ask({"ink", plan_file(), x, y});
+    return std::stoi("0" + printed.substr(std::min(printed.size(), printed.find("ink ") + 4)));
   };
   EXPECT_GE(ink_at("0.25", "0.6"), 4 * 18) << output();
   EXPECT_LE(ink_at("0.25", "0.6"), 4 * 50) << "it is open";

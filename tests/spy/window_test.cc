@@ -125,9 +125,9 @@ TEST_F(Spy, WaitsNoLongerForAWindowOfAProgramWhoseScreenWasTaken) {
     EXPECT_FALSE(sees("LCM Spy"));
   }
   ASSERT_EQ(failures.size(), 1);
-  const std::string said = failures.GetTestPartResult(0).message();
-  EXPECT_NE(said.find("/usr/bin/Xvfb "), said.npos) << said;
-  EXPECT_NE(said.find("Cannot establish any listening sockets"), said.npos) << said;
+  const std::string printed = failures.GetTestPartResult(0).message();
+  EXPECT_NE(printed.find("/usr/bin/Xvfb "), printed.npos) << printed;
+  EXPECT_NE(printed.find("Cannot establish any listening sockets"), printed.npos) << printed;
 }
 
 TEST_F(Spy, PrintsTheCommandOfTheBusThatIsAskedFor) {

@@ -14,7 +14,7 @@ struct HttpAnswer {
   int status = 0;  ///< 0: no answer
   std::string head, body;
 
-  bool says(const std::string& part) const { return head.find(part) != head.npos; }
+  bool contains(const std::string& part) const { return head.find(part) != head.npos; }
 };
 
 /// One connection.

@@ -117,7 +117,7 @@ inline Bus bus_of(const Message& message, Role role) {
     bus = Bus::kCommand;
   }
   // MISSION and STOP are sent on two buses.
-  return hears(subscriptions_of(role), bus, message) ? bus : Bus::kCommand;
+  return subscribes(subscriptions_of(role), bus, message) ? bus : Bus::kCommand;
 }
 
 /// Gives `message` to `core`, from `transmitter`.

@@ -48,7 +48,7 @@ class Maps : public ::testing::Test {
     return std::get<Rows>(result);
   }
   /// The problem of `file`; empty if there is none.
-  std::string said_of(const fs::path& file) {
+  std::string problem_of(const fs::path& file) {
     const auto result = read(file);
     const auto* problem = std::get_if<MapProblem>(&result);
     if (problem == nullptr) return "";
@@ -57,8 +57,8 @@ class Maps : public ::testing::Test {
     return problem->what.substr(file.string().size()) + " (" + problem->remedy + ")";
   }
   void expect_said(const fs::path& file, const std::string& part) {
-    const std::string said = said_of(file);
-    EXPECT_NE(said.find(part), std::string::npos) << "no \"" << part << "\" in: " << said;
+    const std::string printed = problem_of(file);
+    EXPECT_NE(printed.find(part), std::string::npos) << "no \"" << part << "\" in: " << printed;
   }
 
   const TempFolder own_;
@@ -116,21 +116,21 @@ TEST_F(Maps, PngThatIsTooLargeIsRefusedByItsHeader) {
   write_png(folder_ / "high.png", 1, 8193, {}, count_up);
   expect_said(folder_ / "high.png", " has 1 columns and 8193 rows");
   write_png(folder_ / "largest.png", 8192, 1, {}, count_up);
-  EXPECT_EQ(said_of(folder_ / "largest.png"), "");
+  EXPECT_EQ(problem_of(folder_ / "largest.png"), "");
 }
 
 TEST_F(Maps, PngCutShortOrChangedAnywhereIsRefused) {
   write_png(folder_ / "whole.png", 20, 20, {}, count_up);
   std::ifstream stream(folder_ / "whole.png", std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
-  ASSERT_EQ(said_of(folder_ / "whole.png"), "");
+  ASSERT_EQ(problem_of(folder_ / "whole.png"), "");
   for (std::size_t length = 8; length < bytes.size() - 12; ++length) {  // the last chunk is empty
     expect_said(written("cut.png", bytes.substr(0, length)), " is damaged or cut short: ");
   }
   for (std::size_t at = 8; at < bytes.size() - 12; ++at) {
     std::string changed = bytes;
     changed[at] = static_cast<char>(changed[at] ^ 0x10);
-    EXPECT_NE(said_of(written("changed.png", changed)), "") << at;
+    EXPECT_NE(problem_of(written("changed.png", changed)), "") << at;
   }
   expect_said(written("not.png", "P5 3 2 255 abcdef"), " is not a PNG");
   expect_said(written("short.png", "abc"), " is not a PNG");

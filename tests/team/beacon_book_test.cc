@@ -45,23 +45,24 @@ class Team {
 
   /// @param hears  whether what the first says reaches the second
   void pass(
-      Tick tick,
-      const std::function<bool(AgentId, AgentId)>& hears = [](AgentId, AgentId) { return true; }) {
+      Tick tick, const std::function<bool(AgentId, AgentId)>& receives = [](AgentId, AgentId) {
+        return true;
+      }) {
     for (AgentId id = 0; id < std::ssize(books_); ++id) {
       BeaconBook& book = books_[static_cast<std::size_t>(id)];
       book.measured(tick - 1, 1, places_m_[static_cast<std::size_t>(id)], {0, 0, 0});
-      if (const auto beacon = book.next(1, moment(tick))) say(id, *beacon, tick, hears);
+      if (const auto beacon = book.next(1, moment(tick))) send(id, *beacon, tick, receives);
       book.bodies(places_m_[static_cast<std::size_t>(id)], moment(tick));
       book.commands(moment(tick));
     }
   }
-  void say(AgentId from, Beacon beacon, Tick tick,
-           const std::function<bool(AgentId, AgentId)>& hears) {
+  void send(AgentId from, Beacon beacon, Tick tick,
+            const std::function<bool(AgentId, AgentId)>& receives) {
     beacon.header = {kRun, from, incarnation_of(from), ++sequence_, tick};
     last_[from] = beacon;
     for (AgentId to = 0; to < std::ssize(books_); ++to) {
-      if (to != from && hears(from, to))
-        books_[static_cast<std::size_t>(to)].hear(beacon, true, moment(tick));
+      if (to != from && receives(from, to))
+        books_[static_cast<std::size_t>(to)].receive(beacon, true, moment(tick));
     }
   }
 
@@ -118,14 +119,14 @@ class LateTeam {
       BeaconBook& book = books_[static_cast<std::size_t>(id)];
       const Tick lag = id;
       while (!coming_[id].empty() && coming_[id].front().first <= tick) {
-        book.hear(coming_[id].front().second, true, moment(tick));
+        book.receive(coming_[id].front().second, true, moment(tick));
         coming_[id].erase(coming_[id].begin());
       }
       // The place says when it was measured.
       const Tick measured = tick - lag;
       book.measured(measured - lag - 1, 1, {40.0 * id, static_cast<double>(measured), 0},
                     {0, 0, 0});
-      if (auto beacon = book.next(1, moment(tick))) say(id, *beacon, tick);
+      if (auto beacon = book.next(1, moment(tick))) send(id, *beacon, tick);
       book.commands(moment(tick));
     }
   }
@@ -135,7 +136,7 @@ class LateTeam {
   static constexpr AgentId kAgents = 4;
 
  private:
-  void say(AgentId from, Beacon beacon, Tick tick) {
+  void send(AgentId from, Beacon beacon, Tick tick) {
     beacon.header = {kRun, from, incarnation_of(from), ++sequence_, tick};
     for (AgentId to = 0; to < kAgents; ++to) {
       const auto draw = static_cast<Tick>((sequence_ * 7919 + to * 104729) % 1009);
@@ -251,10 +252,10 @@ TEST(BeaconBook, AnEchoOfAnotherIncarnationIsNone) {
     ASSERT_TRUE(successor.next(5, moment(tick)));
   }
   Beacon beacon = team.last(1);  // echoes the predecessor's 8 or 9
-  successor.hear(beacon, true, moment(20));
+  successor.receive(beacon, true, moment(20));
   EXPECT_FALSE(successor.bodies({0, 0, 0}, moment(20))[0].known);
   beacon.roster_revision = 5;  // as if it knew the successor
-  successor.hear(beacon, true, moment(20));
+  successor.receive(beacon, true, moment(20));
   EXPECT_TRUE(successor.bodies({0, 0, 0}, moment(20))[0].known);
 }
 
@@ -269,11 +270,11 @@ TEST(BeaconBook, ASuccessorStandsUntilItIsEchoed) {
   EXPECT_EQ(body.age_ticks, kLease);
   Beacon stranger = team.last(1);
   stranger.position_m = {555, 0, 0};
-  team.book(0).hear(stranger, true, moment(10));
+  team.book(0).receive(stranger, true, moment(10));
   EXPECT_EQ(team.seen(0, 1, 10).position_m, body.position_m) << "of the former incarnation";
   stranger.header.incarnation = 77;
   stranger.echo_count = 0;
-  team.book(0).hear(stranger, true, moment(10));
+  team.book(0).receive(stranger, true, moment(10));
   EXPECT_EQ(team.seen(0, 1, 10).position_m.x(), 555) << "it has not moved since it came";
 }
 
@@ -283,16 +284,16 @@ TEST(BeaconBook, RefusesWhatComesLateOrFromTheFuture) {
   const Eigen::Vector3d place_m = team.seen(0, 1, 10).position_m;
   Beacon late = team.last(1);
   late.position_m = {999, 0, 0};
-  team.book(0).hear(late, false, moment(10));
+  team.book(0).receive(late, false, moment(10));
   EXPECT_EQ(team.book(0).late(), 1);
   EXPECT_EQ(team.seen(0, 1, 10).position_m, place_m);
   Beacon early = late;
   early.echoes[0] = static_cast<std::uint16_t>(team.last(0).number + 1);
-  team.book(0).hear(early, true, moment(10));
+  team.book(0).receive(early, true, moment(10));
   EXPECT_EQ(team.book(0).from_the_future(), 1);
   EXPECT_EQ(team.seen(0, 1, 10).position_m, place_m);
   early.echoes[0] = 40000;
-  team.book(0).hear(early, true, moment(10));
+  team.book(0).receive(early, true, moment(10));
   EXPECT_EQ(team.book(0).from_the_future(), 2);
 }
 
@@ -310,28 +311,28 @@ TEST(BeaconBook, ItsNumbersWrapAround) {
   EXPECT_EQ(team.book(0).from_the_future(), 0);
   Beacon old = team.last(1);
   old.echoes[0] = 65000;
-  team.book(0).hear(old, true, moment(tick));
+  team.book(0).receive(old, true, moment(tick));
   EXPECT_EQ(team.book(0).from_the_future(), 0) << "of before, and too old to matter";
   old.echoes[0] = static_cast<std::uint16_t>(team.last(0).number + 1);
-  team.book(0).hear(old, true, moment(tick));
+  team.book(0).receive(old, true, moment(tick));
   EXPECT_EQ(team.book(0).from_the_future(), 1);
 }
 
 TEST(BeaconBook, SaysMoreRarelyWhereItIsWhileNobodyIsNear) {
   Team team(2);
   Tick tick = 0;
-  const auto said_in = [&](int ticks) {
+  const auto sent_in = [&](int ticks) {
     const auto before = team.last(0).number;
     for (const Tick end = tick + ticks; tick < end; ++tick) team.pass(tick);
     return team.last(0).number - before;
   };
   team.place_m(1) = {1900, 1900, 0};
-  said_in(20);
-  EXPECT_EQ(said_in(40), 20) << "an eighth of the lease is two ticks";
+  sent_in(20);
+  EXPECT_EQ(sent_in(40), 20) << "an eighth of the lease is two ticks";
   EXPECT_TRUE(team.seen(0, 1, tick).known);
   team.place_m(1) = {35, 0, 0};
-  said_in(10);
-  EXPECT_EQ(said_in(40), 40);
+  sent_in(10);
+  EXPECT_EQ(sent_in(40), 40);
 }
 
 }  // namespace

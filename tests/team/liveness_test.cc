@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::at;
 
-Header said(AgentId sender, Incarnation life, std::int64_t sequence) {
+Header sent(AgentId sender, Incarnation life, std::int64_t sequence) {
   return {1, sender, life, sequence, 0};
 }
 
@@ -24,25 +24,25 @@ bool is_new(Liveness& liveness, const Header& from, Bus bus = Bus::kSwarm) {
 
 TEST(Liveness, OnlyWhatComesLaterIsNews) {
   Liveness liveness;
-  EXPECT_TRUE(is_new(liveness, said(3, 7, 5)));
-  EXPECT_FALSE(is_new(liveness, said(3, 7, 5)));
-  EXPECT_FALSE(is_new(liveness, said(3, 7, 4)));
-  EXPECT_TRUE(is_new(liveness, said(3, 7, 6)));
-  EXPECT_FALSE(is_new(liveness, said(3, 7, 5)));
+  EXPECT_TRUE(is_new(liveness, sent(3, 7, 5)));
+  EXPECT_FALSE(is_new(liveness, sent(3, 7, 5)));
+  EXPECT_FALSE(is_new(liveness, sent(3, 7, 4)));
+  EXPECT_TRUE(is_new(liveness, sent(3, 7, 6)));
+  EXPECT_FALSE(is_new(liveness, sent(3, 7, 5)));
 }
 
 TEST(Liveness, LivesAndSendersAreToldApart) {
   Liveness liveness;
-  EXPECT_TRUE(is_new(liveness, said(3, 7, 5)));
-  EXPECT_TRUE(is_new(liveness, said(3, 8, 1)));
-  EXPECT_TRUE(is_new(liveness, said(kWorld, 7, 1)));
-  EXPECT_FALSE(is_new(liveness, said(3, 7, 5))) << "a successor does not wake its predecessor";
+  EXPECT_TRUE(is_new(liveness, sent(3, 7, 5)));
+  EXPECT_TRUE(is_new(liveness, sent(3, 8, 1)));
+  EXPECT_TRUE(is_new(liveness, sent(kWorld, 7, 1)));
+  EXPECT_FALSE(is_new(liveness, sent(3, 7, 5))) << "a successor does not wake its predecessor";
 }
 
 TEST(Liveness, EachBusHasSequencesOfItsOwn) {
   Liveness liveness;
-  EXPECT_TRUE(is_new(liveness, said(3, 7, 5), Bus::kSwarm));
-  EXPECT_TRUE(is_new(liveness, said(3, 7, 1), Bus::kCommand));
+  EXPECT_TRUE(is_new(liveness, sent(3, 7, 5), Bus::kSwarm));
+  EXPECT_TRUE(is_new(liveness, sent(3, 7, 1), Bus::kCommand));
   EXPECT_EQ(liveness.newest({3, 7}, Bus::kSwarm), 5);
   EXPECT_EQ(liveness.newest({3, 7}, Bus::kCommand), 1);
   EXPECT_EQ(liveness.newest({3, 7}, Bus::kWorld), -1);
@@ -53,12 +53,12 @@ TEST(Liveness, RemembersNoMoreLivesThanItsLimit) {
   Liveness liveness;
   constexpr auto kMost = static_cast<Incarnation>(Liveness::kMaxIncarnations);
   for (Incarnation life = 1; life <= kMost; ++life) {
-    EXPECT_TRUE(is_new(liveness, said(0, life, 1)));
+    EXPECT_TRUE(is_new(liveness, sent(0, life, 1)));
   }
-  EXPECT_FALSE(is_new(liveness, said(0, kMost + 1, 1)));
+  EXPECT_FALSE(is_new(liveness, sent(0, kMost + 1, 1)));
   EXPECT_FALSE(liveness.last_sign({0, kMost + 1}));
-  EXPECT_TRUE(is_new(liveness, said(0, kMost, 2))) << "whom it knows, it still hears";
-  EXPECT_TRUE(is_new(liveness, said(0, kMost, 4)));
+  EXPECT_TRUE(is_new(liveness, sent(0, kMost, 2))) << "whom it knows, it still hears";
+  EXPECT_TRUE(is_new(liveness, sent(0, kMost, 4)));
   EXPECT_EQ(liveness.lost({0, kMost}, Bus::kSwarm), 1) << "of those it goes on";
   EXPECT_EQ(liveness.lost({0, kMost + 1}, Bus::kSwarm), 0);
 }
@@ -67,21 +67,21 @@ TEST(Liveness, OnlyNewsAreASignOfLife) {
   Liveness liveness;
   EXPECT_FALSE(liveness.last_sign({3, 7}));
   EXPECT_FALSE(liveness.last_sign_of_kind(3));
-  liveness.record(said(3, 7, 5), Bus::kSwarm, at(1s));
-  liveness.record(said(3, 7, 5), Bus::kSwarm, at(2s));
-  liveness.record(said(3, 7, 6), Bus::kSwarm, at(3s), false);
+  liveness.record(sent(3, 7, 5), Bus::kSwarm, at(1s));
+  liveness.record(sent(3, 7, 5), Bus::kSwarm, at(2s));
+  liveness.record(sent(3, 7, 6), Bus::kSwarm, at(3s), false);
   EXPECT_EQ(liveness.last_sign({3, 7}), at(1s));
   EXPECT_EQ(liveness.last_sign_of_kind(3), at(1s));
-  liveness.record(said(3, 7, 7), Bus::kSwarm, at(4s));
+  liveness.record(sent(3, 7, 7), Bus::kSwarm, at(4s));
   EXPECT_EQ(liveness.last_sign({3, 7}), at(4s));
 }
 
 TEST(Liveness, KnowsWhenAnyLifeOfAKindWasHeard) {
   Liveness liveness;
-  liveness.record(said(kWorld, 7, 5), Bus::kWorld, at(1s));
-  liveness.record(said(kWorld, 8, 1), Bus::kWorld, at(2s));
-  liveness.record(said(1, 9, 1), Bus::kSwarm, at(3s));
-  liveness.record(said(2, 10, 1), Bus::kSwarm, at(4s));
+  liveness.record(sent(kWorld, 7, 5), Bus::kWorld, at(1s));
+  liveness.record(sent(kWorld, 8, 1), Bus::kWorld, at(2s));
+  liveness.record(sent(1, 9, 1), Bus::kSwarm, at(3s));
+  liveness.record(sent(2, 10, 1), Bus::kSwarm, at(4s));
   EXPECT_EQ(liveness.last_sign_of_kind(kWorld), at(2s));
   EXPECT_EQ(liveness.last_sign({kWorld, 7}), at(1s));
   EXPECT_EQ(liveness.last_sign_of_kind(0), at(4s)) << "all agents are one kind";
@@ -95,26 +95,26 @@ TEST(Liveness, WhoIsPresumedAliveWasNotHeard) {
   EXPECT_EQ(liveness.last_sign({3, 7}), at(1s));
   EXPECT_FALSE(liveness.last_sign_of_kind(3));
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kSwarm), 0);
-  EXPECT_TRUE(is_new(liveness, said(3, 7, 1)));
+  EXPECT_TRUE(is_new(liveness, sent(3, 7, 1)));
 }
 
 TEST(Liveness, WhoIsPresumedAliveHasAPlaceInAFullTable) {
   Liveness liveness;
   for (Incarnation life = 1; life <= Liveness::kMaxIncarnations; ++life)
-    is_new(liveness, said(0, life, 1));
+    is_new(liveness, sent(0, life, 1));
   const Author admitted{3, Liveness::kMaxIncarnations + 7};
   liveness.presume_alive(admitted, at(1s));
   EXPECT_EQ(liveness.last_sign(admitted), at(1s));
-  EXPECT_TRUE(liveness.record(said(3, admitted.incarnation, 1), Bus::kSwarm, at(2s)));
+  EXPECT_TRUE(liveness.record(sent(3, admitted.incarnation, 1), Bus::kSwarm, at(2s)));
   EXPECT_EQ(liveness.last_sign(admitted), at(2s));
 }
 
 TEST(Liveness, CountsWhatIsMissingInASequence) {
   Liveness liveness;
-  for (const std::int64_t sequence : {11, 12, 15, 14}) is_new(liveness, said(3, 7, sequence));
+  for (const std::int64_t sequence : {11, 12, 15, 14}) is_new(liveness, sent(3, 7, sequence));
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kSwarm), 1) << "13; what came before 11 was before its time";
-  is_new(liveness, said(3, 7, 10));
-  is_new(liveness, said(3, 7, 10));
+  is_new(liveness, sent(3, 7, 10));
+  is_new(liveness, sent(3, 7, 10));
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kSwarm), 0) << "never fewer than none";
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kCommand), 0);
 }

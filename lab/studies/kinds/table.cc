@@ -76,11 +76,11 @@ Mission mission_of(const Target& target, const Team& team, Law law, std::uint64_
   return std::get<Scenario>(parsed).mission();
 }
 
-struct Metrics {
+struct Outcome {
   double seen, thought;  ///< φ² of what the sensors saw, and of what the team believes
 };
 
-Metrics simulated(const Mission& mission, const Mission& truth) {
+Outcome simulated(const Mission& mission, const Mission& truth) {
   const Sensors sensors(truth);
   Coefficients sums = Coefficients::Zero(mission.basis.mode_count());
   double time_s = 0;
@@ -112,7 +112,7 @@ void row(const Target& target, const Team& team, int seeds) {
     const Mission truth = mission_of(target, team, Law::kAware, number);
     for (const Law law : {Law::kUnaware, Law::kAware, Law::kBands}) {
       if (law == Law::kBands && !banded) continue;
-      const Metrics metrics = simulated(mission_of(target, team, law, number), truth);
+      const Outcome metrics = simulated(mission_of(target, team, law, number), truth);
       seen[static_cast<int>(law)].push_back(metrics.seen);
       if (law == Law::kUnaware) thought.push_back(metrics.thought);
     }

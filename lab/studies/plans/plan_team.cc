@@ -82,12 +82,12 @@ void PlanTeam::sample(Agent& agent) {
 /// What was announced in the last tick.
 void PlanTeam::deliver() {
   for (std::size_t author = 0; author < agents_.size(); ++author) {
-    const std::shared_ptr<Announcement> said = std::exchange(underway_[author], nullptr);
-    if (said == nullptr) continue;
+    const std::shared_ptr<Announcement> sent = std::exchange(underway_[author], nullptr);
+    if (sent == nullptr) continue;
     for (Agent& listener : agents_) {
       const auto id = static_cast<AgentId>(author);
       if (listener.id == id || is_lost(id, listener.id)) continue;
-      listener.heard[author] = said;
+      listener.heard[author] = sent;
       listener.news = true;
     }
   }

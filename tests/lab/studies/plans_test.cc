@@ -215,22 +215,22 @@ TEST(Announcement, ContinuesAsItsAuthorFlies) {
   setting.nodes = 6;
   const Nodes nodes = nodes_of(setting);
   const auto modes = static_cast<std::size_t>(mission.basis.mode_count());
-  Announcement said(mission, setting, 1234, std::vector<double>(modes), {150, 900, 0}, nodes);
+  Announcement sent(mission, setting, 1234, std::vector<double>(modes), {150, 900, 0}, nodes);
   Eigen::Vector3d x_m(150, 900, 0);
   std::vector<double> sums_s(modes);
   for (Tick tick = 1234; tick < 1363; ++tick) {
     x_m += 0.1 * nodes.col(tick / 50 - 1234 / 50);
     add_gain(mission, 1, x_m, {0, 0, 0}, 0.1, sums_s.data());
   }
-  said.advance(1300);
-  said.advance(1363);
-  EXPECT_LT((said.x_m() - x_m).norm(), kRounding);
-  EXPECT_EQ(said.nodes().col(0), nodes.col(3));
-  EXPECT_TRUE(said.nodes().col(5).isZero());
-  for (std::size_t k = 0; k < modes; ++k) EXPECT_NEAR(said.sums_s()[k], sums_s[k], kRounding);
-  const Announcement anew(mission, setting, 1363, said.sums_s(), said.x_m(), said.nodes());
-  for (std::size_t k = 0; k < said.gains_s().size(); ++k)
-    EXPECT_NEAR(said.gains_s()[k], anew.gains_s()[k], kRounding);
+  sent.advance(1300);
+  sent.advance(1363);
+  EXPECT_LT((sent.x_m() - x_m).norm(), kRounding);
+  EXPECT_EQ(sent.nodes().col(0), nodes.col(3));
+  EXPECT_TRUE(sent.nodes().col(5).isZero());
+  for (std::size_t k = 0; k < modes; ++k) EXPECT_NEAR(sent.sums_s()[k], sums_s[k], kRounding);
+  const Announcement anew(mission, setting, 1363, sent.sums_s(), sent.x_m(), sent.nodes());
+  for (std::size_t k = 0; k < sent.gains_s().size(); ++k)
+    EXPECT_NEAR(sent.gains_s()[k], anew.gains_s()[k], kRounding);
 }
 
 }  // namespace

@@ -70,8 +70,8 @@ TEST_F(DeployFiles, ScriptsAreSoundAndKeepEveryPathInOneWord) {
     EXPECT_TRUE(files[0].executable);
     EXPECT_EQ(output("bash -n \"$file\"", files[0].text), "") << files[0].text;
     // Without a command a script only prints its usage, and its variables have the given values.
-    const std::string said = output("set -- ; . \"$file\"", files[0].text + "\n");
-    EXPECT_TRUE(has(said, "Usage: ")) << said;
+    const std::string printed = output("set -- ; . \"$file\"", files[0].text + "\n");
+    EXPECT_TRUE(has(printed, "Usage: ")) << printed;
     const std::string settings = files[0].text.substr(0, files[0].text.find("\n# Calls"));
     EXPECT_EQ(output(". \"$file\"; printf '%s|' \"$scenario_folder\" \"${scenario_files[@]}\" "
                      "\"$url\" \"${hosts[@]}\"",
@@ -117,16 +117,17 @@ TEST_F(DeployFiles, TheTableOfModesGoesToEveryHostAndToAllButTheWorld) {
                         systemd_files(hosts_, mission_)[0].text};
   for (const std::string& script : scripts) {
     const auto set = script.find("copy_modes") != script.npos ? "start" : "setup";
-    const std::string said =
+    const std::string printed =
         output(std::string("set -- ") + set + "; . \"$file\"; cat \"$file.modes\"",
                "ssh() { case $* in *nohup*) echo \"starting ${3#*nohup }\";; *pid*) return 1;; "
                "*modes-*) echo \"$1 $(cat)\" >>\"$file.modes\";; *) cat >/dev/null;; esac; }\n"
                "tar() { :; }\n" +
                    script);
-    EXPECT_TRUE(has(said, "ops@10.0.0.1 table\npi@10.0.0.2 table\n")) << said;
+    EXPECT_TRUE(has(printed, "ops@10.0.0.1 table\npi@10.0.0.2 table\n")) << printed;
     if (std::string(set) != "start") continue;
-    EXPECT_TRUE(has(said, "ergocast-agent --id 3 --modes ../modes-0123456789abcdef.bin")) << said;
-    EXPECT_TRUE(has(said, "ergocast-sim --lcm-url")) << said;
+    EXPECT_TRUE(has(printed, "ergocast-agent --id 3 --modes ../modes-0123456789abcdef.bin"))
+        << printed;
+    EXPECT_TRUE(has(printed, "ergocast-sim --lcm-url")) << printed;
   }
   for (const TextFile& file : compose_files(hosts_, mission_)) {
     EXPECT_TRUE(has(file.text, "source: \"./modes-0123456789abcdef.bin\"")) << file.text;
@@ -239,8 +240,8 @@ TEST_F(DeployFiles, ComposeReadsWhatItIsGiven) {
     GTEST_SKIP() << "docker-compose is missing";
   make_keys();
   for (const TextFile& file : compose_files(hosts_, mission_)) {
-    const std::string said = output("docker-compose -f \"$file\" config", file.text);
-    EXPECT_EQ(status_, 0) << said;
+    const std::string printed = output("docker-compose -f \"$file\" config", file.text);
+    EXPECT_EQ(status_, 0) << printed;
   }
 }
 

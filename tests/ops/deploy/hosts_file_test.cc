@@ -64,7 +64,7 @@ TEST(HostsFile, CountedAgentsGetTheNumbersThatAreFreeInItsOrder) {
 }
 
 TEST(HostsFile, AllItsProblemsAreNamedAtOnceWithLineColumnAndRemedy) {
-  const std::string said = problems_in(
+  const std::string printed = problems_in(
       "ground coordinator pilot\n"
       "ground sim\n"
       "-oProxyCommand=x agent 0\n"
@@ -83,7 +83,7 @@ TEST(HostsFile, AllItsProblemsAreNamedAtOnceWithLineColumnAndRemedy) {
         "hosts:6:17: \"agents=0\" has no count", "hosts:6:26: \"agents=x\" has no count",
         "hosts:7:1: \"fourth\" has no role", "hosts:8:7: \"pi\" is no role",
         "an address has an @ or a dot"}) {
-    EXPECT_TRUE(has(said, part)) << part << " in\n" << said;
+    EXPECT_TRUE(has(printed, part)) << part << " in\n" << printed;
   }
 }
 

@@ -42,10 +42,10 @@ TEST(PeerLedger, BothHearEachOtherAndKnowIt) {
   EXPECT_EQ(peers[0].address, "10.0.0.2");
   EXPECT_EQ(peers[0].key, 77u);
   EXPECT_EQ(peers[0].from_it.percent(), 0);
-  EXPECT_EQ(peers[0].from_it.heard.all(), 40u);
+  EXPECT_EQ(peers[0].from_it.received.all(), 40u);
   ASSERT_TRUE(peers[0].to_it.has_value());
   EXPECT_EQ(peers[0].to_it->percent(), 0);
-  EXPECT_EQ(peers[0].to_it->heard.all(), 40u);
+  EXPECT_EQ(peers[0].to_it->received.all(), 40u);
   EXPECT_EQ(peers[0].duplicates, 0);
 }
 
@@ -86,7 +86,7 @@ TEST(PeerLedger, WhatComesTwiceCountsOnceAndIsTold) {
     a.take(probe, "", Instant(1s * i));
     a.take(probe, "", Instant(1s * i));
   }
-  EXPECT_EQ(a.peers()[0].from_it.heard.all(), 20u);
+  EXPECT_EQ(a.peers()[0].from_it.received.all(), 20u);
   EXPECT_EQ(a.peers()[0].duplicates, 20);
 }
 
@@ -116,8 +116,8 @@ TEST(PeerLedger, SomebodyOnlyOthersHearIsCounted) {
     b.take(c.next(at), "", at);
     a.take(b.next(at), "", at);
   }
-  EXPECT_EQ(a.only_heard_by_others(), 1);
-  EXPECT_EQ(b.only_heard_by_others(), 0);
+  EXPECT_EQ(a.only_received_by_others(), 1);
+  EXPECT_EQ(b.only_received_by_others(), 0);
 }
 
 TEST(PeerLedger, EchoesOfProbesThatWereNeverSentProveNothing) {

@@ -36,7 +36,7 @@ TEST(Probe, ComesBackAsItWasWritten) {
     ASSERT_EQ(got->echoes.size(), kMaxPeers);
     EXPECT_EQ(got->echoes[3].nonce, 4u);
     EXPECT_EQ(got->echoes[3].last, 11u);
-    EXPECT_EQ(got->echoes[3].heard.small, 5u);
+    EXPECT_EQ(got->echoes[3].received.small, 5u);
     EXPECT_EQ(got->echoes[3].held_ns, 99u);
   }
 }
@@ -68,9 +68,9 @@ TEST(Probe, WhatCannotBeTrueIsRefused) {
   EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].first = 12; }));
   EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].last = kMaxProbes; }));
   EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].last = 0xffffffff; }));
-  EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].heard.small = 7; }));
-  EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].heard.large = 3; }));
-  EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].heard = {}; }));
+  EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].received.small = 7; }));
+  EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].received.large = 3; }));
+  EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].received = {}; }));
   EXPECT_TRUE(refused([](Probe& p) { p.echoes[1].held_ns = 1ull << 63; }));
 }
 

@@ -56,18 +56,18 @@ TEST(Routing, InterfacesThatNobodyCouldUseAreNoChoice) {
 }
 
 /// The finding about the interface that the route names.
-Finding said_of(const Interface& routed) {
+Finding finding_of(const Interface& routed) {
   return routing_findings(url_of("ttl=1"), routed.name, {loopback(), routed})[1];
 }
 
 TEST(Routing, AnInterfaceThatCannotCarryMulticastIsNamedWithItsRemedy) {
   Interface one = cable("eth0", "10.0.0.1");
-  EXPECT_EQ(said_of(one).level, Level::kOk);
+  EXPECT_EQ(finding_of(one).level, Level::kOk);
   one.carrier = false;
-  EXPECT_TRUE(contains(said_of(one).found, "no carrier"));
+  EXPECT_TRUE(contains(finding_of(one).found, "no carrier"));
   one.multicast = false;
-  EXPECT_EQ(said_of(one).remedy, "ip link set eth0 multicast on");
-  EXPECT_EQ(said_of(one).level, Level::kProblem);
+  EXPECT_EQ(finding_of(one).remedy, "ip link set eth0 multicast on");
+  EXPECT_EQ(finding_of(one).level, Level::kProblem);
 }
 
 TEST(Routing, AnMtuBelowOurLongestPacketIsAWarning) {
