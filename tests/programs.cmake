@@ -216,6 +216,10 @@ add_test(NAME verdict
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/verdict_test.sh ${CMAKE_SOURCE_DIR})
 set_tests_properties(verdict PROPERTIES LABELS unit)
 
+add_test(NAME prose_can_fail
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/checks_can_fail/prose_test.sh ${CMAKE_SOURCE_DIR})
+set_tests_properties(prose_can_fail PROPERTIES LABELS unit)
+
 if(TARGET ergocast_python)
   add_subdirectory(python)
 endif()
