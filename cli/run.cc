@@ -5,11 +5,9 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
-#include <mutex>
+#include <future>
 #include <span>
-#include <thread>
 #include <utility>
 
 #include "cli/commands.h"
@@ -257,22 +255,12 @@ int run_mission(const MissionOptions& options, const Scenario& scenario,
 
 /// Reads the scenario; if that takes long, a line says why nothing happens.
 std::optional<Scenario> load_with_a_note(const MissionOptions& options) {
-  std::mutex mutex;
-  std::condition_variable read;
-  bool done = false;
-  std::jthread note([&] {
-    std::unique_lock lock(mutex);
-    if (read.wait_for(lock, kNoteAfter, [&] { return done; })) return;
+  auto loading =
+      std::async(std::launch::async, load_or_complain, options.scenario, options.overrides);
+  if (loading.wait_for(kNoteAfter) == std::future_status::timeout)
     print_message("reading " + options.scenario.string() +
                   ": the modes of a free domain, or large maps, take some seconds");
-  });
-  auto scenario = load_or_complain(options.scenario, options.overrides);
-  {
-    const std::lock_guard lock(mutex);
-    done = true;
-  }
-  read.notify_one();
-  return scenario;
+  return loading.get();
 }
 
 }  // namespace

@@ -46,8 +46,16 @@ install(FILES ${CMAKE_SOURCE_DIR}/cmake/ErgocastConfig.cmake
 file(GLOB HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
   ${CMAKE_SOURCE_DIR}/core/*.h ${CMAKE_SOURCE_DIR}/target/*.h ${CMAKE_SOURCE_DIR}/team/*.h
   ${CMAKE_SOURCE_DIR}/agent/*.h)
-list(REMOVE_ITEM HEADERS core/vectorized.h core/free_gains.h)
+list(REMOVE_ITEM HEADERS core/vectorized.h core/free_gains.h target/map_text.h)
 list(APPEND HEADERS lcmtypes/channels.h lcmtypes/codec.h lcmtypes/message_authenticator.h)
+foreach(header ${HEADERS})
+  file(STRINGS ${CMAKE_SOURCE_DIR}/${header} needed REGEX "^#include \"")
+  list(TRANSFORM needed REPLACE "^#include \"([^\"]+)\".*" "\\1")
+  list(REMOVE_ITEM needed ${HEADERS})
+  if(needed)
+    message(FATAL_ERROR "libergocast-dev has ${header}, but not what it includes: ${needed}")
+  endif()
+endforeach()
 set(INSTALLED_HEADERS ${HEADERS})
 configure_file(${CMAKE_SOURCE_DIR}/cmake/install_headers.cmake.in
   ${CMAKE_BINARY_DIR}/install_headers.cmake @ONLY)

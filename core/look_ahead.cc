@@ -86,14 +86,20 @@ LookAhead::LookAhead(const Mission& mission, const Eigen::Matrix3d& covariance_m
     : dt_s_(mission.timing.dt_s),
       alone_s_(mission.law.anticipation * target_spread_m(covariance_m2) *
                std::sqrt(shared_dimensions(covariance_m2) / 2) / mission.law.u_max_mps),
+      most_s_(std::numeric_limits<double>::infinity()),
       inverse_dimensions_(1 / shared_dimensions(covariance_m2)),
-      end_tick_(mission.law.ends_with_plan ? mission.timing.tick_count
-                                           : std::numeric_limits<Tick>::max()),
-      longest_period_(longest_period_ticks(mission.timing)) {}
+      end_tick_(std::numeric_limits<Tick>::max()),
+      longest_period_(longest_period_ticks(mission.timing)) {
+  if (!mission.law.ends_with_plan) return;
+  end_tick_ = mission.timing.tick_count;
+  const double duration_s = static_cast<double>(end_tick_) * dt_s_;
+  most_s_ = std::max(0.0, duration_s - target_spread_m(covariance_m2) / mission.law.u_max_mps);
+}
 
 double LookAhead::horizon_s(int n, Tick tick) const {
   const double left_s = static_cast<double>(std::max<Tick>(0, end_tick_ - tick)) * dt_s_;
-  return std::min(alone_s_ / std::pow(static_cast<double>(n), inverse_dimensions_), left_s);
+  const double share_s = alone_s_ / std::pow(static_cast<double>(n), inverse_dimensions_);
+  return std::min({share_s, most_s_, left_s});
 }
 
 double LookAhead::weight_s(double horizon_s, Tick span, Tick age, Tick period) const {

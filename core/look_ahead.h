@@ -38,7 +38,8 @@ class LookAhead {
 
   /// h = a s √(d/2) / (u_max n^(1/d)) [s] for a team of `n`, with d = shared_dimensions(): about
   /// the time to cross an agent's share. With ends_with_plan at most the time left at `tick`, which
-  /// is 0 after the end.
+  /// is 0 after the end, and at most T − s / u_max, with T the plan's duration: a mission in which
+  /// nobody can cross the target leaves no time to share it out.
   double horizon_s(int n, Tick tick) const;
 
   /// For how long [s] a teammate's rate over `span` ticks, last known `age` ticks ago, is assumed
@@ -55,6 +56,7 @@ class LookAhead {
 
   double dt_s_;
   double alone_s_;             // h of a team of one
+  double most_s_;              // of h, in a short mission
   double inverse_dimensions_;  // 1 / d
   Tick end_tick_;              // where h ends at the latest
   Tick longest_period_;

@@ -90,8 +90,8 @@ Eigen::Matrix3d target_covariance(const Mission& mission) {
   return all_m2;
 }
 
-/// h for a team of n: a s √(d/2) / (u_max n^(1/d)), and at most what is left where the plan says
-/// so.
+/// h for a team of n: a s √(d/2) / (u_max n^(1/d)). Where the plan says so it is at most what is
+/// left, and at most what a way of the length s leaves of the whole mission.
 double horizon_s(const Mission& mission, const Eigen::Matrix3d& covariance_m2, int n, Tick tick) {
   const double variance_m2 = std::max(0.0, covariance_m2.trace());
   double dimensions = 2;
@@ -102,8 +102,11 @@ double horizon_s(const Mission& mission, const Eigen::Matrix3d& covariance_m2, i
   const double h_s = mission.law.anticipation * std::sqrt(variance_m2 * dimensions / 2) /
                      mission.law.u_max_mps / std::pow(n, 1 / dimensions);
   if (!mission.law.ends_with_plan) return h_s;
-  const Tick left = std::max<Tick>(0, mission.timing.tick_count - tick);
-  return std::min(h_s, static_cast<double>(left) * mission.timing.dt_s);
+  const Timing& timing = mission.timing;
+  const double left_s = static_cast<double>(timing.tick_count - tick) * timing.dt_s;
+  const double beside_s = static_cast<double>(timing.tick_count) * timing.dt_s -
+                          std::sqrt(variance_m2) / mission.law.u_max_mps;
+  return std::max(0.0, std::min({h_s, left_s, beside_s}));
 }
 
 /// w = h + min(span, cap) + age, or 0 for who has been silent for longer than h and the cap.

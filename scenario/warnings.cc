@@ -25,6 +25,11 @@ constexpr double kDeviations = 6;
 /// Agents with a forecast need steps of at most this share of the shorter side: docs/law.md.
 constexpr double kLongestStep = 0.05;
 
+/// Agents with a forecast need weights that fall at least like this power of the wave number.
+constexpr double kLeastDecay = 0.75;
+/// With that anticipation they lose nothing to the classical law.
+constexpr double kLittleAnticipation = 0.5;
+
 /// A least φ² above this share of an even coverage's makes a target finer than the footprints.
 constexpr double kReachable = 0.01;
 
@@ -103,6 +108,22 @@ void warn_of_coarse_steps(const Mission& mission, Findings& findings) {
           "looking "
           "ahead",
       "write at most " + shortest(rounded_down(longest_s)) + ", or law.anticipation: 0");
+}
+
+/// Where short waves count nearly as much as long ones, the forecast is wrong about most of what
+/// counts: docs/law.md.
+void warn_of_flat_weights(const Mission& mission, Findings& findings) {
+  const Basis& basis = mission.basis;
+  const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
+  const double least = squared ? kLeastDecay / 2 : kLeastDecay;
+  if (mission.law.anticipation <= kLittleAnticipation || basis.sobolev_exponent >= least) return;
+  findings.add(
+      "basis.sobolev_exponent",
+      shortest(basis.sobolev_exponent) +
+          " lets short waves count nearly as much as long ones, and agents that look ahead "
+          "then cover worse than without: phi^2 was found up to 1.5 times as large",
+      "write at least " + shortest(least) +
+          ", or law.anticipation: " + shortest(kLittleAnticipation));
 }
 
 /// Agents find their way around each other only where there is room.
@@ -245,6 +266,7 @@ void warn_of_hidden_mass(const Mission& mission, const DensityGrid& density, Fin
 void warn(const Mission& mission, const DensityGrid& density, Findings& findings) {
   warn_of_speed_limits(mission, findings);
   warn_of_coarse_steps(mission, findings);
+  warn_of_flat_weights(mission, findings);
   warn_of_packing(mission, findings);
   warn_of_crowded_ways_home(mission, findings);
   warn_of_tight_stations(mission, findings);

@@ -32,6 +32,18 @@ unsigned long inode_of(const std::string& link) {
       .value_or(0);
 }
 
+/// The ports of the sockets at the ports of `url`, by inode.
+std::map<unsigned long, int> sockets_at(const fs::path& proc, const LcmUrl& url) {
+  std::map<unsigned long, int> sockets;
+  for (const char* table : {"net/udp", "net/udp6"}) {
+    for (const UdpSocket& socket : parse_socket_table(text_of(proc / table))) {
+      if (socket.port < url.base_port || socket.port >= url.base_port + kBusCount) continue;
+      sockets[socket.inode] = socket.port;
+    }
+  }
+  return sockets;
+}
+
 std::string program_of(const fs::path& process) {
   const std::string command = text_of(process / "cmdline");
   const std::string name = fs::path(command.substr(0, command.find('\0'))).filename();
@@ -81,13 +93,7 @@ std::string described(const std::vector<SocketOwner>& holders) {
 }  // namespace
 
 std::vector<SocketOwner> holders(const fs::path& proc, const LcmUrl& url) {
-  std::map<unsigned long, int> wanted;
-  for (const char* table : {"net/udp", "net/udp6"}) {
-    for (const UdpSocket& socket : parse_socket_table(text_of(proc / table))) {
-      if (socket.port < url.base_port || socket.port >= url.base_port + kBusCount) continue;
-      wanted[socket.inode] = socket.port;
-    }
-  }
+  const std::map<unsigned long, int> wanted = sockets_at(proc, url);
   std::vector<SocketOwner> all;
   if (wanted.empty()) return all;
   std::set<unsigned long> found;
@@ -96,8 +102,10 @@ std::vector<SocketOwner> holders(const fs::path& proc, const LcmUrl& url) {
     const auto pid = read_number<long>(at->path().filename().string());
     if (pid) look_into(at->path(), *pid, wanted, found, all);
   }
+  // A socket that nobody was found to hold may have been closed while we looked.
+  const std::map<unsigned long, int> present = sockets_at(proc, url);
   for (const auto& [inode, port] : wanted) {
-    if (!found.contains(inode)) all.push_back({port, "", 0});
+    if (!found.contains(inode) && present.contains(inode)) all.push_back({port, "", 0});
   }
   std::sort(all.begin(), all.end(), [](const SocketOwner& a, const SocketOwner& b) {
     return std::tie(a.port, a.pid) < std::tie(b.port, b.pid);
@@ -121,12 +129,14 @@ Finding ports_finding(const LcmUrl& url, const std::vector<SocketOwner>& holders
             "Whoever has it does not share it, so no program of Ergocast can listen there.",
             elsewhere};
   }
-  if (std::all_of(holders.begin(), holders.end(), is_ours)) {
+  std::vector<SocketOwner> strangers = holders;
+  std::erase_if(strangers, is_ours);
+  if (strangers.empty()) {
     return {"ports", Level::kNote, described(holders),
             "Programs of Ergocast are at work on these ports. Another run needs ports of its own.",
             elsewhere};
   }
-  return {"ports", Level::kWarning, described(holders),
+  return {"ports", Level::kWarning, described(strangers),
           "Whoever shares a port with a team hears the team and is heard by it: with LCM 1.3 "
           "even if the group is another one. Everybody then parses everybody's messages.",
           elsewhere};

@@ -229,6 +229,21 @@ TEST(Horizon, EndsWithThePlanOnlyIfTheScenarioSaysSo) {
   EXPECT_EQ(look_ahead.horizon_s(4, 7000), 0) << "after the end";
 }
 
+TEST(Horizon, IsAtMostWhatAWayAcrossTheTargetLeavesOfTheMission) {
+  Mission mission = uniform();
+  mission.law.ends_with_plan = true;
+  const double full_s = LookAhead(mission).horizon_s(4, 0);
+  const auto lasting = [&](double duration_s) {
+    mission.timing.tick_count = static_cast<Tick>(std::llround(duration_s / mission.timing.dt_s));
+    return LookAhead(mission).horizon_s(4, 0);
+  };
+  EXPECT_EQ(lasting(kCrossing_s + full_s + 1), full_s);
+  EXPECT_NEAR(lasting(kCrossing_s + 5), 5, 0.1);
+  EXPECT_EQ(lasting(kCrossing_s - 1), 0);
+  mission.law.ends_with_plan = false;
+  EXPECT_EQ(lasting(kCrossing_s - 1), full_s);
+}
+
 // ---- w ----
 
 /// The longest period that the plan allows; eight of them are 4 s.

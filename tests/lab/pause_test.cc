@@ -128,7 +128,7 @@ TEST_P(PausedUnderFaults, BreaksNoInvariant) {
     faults.pauses_per_s = 0.3;
     faults.pause_max_s = 5;
     const TriedTeam tried(faults, seed, scenario);
-    EXPECT_EQ(tried.problem(), "") << "seed " << seed;
+    ASSERT_EQ(tried.problem(), "") << "seed " << seed;
     pauses += tried.result.figures.pauses;
     held += tried.result.figures.held_ticks;
   }

@@ -99,6 +99,16 @@ TEST_F(Doctor, WhoIsOnAPortIsNamed) {
       << output();
 }
 
+TEST_F(Doctor, ASocketThatIsClosedMeanwhileIsNobodysElse) {
+  const std::jthread opens([](const std::stop_token& stop) {
+    while (!stop.stop_requested()) const Squatter brief(24001, true);
+  });
+  for (int k = 0; k < 5; ++k) {
+    doctor({});
+    EXPECT_FALSE(prints("ports", "another user's program")) << output();
+  }
+}
+
 TEST_F(Doctor, APortThatSomebodyKeepsForItselfIsAProblem) {
   const Squatter alone(24000, false);
   EXPECT_EQ(doctor({"--peer", "1"}), 1);
@@ -123,7 +133,7 @@ TEST_F(Doctor, ARunIsOverheardAndLeftInPeace) {
   EXPECT_EQ(doctor({"--peer", "1"}), 1);  // because --peer is not tried
   EXPECT_TRUE(prints("swarm bus", "run ")) << output();
   EXPECT_TRUE(prints("swarm bus", "running")) << output();
-  EXPECT_EQ(finding("ports")["level"], "note");
+  EXPECT_EQ(finding("ports")["level"], "note") << finding("ports");
   EXPECT_TRUE(prints("ports", "ergocast-")) << output();
   EXPECT_TRUE(prints("peers", "not tried")) << output();
   run.send(SIGTERM);

@@ -81,6 +81,21 @@ TEST(Warnings, OfCoarseStepsForAgentsThatLookAhead) {
       "covered worse than without looking ahead (write at most 0.5, or law.anticipation: 0)\n");
 }
 
+TEST(Warnings, OfWeightsThatHardlyFallForAgentsThatLookAhead) {
+  const auto weighted = [](const std::string& basis, const std::string& law) {
+    return warnings_of(small_with("law {", "basis { " + basis + " } law { " + law));
+  };
+  EXPECT_EQ(weighted("sobolev_form: NORM sobolev_exponent: 0.75", ""), "");
+  EXPECT_EQ(weighted("sobolev_exponent: 0.375", ""), "");
+  EXPECT_EQ(weighted("sobolev_form: NORM sobolev_exponent: 0.6", "anticipation: 0.5 "), "");
+  const std::string norm = weighted("sobolev_form: NORM sobolev_exponent: 0.6", "");
+  EXPECT_TRUE(has(norm, "basis.sobolev_exponent: 0.6 lets short waves count nearly as much"))
+      << norm;
+  EXPECT_TRUE(has(norm, "(write at least 0.75, or law.anticipation: 0.5)")) << norm;
+  const std::string squared = weighted("sobolev_exponent: 0.3", "");
+  EXPECT_TRUE(has(squared, "(write at least 0.375, or law.anticipation: 0.5)")) << squared;
+}
+
 TEST(Warnings, OfRareHighModesWithoutModesOrTime) {
   const auto rare = [](const std::string& modes, const std::string& time) {
     std::string text = small_with("law {", "basis { modes_x: " + modes + " } law {");

@@ -54,8 +54,10 @@ TEST(PortsFinding, OurOwnAreANoteAndStrangersAWarning) {
   const Finding ours = ports_finding(url, {{24000, "ergocast-sim", 5}}, "", 24009);
   EXPECT_EQ(ours.level, Level::kNote);
   EXPECT_TRUE(contains(ours.remedy, ":24009?ttl=1")) << ours.remedy;
-  EXPECT_EQ(ports_finding(url, {{24000, "ergocast-sim", 5}, {24001, "vlc", 6}}, "", 24009).level,
-            Level::kWarning);
+  const Finding shared =
+      ports_finding(url, {{24000, "ergocast-sim", 5}, {24001, "vlc", 6}}, "", 24009);
+  EXPECT_EQ(shared.level, Level::kWarning);
+  EXPECT_EQ(shared.found, "24001: vlc (pid 6)");
   const Finding closed = ports_finding(url, {{24000, "vlc", 6}}, "cannot open the port", 24009);
   EXPECT_EQ(closed.level, Level::kProblem);
   EXPECT_TRUE(contains(closed.found, "vlc (pid 6)")) << closed.found;
