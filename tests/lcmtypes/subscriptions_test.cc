@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The subscriptions of team/subscriptions.h, on LCM's channels and in ARCHITECTURE.md.
+// The subscriptions of team/subscriptions.h, on LCM's channels and in docs/internals.md.
 #include "team/subscriptions.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 using namespace test;
 using Names = std::set<std::string>;
 
-/// The names of the roles in ARCHITECTURE.md; the logger receives everything, so no line of the
+/// The names of the roles in docs/internals.md; the logger receives everything, so no line of the
 /// table has it.
 constexpr const char* kNames[kRoleCount] = {"agents", "coordinator", "world", "driver",
                                             "",       "run",         "status"};
@@ -48,7 +48,7 @@ Names listeners(const std::string& cell) {
 
 /// The table under "### Channels": listeners by channel and bus.
 std::map<std::string, std::vector<Names>> documented() {
-  std::ifstream file(ERGOCAST_SOURCE_DIR "/ARCHITECTURE.md");
+  std::ifstream file(ERGOCAST_SOURCE_DIR "/docs/internals.md");
   std::map<std::string, std::vector<Names>> table;
   std::string line;
   while (std::getline(file, line) && line != "### Channels") {
