@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every link and anchor of our documents leads somewhere; long pages begin with a recipe; none grows without notice."""
 
-import pathlib
 import re
-import sys
 import unittest
 import urllib.parse
 
@@ -12,7 +10,7 @@ import pages
 # Pages that programs write.
 GENERATED = re.compile(r"docs/(reference|results)/")
 RECIPE_ABOVE_WORDS = 800
-RECIPE_LINES = 10
+RECIPE_STEPS = 10
 MOST_WORDS = {"README.md": 900, "ARCHITECTURE.md": 2200}
 MOST_WORDS_IN_ALL = 42000
 # Written down beside the documents, by the build: a link to it may be dangling in a checkout.
@@ -76,9 +74,8 @@ class Documents(unittest.TestCase):
             name, text = str(page.relative_to(pages.ROOT)), page.read_text()
             if not name.startswith("docs/") or GENERATED.match(name) or pages.words(text) < RECIPE_ABOVE_WORDS:
                 continue
-            head = text.split("\n## ")[0]
-            steps = re.findall(r"^(?:\d+\. |    \S|[^`\n]+$)", head, re.MULTILINE)
-            if "In short:" not in head or len(steps) > 3 * RECIPE_LINES:
+            steps = re.search(r"^In short:\n\n((?:(?:\d+\.|   ?) .*\n)+)", text.split("\n## ")[0], re.MULTILINE)
+            if steps is None or not 3 <= len(re.findall(r"^\d+\. ", steps[1], re.MULTILINE)) <= RECIPE_STEPS:
                 lacking.append(name)
         self.assertEqual(lacking, [])
 
