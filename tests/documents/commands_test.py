@@ -4,10 +4,11 @@
    commands_test.py BUILD_FOLDER DOCUMENT...
 
 Each ```sh block is run by one shell after the other, in a folder with links to the scenarios and the
-build. A ```text block right below has lines of its output, in their order, in which … stands for anything.
+build. A ```text block below it, before the next heading, has lines of its output, in their order, in which … stands for anything.
 Comments in the document say what else to do with the block that follows:
 
    <!-- not run: why -->              leave it out
+   <!-- codes 0 1 -->                 it may end with these codes
    <!-- background until "TEXT" -->   go on once it has printed TEXT, and end it by Ctrl-C at
    <!-- stop -->
 """
@@ -23,7 +24,7 @@ import time
 
 import pages
 
-BLOCK = re.compile(r"<!-- (?P<note>.*?) -->|^```(?P<language>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"<!-- (?P<note>.*?) -->|^(?P<heading>#+ )|^```(?P<language>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
 # A network of its own where that is allowed.
 NETWORK = ["unshare", "-n", "sh", "-c", 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec "$@"', "_"]
 
@@ -53,10 +54,10 @@ class Session:
     def script(self, text):
         return f"set -e; . {self.state}; {{ {text}\n}}; export -p | grep -v ' _=' >{self.state}"
 
-    def run(self, text):
+    def run(self, text, codes=(0,)):
         done = subprocess.run(["bash", "-c", self.script(text)], cwd=self.folder, capture_output=True, text=True,
-                              timeout=600)
-        if done.returncode != 0:
+                              stdin=subprocess.DEVNULL)
+        if done.returncode not in codes:
             raise Wrong(f"code {done.returncode}\n{done.stdout}{done.stderr}")
         return done.stdout + done.stderr
 
@@ -97,6 +98,9 @@ def run(document, build, folder):
     session, note, output, count = Session(folder), "", None, 0
     try:
         for block in BLOCK.finditer(document):
+            if block["heading"]:
+                output = None
+                continue
             if block["note"] is not None:
                 note = block["note"]
                 if note == "stop":
@@ -109,7 +113,8 @@ def run(document, build, folder):
                 count += 1
                 try:
                     until = re.fullmatch(r'background until "(.*)"', note)
-                    output = session.start(block["text"], until[1]) if until else session.run(block["text"])
+                    codes = [int(code) for code in note.split()[1:]] if note.startswith("codes ") else (0,)
+                    output = session.start(block["text"], until[1]) if until else session.run(block["text"], codes)
                 except Wrong as wrong:
                     raise Wrong(f"{block['text']}{wrong}") from None
             elif block["language"] == "text" and output is not None:
@@ -120,7 +125,7 @@ def run(document, build, folder):
             note = ""
     finally:
         if session.background is not None:
-            session.background.send_signal(signal.SIGTERM)
+            session.background.kill()  # with it end the processes that it has started
             session.background.wait()
     return count
 
@@ -142,7 +147,7 @@ def planted_faults_are_found(build):
         if complaint(planted, build) is None:
             raise SystemExit(f"not found: {planted}")
     right = ("```sh\nexport A=1\n```\n<!-- not run: it fails -->\n```sh\nfalse\n```\n"
-             "```sh\necho $A and 7 more\n```\n\n```text\n1 and … more\n```\n")
+             "```sh\necho $A and 7 more\n```\n\n```text\n1 and … more\n```\n<!-- codes 0 3 -->\n```sh\nexit 3\n```\n")
     wrong = complaint(right, build)
     if wrong is not None:
         raise SystemExit(f"found in what is right: {wrong}")
