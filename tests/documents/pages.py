@@ -2,9 +2,9 @@
 """Our documents: which there are, their headings and their links."""
 
 import html
+import os
 import pathlib
 import re
-import subprocess
 import unicodedata
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -14,10 +14,12 @@ CODE = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)")
 
 
 def documents(root=ROOT):
-    """Every Markdown file that git knows or would add."""
-    names = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "--", "*.md"],
-                           check=True, capture_output=True, text=True).stdout.split("\n")
-    return [root / name for name in names if name and (root / name).exists()]
+    """Every Markdown file of the source tree."""
+    found = []
+    for folder, folders, names in os.walk(root):
+        folders[:] = [name for name in folders if not name.startswith(".") and name not in ("build", "node_modules")]
+        found += [pathlib.Path(folder, name) for name in names if name.endswith(".md")]
+    return sorted(found)
 
 
 def lines_outside_code(text):
