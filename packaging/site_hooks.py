@@ -4,13 +4,11 @@
 import pathlib
 import posixpath
 import re
-import tempfile
 
 from mkdocs.structure.files import File
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TOP = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md")
-GENERATED = ("reference/scenario.md", "reference/commands.md", "reference/messages.md", "reference/limits.md")
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)\s]*)?\)")
 CODE = re.compile(r"^ {0,3}(```+)[\s\S]*?^ {0,3}\1[ \t]*$|(`+)(?!`)[^\n]*?(?<!`)\2(?!`)", re.MULTILINE)
 
@@ -23,12 +21,6 @@ def on_files(files, config):
             page.name, page.dest_path, page.url = "README", "README.html", "README.html"
             page.abs_dest_path = posixpath.join(config["site_dir"], "README.html")
         files.append(page)
-    for name in GENERATED:
-        if files.get_file_from_path(name) is None:
-            stub = pathlib.Path(tempfile.mkdtemp(prefix="ergocast-site-"), name)
-            stub.parent.mkdir(parents=True)
-            stub.write_text("# Generated\n\nThe build makes this page.\n")
-            files.append(File(name, str(stub.parents[1]), config["site_dir"], config["use_directory_urls"]))
     return files
 
 
@@ -44,7 +36,7 @@ def on_page_markdown(markdown, page, config, files):
         if files.get_file_from_path(name) is not None and (path.startswith("docs/") or path in TOP):
             here = posixpath.dirname(page.file.src_path)
             return f"{picture}[{text}]({posixpath.relpath(name, here or '.')}{fragment})"
-        if not (ROOT / path).exists() and name not in GENERATED:
+        if not (ROOT / path).exists():
             return link[0]  # mkdocs names it
         return text
 

@@ -108,6 +108,8 @@ const std::vector<Rule> kRules = {
     {"python",
      {"text", "core", "target", "scenario", "runtime", "logger", "report", "lab", "cli", "python"},
      {kPython, kFiles}},
+    // What the generated reference says of fields and messages.
+    {"docs/reference", {"text", "core", "team", "lcmtypes", "scenario"}, {kProtobuf, kFiles}},
     // Somebody else's program: it sees the installed headers alone.
     {"examples/embed", {}, {kInstalled, kSystem}},
     // The example to copy: a participant with its main.

@@ -187,7 +187,6 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/plan_test.cc
     scenario/polygon_flaw_test.cc
     scenario/problems_test.cc
-    scenario/proto_comments_test.cc
     scenario/scenario_test.cc
     scenario/space_test.cc
     scenario/svg_target_test.cc
