@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scales, ticks and grid of a plot. Draws on a canvas, or on anything with the same methods (svg.js).
+// Computes the scales and ticks of a plot, and paints its grid.
+// It draws on a canvas, or on anything with the same methods (svg.js).
 import { readable, superscript } from './text.js';
 
 export const ROOM = { left: 50, right: 12, top: 8, bottom: 30 };

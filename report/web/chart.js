@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A quantity over time. Draws on a canvas, or on anything with the same methods (svg.js).
+// Paints the chart of a run: one quantity over time.
+// It draws on a canvas, or on anything with the same methods (svg.js).
 import { paintColumns, paintRows, rangeOf, scalesFor, segment } from './axes.js';
 import { readable } from './text.js';
 import { indexAt } from './run.js';

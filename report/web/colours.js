@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours: eight hues for agents, and ramps for densities that are straight lines in OKLab.
+// Holds the colours: eight hues for agents, and ramps for densities that are straight lines in OKLab.
 export const HUES = {
   light: ['#0063a8', '#b04a00', '#00705a', '#a3327a', '#7a6000', '#5a48b8', '#0f7488', '#505a66'],
   dark: ['#58aefb', '#ff9455', '#3fd0a2', '#f492cb', '#e8c547', '#b3a5ff', '#6fdbe8', '#c6ced8'],

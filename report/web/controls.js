@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Buttons, keys and the chart's pointer.
+// Connects buttons, keys and the chart's pointer with what the page shows.
 import { S, SPEEDS, LAYERS, ask } from './state.js';
 import { TAILS } from './map.js';
 import { QUANTITIES, scalesOf } from './chart.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sums of cosines: pictures of coefficients, in multiples of the uniform density.
+// Sums cosines: makes pictures of coefficients, in multiples of the uniform density.
 
 const tables = new Map();
 

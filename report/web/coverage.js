@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// c_k from positions, for any row at once: the sums are kept every 128 rows. The order is that of
-// the wire: the modes along z count slowest, those along y fastest. Where kinds of agents see
-// differently, each place counts with its kind's quality and footprint.
+// Computes the coverage c_k from positions, for any row at once.
+// The sums are kept every 128 rows. The order is that of the wire: the modes along z count slowest, those
+// along y fastest. Where kinds of agents see differently, each place counts with its kind's quality and
+// footprint.
 const EVERY = 128;
 
 // cos(m π u) of all m, by recurrence.

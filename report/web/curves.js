@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the chosen points do over time: φ² with its bands, or the share of agents that escaped.
+// Paints what the chosen points of a study do over time: φ² with its bands, or the share that escaped.
 import { FONT, paintColumns, paintRows, rangeOf, scalesFor } from './axes.js';
 import { HUES } from './colours.js';
 import { readable, share } from './text.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The key figures under the map, and all that a record says besides.
+// Shows the key figures under the map, and the dialog with all that a record holds besides.
 import { S } from './state.js';
 import { NOTABLE, lateCommands, lateText } from './notices.js';
 import { $, duration, element, grouped, ofModes, readable } from './text.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A quantity with its intervals against one field; a colour for each value of a second one.
+// Paints a quantity with its intervals against one field; each value of a second field has a colour.
 import { FONT, paintColumns, paintRows, rangeOf, scalesFor, segment } from './axes.js';
 import { QUANTITIES, isKnown } from './study.js';
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ground of the map: target, achieved or difference, the target's outline, where nobody is
-// wanted, and walls. Draws on a canvas, or on anything with the same methods (svg.js).
+// Paints the ground of the map: shading, the target's outline, where nobody is wanted, and walls.
+// It draws on a canvas, or on anything with the same methods (svg.js).
 import { clamp } from './text.js';
 
 const CONTOUR = 64;           // of 255: the target's outline over the other shadings

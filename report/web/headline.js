@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The line at the top: mission, time, φ² and state at the chosen time.
+// Shows the line at the top: mission, time, φ² and state at the chosen time.
 import { S } from './state.js';
 import { QUANTITIES, readingAt } from './chart.js';
 import { showTeam } from './team.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A quantity over two fields: a cell for each pair of values.
+// Paints a quantity over two fields, one cell for each pair of values.
 import { inkOn, mix } from './colours.js';
 import { FONT } from './axes.js';
 import { QUANTITIES, isKnown } from './study.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which shading, trail, axis, quantity and theme are chosen, and what their colours mean.
+// Shows which shading, trail, axis, quantity and theme are chosen, and what their colours mean.
 import { themeColours } from './colours.js';
 import { S, ask, inSpace, shown } from './state.js';
 import { TAILS } from './map.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team that flies: frames from the server become rows, statuses, incidents and log lines.
+// Makes rows, statuses, incidents and log lines of the frames that the server sends about a running team.
 import { Run, indexAt, recordedRun, withMore } from './run.js';
 import { $, element } from './text.js';
 

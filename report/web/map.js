@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map over its ground: trails and markers. Each draws on a canvas, or on anything with the same
-// methods (svg.js).
+// Paints the map over its ground: trails and markers.
+// Each draws on a canvas, or on anything with the same methods (svg.js).
 import { clamp } from './text.js';
 import { many, paintAgents } from './markers.js';
-import { axisName, farthestFirst, paintSpaceMarks } from './space_marks.js';
+import { axisName } from './box_axes.js';
+import { farthestFirst, paintSpaceMarks } from './space_marks.js';
 
 export const TAILS = [0, 10, 30, 60, 120, 300, 600, Infinity];  // s
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pointer, wheel and fingers on the map: zoom, move, choose an agent, read a place.
+// Handles pointer, wheel and fingers on the map: zoom, move, choose an agent, read a place.
 import { S, inSpace, mapState, shown } from './state.js';
 import { markersOf } from './markers.js';
 import { coordinate, nameOf } from './places.js';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The agents on the map: bodies to scale, and pins with their numbers. Draws on a canvas, or on
-// anything with the same methods (svg.js).
+// Paints the agents on the map: bodies to scale, and pins with their numbers.
+// It draws on a canvas, or on anything with the same methods (svg.js).
 import { inkOn } from './colours.js';
 import { stateOf } from './run.js';
 

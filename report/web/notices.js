@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sentences above the map: what a person should know or do now.
+// Writes the sentences above the map: what a person should know or do now.
 import { S } from './state.js';
 import { $, grouped, put } from './text.js';
 

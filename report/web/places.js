@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A track's places along chosen axes in one array, which follows the track as it grows.
+// Keeps a track's places along chosen axes in one array, which follows the track as it grows.
 const AXES = 'xyz';
 
 // A place's coordinate along an axis, in metres from the domain's corner.

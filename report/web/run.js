@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mission as the page shows it: from a record, or as it grows. No drawing.
+// Holds a mission as the page shows it, from a record or as it grows, without any drawing.
 import { picture } from './cosine_sums.js';
 import { Coverage } from './coverage.js';
 import { Track, addTracks, bytesOf } from './tracks.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of a run: brings data, drawing and controls together.
+// Brings data, drawing and controls together on the page of a run.
 import { S, ask, focusOf, mapState, onFrame, shown } from './state.js';
 import { TAILS } from './map.js';
 import { markersOf } from './markers.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures and films of what the page shows.
+// Saves pictures and films of what the page shows.
 import { S, inSpace, mapState, shown } from './state.js';
 import { paintShading } from './ground.js';
 import { paintMarkers, paintTracks, trailOf, TAILS } from './map.js';

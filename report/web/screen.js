@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The canvases of a run's page: each is drawn only when what it shows has changed.
+// Draws each canvas of a run's page when what it shows has changed.
 import { S, ask, inSpace, mapState, shown } from './state.js';
 import { View } from './view.js';
 import { Space } from './space.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which run the page shows: a record, or a team that flies and then is a record.
+// Chooses which run the page shows: a record, or a running team that later becomes a record.
 import { S, ask, startTail } from './state.js';
 import { buildStrip, seek, showFollowing } from './timeline.js';
 import { buildTeam } from './team.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Slices through a box: pictures of target, achieved or difference in planes across its axes.
+// Makes slices through a box: pictures of target, coverage or difference in planes across its axes.
 import { ACROSS_AND_UP, picture, planeOf } from './cosine_sums.js';
 import { fullOf } from './run.js';
 import { clamp } from './text.js';

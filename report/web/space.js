@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A box on a canvas with WebGL: faces and edges, slices, tails.
+// Draws a box with WebGL: faces, edges, slices and trails.
 import { TAILS, trailOf, rowsPerPiece } from './map.js';
-import { ticksOf } from './axes.js';
+import { ticksFor } from './box_axes.js';
 import { Places } from './places.js';
 import { SpaceGl } from './space_gl.js';
 import { cornersOf, partsOf, sliceImage } from './slices.js';
@@ -30,12 +30,6 @@ function framework(run, view) {
     }
   }
   return { faces, back, front };
-}
-
-// Ticks of an axis from the box's corner; their texts are in the scenario's coordinates.
-export function ticksFor(run, axis) {
-  const origin = run.mission.origin_m[axis], ticks = ticksOf({ low: origin, high: origin + run.size[axis], log: false });
-  return ticks.map(({ at, text }) => ({ at: at - origin, text }));
 }
 
 export class Space {

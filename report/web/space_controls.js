@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The views of a box, and a slider for each slice.
+// Offers the views of a box, and one slider for each slice.
 import { S, ask, inSpace } from './state.js';
 import { showLegend } from './legend.js';
 import { nameOf } from './places.js';

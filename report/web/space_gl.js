@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// WebGL: wide lines between successive places, and pictures on planes. It knows no mission.
+// Draws wide lines and textured planes with WebGL; it knows no mission.
+// Lines join successive places, and planes carry pictures.
 const PLACE = 32;             // bytes of a place of a line: two vertices
 const UNKNOWN = -1e30;
 const CORNERS = [[0, -1], [0, 1], [1, -1], [1, -1], [0, 1], [1, 1]];   // of a line: end, side

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a box has besides its WebGL picture: the numbers on its axes, and where an agent stands over
-// its floor. Draws on a canvas, or on anything with the same methods (svg.js).
-import { ticksFor } from './space.js';
+// Paints what a box has besides its WebGL picture: numbers on its axes, and lines from agents to the floor.
+// It draws on a canvas, or on anything with the same methods (svg.js).
+import { axisName, ticksFor } from './box_axes.js';
 import { FONT } from './axes.js';
-import { nameOf } from './places.js';
-import { stretchOf } from './space_view.js';
 import { clamp } from './text.js';
 
 const MANY = 12;
@@ -25,9 +23,6 @@ function edgeFor(view, axis) {
   }
   return best;
 }
-
-// "x [m]"; of heights that are drawn longer than they are, "z [m] × 10".
-export const axisName = (size, axis) => `${nameOf(axis)} [m]${axis === 2 && stretchOf(size) > 1 ? ` × ${stretchOf(size)}` : ''}`;
 
 function paintAxis(g, run, view, axis, colours) {
   const { size } = view, edge = edgeFor(view, axis), labels = [];

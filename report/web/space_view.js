@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A box seen in perspective from a point around it. Same methods as View, where the map uses them.
+// Projects a box in perspective from a point around it.
+// It has the methods of View (view.js) that the map uses.
 import { clamp } from './text.js';
 
 const DISTANCE = 4;           // of the eye, in radii of the box's sphere

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A study as its page shows it: points, what is asked of them, and which are chosen. No drawing.
+// Holds a study as its page shows it: points, questions and choices, without any drawing.
 import { readable, seconds, share } from './text.js';
 
 const estimate = key => ({ value: point => point[key]?.[0], bounds: point => (point[key] ? [point[key][1], point[key][2]] : undefined) });

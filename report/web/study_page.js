@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of a study: brings data, figures, table and controls together.
+// Brings data, figures, table and controls together on the page of a study.
 import { themeColours } from './colours.js';
 import { S, curvesOf } from './study_state.js';
 import { QUANTITIES, Study, cellsOf, intervalText, sorted } from './study.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the study's page shows now. Whoever changes it asks for a frame.
+// Holds what the page of a study shows now; whoever changes it asks for a frame.
 export const S = {
   study: null,
   filters: new Map(),     // number of a dimension → its value

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The points as a table: sorted by a click on a head, chosen by a click on a row.
+// Shows the points as a table: a click on a head sorts it, a click on a row chooses.
 import { S } from './study_state.js';
 import { QUANTITIES, intervalText } from './study.js';
 import { $, element, grouped, put } from './text.js';

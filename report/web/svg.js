@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A canvas context that writes SVG: the methods that the figures use.
+// Writes SVG through the methods of a canvas context that the figures use.
 const two = v => String(Math.round(v * 100) / 100);
 const escaped = text => text.replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
 

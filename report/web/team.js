@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The agents: a table for eyes and screen readers, and a chip each for a large team.
+// Shows the agents: a table for eyes and screen readers, and a chip each for a large team.
 import { S, ask } from './state.js';
 import { stateOf } from './run.js';
 import { $, element, ofModes, put, readable, grouped } from './text.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers as text, and elements. Text from a record or a network only becomes textContent.
+// Writes numbers as text and makes elements; text from a record or network only becomes textContent.
 export const clamp = (v, low, high) => (v < low ? low : v > high ? high : v);
 export const $ = id => document.getElementById(id);
 

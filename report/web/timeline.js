@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time: play, step, slider, and the incidents above it.
+// Controls time: play, step, the slider, and the incidents above it.
 import { S, SPEEDS, ask } from './state.js';
 import { $, clamp, element } from './text.js';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracks on a grid of ticks, as report/track_grid.h codes them.
+// Reads tracks on a grid of ticks, as report/track_grid.h codes them.
 
 export function bytesOf(base64) {
   const text = atob(base64), bytes = new Uint8Array(text.length);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { clamp } from './text.js';
+// Maps the domain, or a part of it, onto the canvas.
 
 // Where the domain lies on the canvas: the whole, or a part of it.
 export class View {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the labels of a run's page mean, in plain words: their tooltips, and the list in the help.
+// Explains the labels of a run's page in plain words, for their tooltips and the list in the help.
 import { S } from './state.js';
 import { $, element } from './text.js';
 
