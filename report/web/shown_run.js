@@ -73,8 +73,15 @@ export const livePage = {
       run.newIncidents = false;
       buildStrip();
     }
-    if (performance.now() - (run.stripAt ?? 0) > 500) { run.stripAt = performance.now(); buildStrip(); showFacts(facts); }
-    if (run.tracks.length > 12 && !run.tailChosen) { run.tailChosen = true; set('tail', startTail(run)); }
+    if (performance.now() - (run.stripAt ?? 0) > 500) {
+      run.stripAt = performance.now();
+      buildStrip();
+      showFacts(facts);
+    }
+    if (run.tracks.length > 12 && !run.tailChosen) {
+      run.tailChosen = true;
+      set('tail', startTail(run));
+    }
     put($('seal'), facts.replay ? 'replay' : facts.authenticated ? '' : 'not authenticated');
     $('seal').title = facts.replay ? 'ergocast replay sends a record: nobody flies' : NO_KEY;
     $('seal').hidden = facts.authenticated && !facts.replay;
