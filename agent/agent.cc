@@ -22,7 +22,11 @@ constexpr auto kHelloGap = 10ms;
 /// This often in mission time too, so that a fast lockstep run is not left alone.
 constexpr double kStatusMissionPeriod_s = 1.0;
 /// How far ahead of us a teammate's coverage may be before it counts as forged.
+/// Limit (Time): lead of a contribution over the receiver, in mission time [s]. Beyond it: a
+/// contribution that is beyond both limits is refused with `range`.
 constexpr double kLead_s = 60;
+/// Limit (Time): lead of a contribution over the receiver [steps]. Beyond it: a contribution that
+/// is beyond both limits is refused with `range`.
 constexpr Tick kLeadTicks = 64;
 /// How long another process speaks under our id before we believe that it lives: the coordinator,
 /// who is not deceived by repeats of what a dead one said, would have admitted us by then.

@@ -15,6 +15,8 @@ using namespace std::chrono_literals;
 
 /// An answer waits a random share of this, so that one of many answers first.
 constexpr double kLongestDelay_s = 0.25;
+/// Limit (Team): row requests that an agent remembers from digests. Beyond it: the oldest are
+/// forgotten.
 constexpr std::size_t kMaxRequests = 8192;
 constexpr int kToleratedPeriods = 2;
 

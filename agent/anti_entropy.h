@@ -21,6 +21,8 @@ class AntiEntropy {
  public:
   /// Rows that are about to be repeated at any time, and rows that it takes up in a second, by the
   /// clock or of the mission, whatever digests say.
+  /// Limit (Team): rows of coverage that an agent repeats at a time, and in a second. Beyond it:
+  /// the next digest asks again.
   static constexpr std::size_t kMaxAnswers = 256;
 
   /// @param seed  of the delays before an answer

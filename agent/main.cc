@@ -116,20 +116,20 @@ int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) 
 int main(int argc, char** argv) {
   using namespace ergocast;
   CLI::App app(
-      "One agent: joins the team on the URL, is given the mission over the wire, and steers.",
+      "One agent: joins the team on the URL, receives the mission and commands its vehicle.",
       "ergocast-agent");
   NodeOptions node;
   std::string id = "auto", kind;
   add_node_options(app, node);
   app.add_option(
          "--id", id,
-         "Be this agent, 0 to " + std::to_string(kMaxAgents - 1) + "; auto: whichever is free")
+         "Number of the agent, 0 to " + std::to_string(kMaxAgents - 1) + "; auto: any free number")
       ->capture_default_str()
       ->check((CLI::Range(0, kMaxAgents - 1) | CLI::IsMember({"auto"})).description(""))
       ->type_name("N");
   app.add_option(
          "--kind", kind,
-         "Be of this kind of the scenario's agents { kind }; without: as planned for the id")
+         "Name of a kind in the scenario's agents { kind } (default: as planned for the number)")
       ->type_name("NAME");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   const AgentId requested_id = id == "auto" ? kUnassigned : std::stoi(id, nullptr, 0);

@@ -2,19 +2,27 @@
 // `ergocast check`: loads a scenario, prints its warnings, and then prints either one line about it
 // or its whole text with all defaults.
 #include <cstdio>
+#include <memory>
 
 #include "cli/commands.h"
+#include "cli/mission_options.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "core/separation.h"
 #include "core/vehicle.h"
 #include "runtime/node.h"
+#include "scenario/override_options.h"
 #include "team/plan.h"
 #include "text/shortest.h"
 
 namespace ergocast::cli {
-
 namespace {
+
+struct CheckOptions {
+  std::filesystem::path scenario;
+  Overrides overrides;
+  bool print = false;  ///< the scenario with all defaults
+};
 
 /// What bodies that follow late keep, in the scenario's numbers.
 void tell_margins(const Mission& mission) {
@@ -33,15 +41,13 @@ void tell_margins(const Mission& mission) {
       SeparationFilter(mission, 0).contact_m(0, 0), from_edges_m, from_walls.c_str());
 }
 
-}  // namespace
-
-int check(const std::filesystem::path& file, const Overrides& overrides, bool print) {
-  const auto scenario = load_or_complain(file, overrides);
+int check(const CheckOptions& options) {
+  const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
   for (const Problem& warning : scenario->warnings()) {
     print_message("warning: " + to_string(warning));
   }
-  if (print) {
+  if (options.print) {
     std::fputs(scenario->print().c_str(), stdout);
     return kExitDone;
   }
@@ -51,11 +57,22 @@ int check(const std::filesystem::path& file, const Overrides& overrides, bool pr
   const std::string along_z = mission.domain.planar() ? "" : " x " + std::to_string(basis.modes_z);
   const char* const kind = basis.free_domain ? " modes of the free domain" : " modes";
   std::printf("%s: no problems. %zu agents, %d x %d%s%s, %lld ticks of %g s, plan %s (%zu bytes)\n",
-              file.c_str(), mission.starts_m.size(), basis.modes_x, basis.modes_y, along_z.c_str(),
-              kind, static_cast<long long>(mission.timing.tick_count), mission.timing.dt_s,
-              plan_hash(plan).c_str(), plan.size());
+              options.scenario.c_str(), mission.starts_m.size(), basis.modes_x, basis.modes_y,
+              along_z.c_str(), kind, static_cast<long long>(mission.timing.tick_count),
+              mission.timing.dt_s, plan_hash(plan).c_str(), plan.size());
   tell_margins(mission);
   return kExitDone;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("check", "Name every problem of a scenario");
+  auto options = std::make_shared<CheckOptions>();
+  add_scenario_argument(*command, options->scenario);
+  command->add_flag("--print", options->print, "Show the scenario with all defaults filled in");
+  add_override_options(*command, options->overrides);
+  command->callback([&action, options] { action = [options] { return check(*options); }; });
 }
 
 }  // namespace ergocast::cli

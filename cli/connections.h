@@ -31,12 +31,25 @@ namespace ergocast::cli {
 /// idle streams close the page to everybody.)
 class Connections {
  public:
-  static constexpr int kMostHeads = 32, kMostAnswers = 32, kMostStreams = 16;
+  /// Limit (Page): unfinished requests to a page. Beyond it: the next gets the place of the oldest,
+  /// which gets 503.
+  static constexpr int kMostHeads = 32;
+  /// Limit (Page): answers of a page that are being sent. Beyond it: the next gets the place of the
+  /// one that has taken nothing for longest.
+  static constexpr int kMostAnswers = 32;
+  /// Limit (Page): browsers that watch one page. Beyond it: the next gets the place of one that is
+  /// stuck, or has watched longest.
+  static constexpr int kMostStreams = 16;
   /// The longest request line with all its headers. A longer one gets 431.
+  /// Limit (Page): length of the head of a request [bytes]. Beyond it: the answer is 431.
   static constexpr std::size_t kLongestHead = 16 << 10;
   /// For the whole head, however it trickles in; then 408.
+  /// Limit (Page): time in which the head of a request must arrive [s]. Beyond it: the answer is
+  /// 408.
   static constexpr auto kHeadPatience = std::chrono::seconds(5);
   /// For a client that takes nothing of what waits for it.
+  /// Limit (Page): time for which a browser may take nothing [s]. Beyond it: the connection ends,
+  /// and the browser connects again.
   static constexpr auto kTakePatience = std::chrono::seconds(5);
 
   using Text = std::shared_ptr<const std::string>;

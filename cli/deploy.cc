@@ -28,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A host takes a line of about twenty bytes.
+/// Limit (Commands): length of a file of hosts [bytes]. Beyond it: `deploy` refuses it.
 constexpr std::size_t kMaxHostsBytes = std::size_t{1} << 18;
 
 struct DeployOptions {
@@ -198,7 +199,7 @@ int deploy(const DeployOptions& options) {
 
 void add_deploy(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
-      "deploy", "Write what starts a mission on several hosts; nothing is started");
+      "deploy", "Write the files that start a mission on several hosts; starts nothing");
   const auto options = std::make_shared<DeployOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario file, or the name of a shipped one")
       ->required()

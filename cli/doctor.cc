@@ -91,23 +91,23 @@ int diagnose(const DoctorOptions& options) {
 void add_doctor(CLI::App& app, Action& action) {
   const auto options = std::make_shared<DoctorOptions>();
   auto* command = app.add_subcommand(
-      "doctor", "Look for what keeps hosts from hearing each other, and say what mends it");
+      "doctor", "Find what prevents communication between hosts, and the commands that repair it");
   add_url_option(*command, options->url);
   add_key_option(*command, options->authenticator);
   command
       ->add_option_function<int>(
           "--peer", [options](int seconds) { options->peer_seconds = seconds; },
-          "Started on several hosts at about the same time: who hears whom, loss and round trips "
+          "Started on several hosts at about the same time: which hosts receive each other, loss "
+          "and round trips "
           "(default 10 s)")
       ->expected(0, 1)
       ->default_str("10")
       ->check(CLI::Range(1, doctor::kMaxPeerSeconds))
       ->type_name("SECONDS");
-  command->add_flag("--json", options->json, "For programs");
+  command->add_flag("--json", options->json, "Print JSON");
   command->footer(
-      "Changes nothing on this host. Only with --peer does anything leave it: 20 datagrams a "
-      "second\n"
-      "to the URL's first port, unless somebody is there.\n"
+      "Changes nothing on this host, and sends nothing without --peer. With --peer it sends 20\n"
+      "datagrams a second to the URL's first port, unless a team uses that port.\n"
       "Exit codes: 0 nothing worse than notes; 1 warnings or problems; 2 bad arguments;\n"
       "3 LCM cannot be used on this host.");
   command->callback([options, &action] { action = [options] { return diagnose(*options); }; });

@@ -11,6 +11,7 @@
 namespace ergocast::cli {
 namespace {
 
+/// Limit (Studies): length of a list of faults [bytes]. Beyond it: the command refuses it.
 constexpr std::size_t kMostFaultBytes = std::size_t{1} << 20;
 
 std::string known_names() {

@@ -37,13 +37,12 @@ int make_keys(const std::string& name) {
 void add_keygen(CLI::App& app, Action& action) {
   const auto name = std::make_shared<std::string>("mission");
   auto* command = app.add_subcommand(
-      "keygen", "Make a mission key, without which nobody is believed on the team's network");
+      "keygen", "Make a mission key; a team with a key ignores messages from strangers");
   command->add_option("NAME", *name, "Writes NAME.key and NAME.coordinator.key, never over others")
       ->capture_default_str();
   command->footer(
-      "Whoever has NAME.key can speak for any agent; only NAME.coordinator.key signs what begins "
-      "and\n"
-      "ends missions. Nothing is encrypted.\n"
+      "A holder of NAME.key can send messages of any agent. Only NAME.coordinator.key signs the\n"
+      "messages that begin and end missions. Nothing is encrypted.\n"
       "Exit codes: 0 done; 2 a file is there already or cannot be written.");
   command->callback([name, &action] { action = [name] { return make_keys(*name); }; });
 }

@@ -19,6 +19,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Limit (Commands): restarts of a process under `ergocast run`. Beyond it: the mission goes on
+/// without it, or fails.
 constexpr int kMaxRestarts = 3;
 /// A program that the system cannot execute for so long counts as lost.
 constexpr auto kLaunchPatience = 30s;

@@ -85,9 +85,10 @@ int list(const ListOptions& options) {
 }  // namespace
 
 void add_list(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("list", "Name the live runs that this user started here");
+  auto* command =
+      app.add_subcommand("list", "List the running missions that you started on this host");
   auto options = std::make_shared<ListOptions>();
-  auto* json = command->add_flag("--json", options->json, "One JSON array");
+  auto* json = command->add_flag("--json", options->json, "Print one JSON array");
   add_run_id_option(*command, options->run);
   command
       ->add_option("--pid", options->process,

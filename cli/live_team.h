@@ -26,7 +26,10 @@ class LiveTeam {
  public:
   static constexpr Role kRole = Role::kMonitor;
   /// Longer histories lose their oldest lines and incidents.
-  static constexpr std::size_t kMostLines = 400, kMostIncidents = 500;
+  /// Limit (Page): log lines on the page. Beyond it: the oldest is removed.
+  static constexpr std::size_t kMostLines = 400;
+  /// Limit (Page): incidents on the page. Beyond it: the oldest is removed.
+  static constexpr std::size_t kMostIncidents = 500;
 
   /// @param since  when the listening began
   /// @param authenticated  whether what it receives was checked with the team's key

@@ -27,6 +27,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr auto kPageTurn = 50ms;  // between two looks at the page's clients, at most
 constexpr auto kLook = 250ms;
+/// Limit (Page): frames for one browser in a turn of 0.1 s. Beyond it: the rest follows in the next
+/// turns.
 constexpr int kFramesAtOnce = 8;
 /// Agents report the end before the coordinator tells its reason.
 constexpr auto kLastFrame = 1s;

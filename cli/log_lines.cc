@@ -10,6 +10,7 @@
 namespace ergocast::cli {
 namespace {
 
+/// Limit (Page): length of a log line on the page [bytes]. Beyond it: the rest is cut off.
 constexpr std::size_t kLongestLine = 400;
 
 /// Adds the whole lines of `text`; returns how many bytes they have.

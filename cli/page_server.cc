@@ -16,6 +16,8 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
+/// Limit (Page): length of the address that a browser asks for [bytes]. Beyond it: the answer is
+/// 414.
 constexpr std::size_t kLongest = 1024;  // of a request's target
 
 /// Takes as long for a wrong text as for the right one of its length.

@@ -134,20 +134,20 @@ class Pausing : public TeamCommand {
 };
 
 void add(CLI::App& app, Action& action, bool pause) {
-  auto* command = pause ? app.add_subcommand("pause", "Let a mission stand still for a while")
-                        : app.add_subcommand("resume", "Let a paused mission go on");
+  auto* command = pause ? app.add_subcommand("pause", "Pause a mission")
+                        : app.add_subcommand("resume", "Resume a paused mission");
   auto options = std::make_shared<BusOptions>();
   add_bus_options(*command, *options);
   describe_search(*command);
-  command->footer(std::string(pause
-                                  ? "From a tick that the coordinator names, vehicles brake, then "
-                                    "stand or loiter. No time of\n"
-                                    "the mission passes: what they cover does not count, and its "
-                                    "end is so much later.\n"
-                                  : "All go on at the same tick, which the coordinator names.\n") +
-                  "Exit codes: 0 it is so; 2 several runs are heard; 3 LCM cannot be used; 4 "
-                  "nobody is heard, or\n"
-                  "the team was not seen to obey.");
+  command->footer(
+      std::string(pause ? "From a tick that the coordinator names, vehicles brake, then "
+                          "stand or loiter. Mission\n"
+                          "time stops: coverage does not count, and the mission ends so "
+                          "much later.\n"
+                        : "All agents resume at the same tick, which the coordinator names.\n") +
+      "Exit codes: 0 the team has obeyed; 2 several runs are found; 3 LCM cannot be "
+      "used; 4 no\n"
+      "team is found, or it was not seen to obey.");
   command->callback([&action, options, command, pause] {
     action = [options, command, pause] {
       if (const auto code = find_run(*command, *options)) return *code;

@@ -31,7 +31,10 @@ constexpr const char* kReplayGroup = "239.255.76.68";
 constexpr auto kRepeatPeriod = 1s;
 /// Longer than agents are silent.
 constexpr auto kReplayLookAround = 3 * kAgentStatusPeriod / 2;
-constexpr double kSlowest = 0.01, kFastest = 1000;
+constexpr double kSlowest = 0.01;
+/// Limit (Commands): rate of a replay [mission seconds a second]. Beyond it: the command is
+/// refused.
+constexpr double kFastest = 1000;
 
 struct ReplayOptions {
   std::filesystem::path run_dir;
@@ -219,10 +222,10 @@ void add_replay(CLI::App& app, Action& action) {
       ->type_name("URL");
   add_key_option(*command, options->authenticator);
   command->footer(
-      "Only displays hear a replay: no agent joins it, and `ergocast stop` refuses it.\n"
-      "Exit codes: 0 done, or ended by Ctrl-C; 2 no record, or it is damaged, or somebody sends "
-      "on\n"
-      "the URL; 3 LCM cannot be used.");
+      "Only displays receive a replay: no agent joins it, and `ergocast stop` refuses it.\n"
+      "Exit codes: 0 done, or ended by Ctrl-C; 2 no record, or it is damaged, or the URL is "
+      "in\n"
+      "use; 3 LCM cannot be used.");
   command->callback([&action, options] { action = [options] { return replay(*options); }; });
 }
 

@@ -10,7 +10,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// Where each kind of message was sent (ARCHITECTURE.md#channels): the log does not say.
+/// Where each kind of message was sent (docs/reference/messages.md): the log does not say.
 std::vector<Bus> buses_of(const Message& message) {
   if (std::holds_alternative<WorldState>(message)) return {Bus::kWorld};
   if (std::holds_alternative<Command>(message)) return {Bus::kCommand};

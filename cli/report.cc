@@ -3,8 +3,10 @@
 #include "report/report.h"
 
 #include <cstdio>
+#include <memory>
 
 #include "cli/commands.h"
+#include "cli/mission_options.h"
 #include "cli/recorded_team.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
@@ -12,6 +14,7 @@
 #include "text/printable.h"
 
 namespace ergocast::cli {
+namespace {
 
 int report(const std::filesystem::path& run_dir) {
   const auto mission = recorded_mission_or_complain(run_dir);
@@ -26,6 +29,15 @@ int report(const std::filesystem::path& run_dir) {
   }
   std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());
   return kExitDone;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("report", "Make a run's report again");
+  auto run_dir = std::make_shared<std::filesystem::path>();
+  add_run_dir_argument(*command, *run_dir);
+  command->callback([&action, run_dir] { action = [run_dir] { return report(*run_dir); }; });
 }
 
 }  // namespace ergocast::cli

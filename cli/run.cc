@@ -7,11 +7,13 @@
 #include <chrono>
 #include <cstdio>
 #include <future>
+#include <memory>
 #include <span>
 #include <utility>
 
 #include "cli/commands.h"
 #include "cli/launcher.h"
+#include "cli/mission_options.h"
 #include "cli/mission_watch.h"
 #include "cli/page_process.h"
 #include "cli/progress.h"
@@ -34,6 +36,18 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
+
+struct RunOptions : MissionOptions {
+  std::optional<LcmUrl> url;  ///< nothing: this host only, on ports that the run reserves
+  MessageAuthenticator seal;
+  std::string key_file;  ///< the file of the key in `seal`; empty: none
+  std::int64_t event_log_mib = kEventLogMib;
+  bool event_log_zstd = false;
+  fs::path world;                            ///< empty: ergocast-sim
+  std::vector<std::string> world_arguments;  ///< of that program
+  bool watch = false;                        ///< serves a page
+  PageOptions page;
+};
 
 constexpr auto kNoteAfter = 500ms;
 constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
@@ -151,7 +165,7 @@ LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
 }
 
 /// The page of the mission, if it is wanted; an error if it cannot be served.
-std::variant<std::unique_ptr<PageProcess>, std::string> begin_page(const MissionOptions& options,
+std::variant<std::unique_ptr<PageProcess>, std::string> begin_page(const RunOptions& options,
                                                                    const Launcher::Setup& setup,
                                                                    ProgressDisplay& display) {
   if (!options.watch) return std::unique_ptr<PageProcess>();
@@ -191,7 +205,7 @@ std::variant<fs::path, std::string> world_program(const fs::path& wanted,
 /// What the processes are handed, from what this process has read or computed; an error if there is
 /// no memory for it.
 /// @pre options.seal can sign
-std::optional<std::string> seal_files(const MissionOptions& options, const Mission& mission,
+std::optional<std::string> seal_files(const RunOptions& options, const Mission& mission,
                                       Launcher::Setup& setup) {
   std::optional<std::string> problem;
   const auto keep = [&problem](const std::string& name, std::span<const std::byte> bytes,
@@ -211,8 +225,8 @@ std::optional<std::string> seal_files(const MissionOptions& options, const Missi
 }
 
 /// Runs the mission. LCM works and the run directory is ready.
-int run_mission(const MissionOptions& options, const Scenario& scenario,
-                const Launcher::Setup& setup, StopSignals& signals) {
+int run_mission(const RunOptions& options, const Scenario& scenario, const Launcher::Setup& setup,
+                StopSignals& signals) {
   const MessageAuthenticator& authenticator = options.authenticator;
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display,
@@ -254,7 +268,7 @@ int run_mission(const MissionOptions& options, const Scenario& scenario,
 }
 
 /// Reads the scenario; if that takes long, a line says why nothing happens.
-std::optional<Scenario> load_with_a_note(const MissionOptions& options) {
+std::optional<Scenario> load_with_a_note(const RunOptions& options) {
   auto loading =
       std::async(std::launch::async, load_or_complain, options.scenario, options.overrides);
   if (loading.wait_for(kNoteAfter) == std::future_status::timeout)
@@ -263,9 +277,7 @@ std::optional<Scenario> load_with_a_note(const MissionOptions& options) {
   return loading.get();
 }
 
-}  // namespace
-
-int run(const MissionOptions& options) {
+int run(const RunOptions& options) {
   const auto scenario = load_with_a_note(options);
   if (!scenario) return kExitBadInput;
   if (!options.authenticator.can_sign())
@@ -302,6 +314,50 @@ int run(const MissionOptions& options) {
   if (const auto problem = seal_files(options, scenario->mission(), setup))
     return report_error(kExitFailed, *problem);
   return run_mission(options, *scenario, setup, signals);
+}
+
+void add_run_url_option(CLI::App& command, RunOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--lcm-url",
+          [&options](const std::string& text) {
+            auto parsed = LcmUrl::parse(text);
+            if (const auto* problem = std::get_if<std::string>(&parsed)) {
+              throw CLI::ValidationError("--lcm-url", *problem);
+            }
+            options.url = std::get<LcmUrl>(parsed);
+          },
+          "Base URL of the three buses (default: this host, free ports of the run's own)")
+      ->type_name("URL");
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("run", "Run a mission as processes over LCM on this host");
+  auto options = std::make_shared<RunOptions>();
+  add_mission_options(*command, *options);
+  add_run_url_option(*command, *options);
+  add_key_option(*command, options->authenticator, &options->key_file);
+  add_event_log_options(*command, options->event_log_mib, options->event_log_zstd);
+  command
+      ->add_option(
+          "--world", options->world,
+          "Program that replaces ergocast-sim: a driver of robots or another simulation; a "
+          "name without '/' is in the folder of ergocast")
+      ->type_name("PROGRAM");
+  command
+      ->add_option("--world-arg", options->world_arguments,
+                   "Argument of that program, as in --world-arg=--robots --world-arg=quadrotors; "
+                   "once for each argument")
+      ->type_name("ARG")
+      ->allow_extra_args(false)
+      ->needs("--world");
+  command->add_flag("--watch", options->watch,
+                    "Show the mission in a browser, and afterwards its record, until Ctrl-C");
+  add_page_options(*command, options->page);
+  for (const char* option : {"--port", "--listen"}) command->get_option(option)->needs("--watch");
+  command->callback([&action, options] { action = [options] { return run(*options); }; });
 }
 
 }  // namespace ergocast::cli

@@ -27,6 +27,8 @@ struct RunPageOptions : BusOptions {
 
 /// As long as the mission runs, this process may allocate so much; then it ends, and the next one
 /// begins anew. What browsers and the network cause takes a small part of it.
+/// Limit (Page): memory of the page's process while a mission runs [bytes]. Beyond it: it ends and
+/// is started again.
 constexpr rlim_t kMostMemory = rlim_t{512} << 20;
 
 /// What RLIMIT_DATA counts, in bytes.

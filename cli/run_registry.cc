@@ -30,7 +30,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kSuffix = ".json";
 /// Paths are at most 4 KiB.
+/// Limit (Commands): length of the entry of a live run [bytes]. Beyond it: the run is not shown.
 constexpr std::size_t kMostEntryBytes = std::size_t{1} << 15;
+/// Limit (Commands): live runs of a user that a command reads. Beyond it: others are not shown.
 constexpr std::size_t kMostEntries = 1000;
 
 /// A file descriptor that is closed.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast spy`: LCM's own viewer, lcm-spy, with Ergocast's message types and pictures.
+// `ergocast spy`: LCM's own viewer, lcm-spy, with Ergocast's message types and a view
+// of the team.
 //
 // Debian 12's script of that name does not start with Java 17, so the viewer's class is started
 // here.
@@ -134,8 +135,7 @@ int spy(const SpyOptions& options) {
 }  // namespace
 
 void add_spy(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("spy", "Watch a mission's messages in LCM's viewer, with pictures");
+  auto* command = app.add_subcommand("spy", "Watch a mission's messages in LCM's viewer");
   const auto options = std::make_shared<SpyOptions>();
   add_url_option(*command, options->url);
   add_run_id_option(*command, options->run);

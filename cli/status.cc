@@ -170,16 +170,16 @@ int status(const StatusOptions& options) {
 }  // namespace
 
 void add_status(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("status", "Show how a team is that is flying; only listens");
+  auto* command = app.add_subcommand("status", "Show the state of a running team; sends nothing");
   auto options = std::make_shared<StatusOptions>();
   add_bus_options(*command, *options);
   describe_search(*command);
   command->add_flag("--watch", options->watch,
-                    "Again and again, until the mission's end or Ctrl-C");
-  command->add_flag("--json", options->json, "One JSON object; with --watch one each second");
+                    "Show it again and again, until the mission's end or Ctrl-C");
+  command->add_flag("--json", options->json, "Print one JSON object; with --watch one each second");
   command->footer(
-      "Exit codes: 0 all is well; 1 something is in trouble; 2 several runs are heard;\n"
-      "3 LCM cannot be used; 4 nobody is heard, or the mission watched has failed.");
+      "Exit codes: 0 all is well; 1 something is in trouble; 2 several runs are found;\n"
+      "3 LCM cannot be used; 4 no team is found, or the watched mission has failed.");
   command->callback([&action, options, command] {
     action = [options, command] {
       if (const auto code = find_run(*command, *options)) return *code;

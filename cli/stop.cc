@@ -243,7 +243,7 @@ int stop_found(const CLI::App& command, StopOptions options) {
 }  // namespace
 
 void add_stop(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("stop", "End a mission that is flying, in order or at once");
+  auto* command = app.add_subcommand("stop", "End a running mission, in order or at once");
   auto options = std::make_shared<StopOptions>();
   add_bus_options(*command, *options);
   describe_search(*command);
@@ -252,12 +252,13 @@ void add_stop(CLI::App& app, Action& action) {
       "Emergency: agents and world stand still within a tick, also without a coordinator");
   command->footer(
       "Without --now the coordinator ends the mission for all. With --now all live runs of this\n"
-      "user on this host stop, or with --lcm-url all runs that are heard on that URL; --run-id\n"
-      "chooses one. A team obeys once this host has heard it, because the command names the\n"
+      "user on this host stop, or with --lcm-url all runs on that URL; --run-id chooses one. A\n"
+      "team obeys after this host has received its messages, because the command names the\n"
       "mission's tick.\n"
-      "Exit codes: 0 the teams were seen to end, or to stand still; 2 several runs are heard; 3 "
+      "Exit codes: 0 the teams were seen to end, or to stand still; 2 several runs are found; 3 "
       "LCM\n"
-      "cannot be used; 4 nobody is heard, somebody goes on, or what the vehicles do is not known.");
+      "cannot be used; 4 no team is found, a team goes on, or the state of the vehicles is "
+      "unknown.");
   command->callback([&action, options, command] {
     action = [options, command] { return stop_found(*command, *options); };
   });

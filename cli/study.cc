@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "cli/progress_line.h"
 #include "cli/report_error.h"
 #include "cli/study_directory.h"
+#include "cli/study_options.h"
 #include "cli/study_points.h"
 #include "cli/study_results.h"
 #include "cli/workers.h"
@@ -148,8 +150,6 @@ void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
                   : "");
 }
 
-}  // namespace
-
 int study(const StudyOptions& options) {
   auto compiled = study_points(options);
   if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled)) {
@@ -186,6 +186,26 @@ int study(const StudyOptions& options) {
   }
   say_how_it_went(runner, directory, options);
   return runner.failed() > 0 ? kExitFailed : kExitDone;
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand(
+      "study", "Compare many simulated missions: scenarios, varied fields, seeds");
+  auto options = std::make_shared<StudyOptions>();
+  add_study_options(*command, *options);
+  auto merge_options = std::make_shared<MergeOptions>();
+  const CLI::App* merge = add_merge(*command, *merge_options);
+  command->callback([&action, options, merge, merge_options] {
+    if (merge->parsed()) {
+      action = [merge_options] { return merge_studies(*merge_options); };
+      return;
+    }
+    // CLI11 would take the word "merge" for a scenario that is required.
+    if (options->scenarios.empty()) throw CLI::RequiredError("SCENARIO");
+    action = [options] { return study(*options); };
+  });
 }
 
 }  // namespace ergocast::cli

@@ -28,8 +28,11 @@ constexpr const char* kIdentityFile = "study.json";
 constexpr const char* kTableFile = "study.csv";
 
 /// Far above any study: a row has some 400 bytes.
+/// Limit (Studies): length of `study.csv` [bytes]. Beyond it: `study` refuses the folder.
 constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
+/// Limit (Studies): length of `study.json` [bytes]. Beyond it: `study` refuses the folder.
 constexpr std::size_t kMostIdentityBytes = std::size_t{64} << 20;
+/// Limit (Studies): values in `study.json`. Beyond it: `study` refuses the folder.
 constexpr std::size_t kMostIdentityValues = 4'000'000;
 
 std::string problem_with(const fs::path& path, const std::string& problem) {

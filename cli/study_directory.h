@@ -16,6 +16,7 @@
 
 namespace ergocast::cli {
 
+/// Limit (Studies): missions of a study. Beyond it: `study` refuses the study.
 inline constexpr std::uint64_t kMostStudyRuns = 1000000;
 
 /// A part of a study. Its runs are numbered seed by seed, and within a seed by point.

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <map>
 
-#include "cli/commands.h"
 #include "cli/report_error.h"
 #include "cli/study_directory.h"
+#include "cli/study_options.h"
 #include "cli/study_results.h"
 #include "runtime/node.h"
 

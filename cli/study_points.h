@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "cli/commands.h"
 #include "cli/study_directory.h"
+#include "cli/study_options.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::cli {

@@ -15,6 +15,8 @@ namespace ergocast {
 /// on.
 class TeamHistory {
  public:
+  /// Limit (Page): rows of the curve for a browser that connects late. Beyond it: every second one
+  /// is left out.
   static constexpr std::size_t kMostRows = 4000;
 
   /// Takes a row if φ² is known and time has gone on.

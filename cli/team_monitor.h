@@ -21,6 +21,8 @@
 namespace ergocast::cli {
 
 /// The maximum number of runs on one URL.
+/// Limit (Commands): runs that `status`, `stop` and `pause` tell apart. Beyond it: others are not
+/// shown; `stop --now` stops them, too, and reports it.
 inline constexpr std::size_t kMostRuns = 16;
 
 /// Called with each message, its bus and its transmitter.

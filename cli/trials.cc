@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast simulate --seeds`: simulates each seed in a worker process, prints failures with the
 // command that repeats them.
+#include "cli/trials.h"
+
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -8,7 +10,6 @@
 #include <map>
 
 #include "cli/command_text.h"
-#include "cli/commands.h"
 #include "cli/fault_file.h"
 #include "cli/progress_line.h"
 #include "cli/report_error.h"

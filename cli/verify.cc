@@ -2,10 +2,12 @@
 // Simulates the mission of a record again and compares every file that the simulation determines:
 // first the sources of the plan, then the trajectory, then what follows from both.
 #include <cstdio>
+#include <memory>
 #include <sstream>
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/mission_options.h"
 #include "cli/record_comparison.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
@@ -207,8 +209,6 @@ int conclude_verification(const fs::path& run_dir, const TrajectoryComparison& c
   return kExitDone;
 }
 
-}  // namespace
-
 int verify(const fs::path& run_dir) {
   const auto mission = recorded_mission_or_complain(run_dir);
   if (!mission) return kExitBadInput;
@@ -252,6 +252,16 @@ int verify(const fs::path& run_dir) {
                                comparison, summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, files);
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("verify", "Simulate a recorded run again and compare the trajectories");
+  auto run_dir = std::make_shared<std::filesystem::path>();
+  add_run_dir_argument(*command, *run_dir);
+  command->callback([&action, run_dir] { action = [run_dir] { return verify(*run_dir); }; });
 }
 
 }  // namespace ergocast::cli

@@ -101,16 +101,17 @@ void add_page_options(CLI::App& app, PageOptions& options) {
 }
 
 void add_watch(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand(
-      "watch", "Show a record, or a team that flies, in a browser; only listens");
+  auto* command =
+      app.add_subcommand("watch", "Show a record or a running team in a browser; sends nothing");
   auto options = std::make_shared<WatchOptions>();
-  command->add_option("RUN_DIR", options->run_dir, "Run directory (default: a team that flies)")
+  command->add_option("RUN_DIR", options->run_dir, "Run directory (default: a running team)")
       ->type_name("DIR");
   add_bus_options(*command, *options);
   describe_search(*command);
   add_page_options(*command, options->page);
   command->footer(
-      "Serves until Ctrl-C. Exit codes: 0 done; 2 no record, or it is damaged; 3 LCM or the\n"
+      "Serves the page until Ctrl-C. Exit codes: 0 done; 2 no record, or it is damaged; 3 LCM or "
+      "the\n"
       "address cannot be used.");
   command->callback([&action, options, command] {
     action = [options, command] {

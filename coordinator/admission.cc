@@ -10,7 +10,10 @@
 namespace ergocast {
 namespace {
 
-constexpr std::size_t kMaxVersionMismatches = 64, kMaxUnknownKinds = 64;
+/// Limit (Team): computers with another version that a coordinator names. Beyond it: others are not
+/// named.
+constexpr std::size_t kMaxVersionMismatches = 64;
+constexpr std::size_t kMaxUnknownKinds = 64;
 
 }  // namespace
 

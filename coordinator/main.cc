@@ -158,7 +158,7 @@ Takeover takeover_of(const NodeOptions& node, bool resume) {
 
 int main(int argc, char** argv) {
   using namespace ergocast;
-  CLI::App app("Admits agents, hands out the mission, starts, watches and ends it. Never steers.",
+  CLI::App app("The coordinator: admits agents, sends them the mission, starts and ends it.",
                "ergocast-coordinator");
   NodeOptions node;
   std::string file;
@@ -173,13 +173,14 @@ int main(int argc, char** argv) {
   add_plan_option(app, plan)->excludes(scenario);
   Overrides overrides;
   add_override_options(app, overrides);
-  app.add_flag(
-      "--resume", resume,
-      "Take over the mission that the agents are flying, also from a living coordinator, or fail");
+  app.add_flag("--resume", resume,
+               "Take over the mission of the agents, also from a running coordinator, or fail");
   app.footer(
-      "Without --run-id and --resume: takes over this scenario's mission if it is under way "
-      "on the URL and nobody leads it, else starts a new one. Ends with code 4 if another "
-      "coordinator leads a mission there.");
+      "Without --run-id and --resume: takes over this scenario's mission if it runs on the URL "
+      "without a coordinator, else starts a new one.\n"
+      "Exit codes: 0 done; 2 bad scenario or arguments; 3 LCM cannot be used on this machine; 4 "
+      "the mission failed, another coordinator leads a mission on the URL, or there is none to "
+      "take over.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("coordinator", node.log_level);
   if (!node.authenticator.can_sign()) {

@@ -10,10 +10,16 @@ namespace ergocast {
 
 /// Sums in one block of a contribution that says doubles; the last block of a mission is padded
 /// with zeros.
+/// Limit (Messages): modes in a block of a contribution. Beyond it: the contribution takes several
+/// messages.
 inline constexpr int kBlockSize = 128;
 /// Sums in the longest block.
+/// Limit (Messages): modes in a block with `contribution_encoding: FIXED16`. Beyond it: the
+/// contribution takes several messages.
 inline constexpr int kMostBlockSize = 256;
 /// Sums in the first block where the other modes are sent less often; core/block_layout.h.
+/// Limit (Messages): modes in a first block with `high_mode_period_factor`. Beyond it: the others
+/// are sent more rarely.
 inline constexpr int kLowModes = 64;
 
 /// Some numbers, kBlockSize unless said. A copy shares them with its original until one of the two

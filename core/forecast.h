@@ -43,6 +43,8 @@ class Forecast {
  public:
   /// Places of a vehicle that are kept beyond those of the longest period. An honest silence is
   /// shorter, so a late block loses none.
+  /// Limit (Team): positions of a teammate that an agent keeps beyond those of a broadcast period
+  /// [steps]. Beyond it: the oldest is forgotten.
   static constexpr Tick kPlacesBeyondPeriod = 64;
 
   /// Consecutive ones in the order of the wire.

@@ -28,6 +28,7 @@ struct Hold {
 };
 
 /// So many in a mission at most: one travels in a part of MISSION.
+/// Limit (Team): pauses of a mission. Beyond it: `ergocast pause` ends with code 4.
 inline constexpr std::size_t kMaxHolds = 32;
 
 /// Whether each ends after it begins, none begins before the one before has ended, only the last

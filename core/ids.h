@@ -22,15 +22,23 @@ using RunId = std::uint64_t;
 /// Number of a control step. Tick n happens at mission time n·dt.
 using Tick = std::int64_t;
 
+/// Limit (Team): agents. Beyond it: no further agent is admitted.
 inline constexpr int kMaxAgents = 1024;
+/// Limit (Team): incarnations of one agent. Beyond it: no further incarnation is admitted; messages
+/// are refused with `limit`.
 inline constexpr int kMaxIncarnationsPerAgent = 16;
-/// Of missions with separation.lease_s: each echoes all others in one message.
+/// With separation.lease_s each agent echoes all others in one message.
+/// Limit (Scenario): agents of a mission with `separation { lease_s }`. Beyond it: the scenario is
+/// refused.
 inline constexpr int kMostLeasedAgents = 256;
-/// Incarnations of all agents together.
+/// Limit (Team): roster entries, former members included. Beyond it: no further agent is admitted.
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
+/// Limit (Scenario): modes along an axis. Beyond it: the scenario is refused.
 inline constexpr int kMaxModesPerAxis = 64;
-inline constexpr int kMaxModes = 4096;  ///< of all axes together
-/// Of a free domain: the time that they take to compute grows with the square.
+/// Limit (Scenario): modes of all axes together. Beyond it: the scenario is refused.
+inline constexpr int kMaxModes = 4096;
+/// Limit (Scenario): modes with `basis { free_domain: true }`, whose computation takes time with
+/// the square of their number. Beyond it: the scenario is refused.
 inline constexpr int kMostFreeModes = 400;
 inline constexpr int kMaxHostLength = 63;
 inline constexpr int kMaxVersionLength = 31;

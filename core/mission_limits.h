@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mission may say: the limits that scenario.proto's comments state. core/mission_fields.h
+// What a mission may say: the limits that docs/reference/scenario.md prints. core/mission_fields.h
 // gives each field its own. scenario/ holds what people write against them, and names what breaks
 // them; team/plan.cc holds what comes off the network.
 #pragma once
@@ -30,23 +30,33 @@ constexpr Limits above(double low, double high) { return {low, high, true}; }
 inline constexpr Limits kCoordinate_m = between(-1e13, 1e13);
 inline constexpr Limits kSize_m = between(1e-3, 1e7);
 /// How far from 0 the domain may begin, as a multiple of its size.
+/// Limit (Scenario): distance of the domain from 0 along an axis, `Domain.origin_x_m`,
+/// `Domain.origin_y_m`, `Domain.origin_z_m` [times its size]. Beyond it: the scenario is refused.
 inline constexpr double kMaxOriginPerSize = 1e5;
 inline constexpr Limits kModes = between(1, kMaxModesPerAxis);
 inline constexpr Limits kIntensity = between(0, 1e6);  ///< of any noise [m/√s]
 inline constexpr Limits kTimeout_s = above(0, 86400);
 inline constexpr Limits kDuration_s = above(0, 1e7);
+/// Limit (Time): steps of a mission. Beyond it: the scenario is refused.
 inline constexpr double kMaxTicks = 1e8;
 /// Between two broadcasts of any block.
 inline constexpr Limits kPeriod_ticks = between(1, 1000);
 /// In real time, the least wall time of a step.
+/// Limit (Time): length of a step by the wall clock in real time, at least [s]. Below it: the
+/// scenario is refused.
 inline constexpr double kMinWallStep_s = 1e-4;
 inline constexpr Limits kTeam = between(1, kMaxAgents);
 inline constexpr Limits kWaveNumber = between(0, 1000);  ///< |k|, a band's ends
 
 }  // namespace limits
 
+/// Limit (Scenario): length of a name, `Scenario.name` [characters]. Beyond it: the scenario is
+/// refused.
 inline constexpr int kMaxNameLength = 64;
+/// Limit (Scenario): length of the name of a kind, `Kind.name` [characters]. Beyond it: the
+/// scenario is refused.
 inline constexpr int kMaxKindNameLength = 31;
+/// Limit (Scenario): kinds of agents, `Agents.kind`. Beyond it: the scenario is refused.
 inline constexpr int kMaxKinds = 16;
 
 /// Whether `name` is 1 to kMaxNameLength letters, digits, '_', '-' or '.', the first of them not

@@ -175,7 +175,10 @@ double least_distance_m(std::span<const Eigen::Vector3d> places_m);
 /// wide as the start_distance_m() of two of its kind.
 double packing(const Mission& mission, std::size_t bodies);
 /// Above the first, a team blocks itself often, and above the second most of the time.
-inline constexpr double kTightPacking = 0.1, kHopelessPacking = 0.3;
+inline constexpr double kTightPacking = 0.1;
+/// Limit (Scenario): share of the area that agents take up, each as wide as the distance of two
+/// starts. Beyond it: the scenario is refused.
+inline constexpr double kHopelessPacking = 0.3;
 
 /// How far from body `other` the body `newcomer` must appear among bodies that move: none of them
 /// knows of it until it has executed the commands that it holds [m].
@@ -202,7 +205,10 @@ bool world_guards(const Mission& mission);
 bool uses_beacons(const Mission& mission);
 /// Of separation.lease_s, rounded down.
 Tick lease_ticks(const Mission& mission);
-inline constexpr Tick kLeastLeaseTicks = 5, kMostLeaseTicks = 10000;
+/// Limit (Scenario): `separation { lease_s }`, at least [steps]. Below it: the scenario is refused.
+inline constexpr Tick kLeastLeaseTicks = 5;
+/// Limit (Scenario): `separation { lease_s }`, at most [steps]. Beyond it: the scenario is refused.
+inline constexpr Tick kMostLeaseTicks = 10000;
 
 /// Whether the world, or who drives the whole team, has a reason to filter the commands of points
 /// again: it guards, or there are walls, which a held command does not know.

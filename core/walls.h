@@ -16,10 +16,15 @@
 namespace ergocast {
 
 /// Of all rings together: 16 KiB of the plan, and a query looks at each.
+/// Limit (Scenario): vertices of all walls and solid keep-outs. Beyond it: the scenario is refused.
 inline constexpr int kMaxWallVertices = 1024;
 /// How far outside the domain a corner may be, as a multiple of the longer side.
+/// Limit (Scenario): distance of a wall from the domain [times the domain's longer side]. Beyond
+/// it: the scenario is refused.
 inline constexpr double kFarthestWallPerSize = 10;
 /// The least area of a wall without its rooms, as a share of the square of the longer side.
+/// Limit (Scenario): area of a polygon, at least [times the square of the domain's longer side].
+/// Below it: the scenario is refused.
 inline constexpr double kLeastWallArea = 1e-8;
 
 /// Whether an odd number of rings contain `x_m`.

@@ -8,6 +8,8 @@
 
 namespace ergocast {
 
+/// Limit (Files of a scenario): length of a GeoJSON file or drawing [bytes]. Beyond it: the
+/// scenario is refused.
 inline constexpr std::size_t kMaxPolygonFileBytes = std::size_t{16} << 20;
 
 struct PolygonFileProblem {

@@ -13,8 +13,11 @@ namespace ergocast {
 namespace {
 
 /// Groups within groups; drawings have a few.
+/// Limit (Files of a scenario): levels of nested tags in a drawing. Beyond it: the scenario is
+/// refused.
 constexpr int kDeepest = 64;
 /// A tag of three bytes takes sixty in memory.
+/// Limit (Files of a scenario): tags in a drawing. Beyond it: the scenario is refused.
 constexpr std::size_t kMostTags = 1'000'000;
 
 struct BadElement {

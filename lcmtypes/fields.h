@@ -147,7 +147,7 @@ struct Fields<AgentStatus> {
     io.count(m.messages_received);
     io.count(m.contributions_relayed);
     io.count(m.missed_ticks);
-    for (auto& count : m.refused) io.count(count);
+    io.counts(m.refused);
     io.within(m.rate_offender, kUnassigned, kMaxAgents - 1);
     io.count(m.kernel_drops);
     io.quantity(m.loop_lag_s);

@@ -17,6 +17,8 @@
 namespace ergocast {
 
 /// Longest datagram we send: one Ethernet frame on any path with an MTU of 1280.
+/// Limit (Messages): length of a message [bytes]. Beyond it: the kernel drops it, or it is refused
+/// with `size`.
 inline constexpr std::size_t kMaxDatagramBytes = 1220;
 /// The offset of the tag in every message.
 inline constexpr std::size_t kTagOffset = 44;
@@ -43,6 +45,7 @@ class KnownSignatures {
 
   /// A later message may replace a tag with the same place; the replaced message is then checked
   /// again.
+  /// Limit (Messages): signatures that a process remembers. Beyond it: one is checked again.
   static constexpr std::size_t kCapacity = 4096;
 
  private:

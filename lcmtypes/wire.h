@@ -69,6 +69,9 @@ class Writer {
   /// Sums over `time_s` as averages of 16 bits each.
   void averages(const BlockSums& sums, double time_s, std::size_t count);
   void count(std::int64_t value) { number(value); }
+  void counts(std::span<const std::int64_t> values) {
+    for (const std::int64_t value : values) count(value);
+  }
   /// For counts that other processes can increase: a jump in a sender's numbering counts as losses.
   void capped_count(std::int64_t value) { number(std::min(value, kMostEver)); }
   void count_or_none(std::int64_t value) { number(value); }
@@ -141,6 +144,9 @@ class Reader {
   void sums(BlockSums& values, std::size_t count) { numbers(values.set_all(count)); }
   void averages(BlockSums& sums, double time_s, std::size_t count);
   void count(std::int64_t& value) { number(value), holds(value >= 0 && value <= kMostEver); }
+  void counts(std::span<std::int64_t> values) {
+    for (std::int64_t& value : values) count(value);
+  }
   void capped_count(std::int64_t& value) { count(value); }
   void count_or_none(std::int64_t& value) {
     number(value), holds(value >= -1 && value <= kMostEver);

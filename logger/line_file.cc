@@ -9,6 +9,8 @@
 namespace ergocast {
 namespace {
 
+/// Limit (Record): rows of a table that wait for a disk [bytes]. Beyond it: no row is written or
+/// acknowledged.
 constexpr std::size_t kWaitingBytes = 65536;
 
 }  // namespace

@@ -295,16 +295,16 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
 
 int main(int argc, char** argv) {
   using namespace ergocast;
-  CLI::App app("Records everything that is said into a run directory.", "ergocast-logger");
+  CLI::App app("The logger: records all messages in a run directory.", "ergocast-logger");
   NodeOptions node;
   std::filesystem::path folder;
   add_node_options(app, node);
   bool resume = false;
-  app.add_option("--out", folder, "Existing folder, without a record unless it is resumed")
+  app.add_option("--out", folder, "Existing folder, without a record unless --resume is given")
       ->required()
       ->check(CLI::ExistingDirectory);
   app.add_flag("--resume", resume,
-               "Go on with the record of this mission in the folder, if there is one");
+               "Continue the record of this mission in the folder, if there is one");
   std::vector<std::byte> plan;
   add_plan_option(app, plan);
   EventLogLimits limits;

@@ -25,6 +25,8 @@ constexpr std::size_t kGiveUpAfterStates = 16;
 constexpr std::size_t kDriverPatience = kGiveUpAfterStates / 2;
 /// Lockstep: states more than so many ticks ahead are forged, or no row can be written. In real
 /// time the record may be behind by any number of ticks.
+/// Limit (Record): states that wait to become rows. Beyond it: newer ones are dropped, which leaves
+/// a gap.
 constexpr Tick kLeadTicks = 1024;
 /// The maximum number of states that wait to become rows.
 constexpr std::size_t kMaxStates = static_cast<std::size_t>(kLeadTicks);

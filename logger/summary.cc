@@ -25,7 +25,11 @@ constexpr double kNotableShare = 0.01;
 /// Of a distance, what rounding may take.
 constexpr double kRounding = 1e-9;
 /// The limits of a summary that is read again: several times what the largest roster makes.
+/// Limit (Record): length of `summary.json` and `holds.json` [bytes]. Beyond it: `verify`, `report`
+/// and other commands refuse the record.
 constexpr std::size_t kMostSummaryBytes = std::size_t{16} << 20;
+/// Limit (Record): values in `summary.json` and `holds.json`. Beyond it: `verify`, `report` and
+/// other commands refuse the record.
 constexpr std::size_t kMostSummaryValues = 1'000'000;
 
 /// JSON has no infinity and no NaN.

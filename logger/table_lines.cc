@@ -12,6 +12,8 @@ namespace ergocast {
 namespace {
 
 /// Nine numbers have fewer bytes.
+/// Limit (Record): length of a row of a recorded table [bytes]. Beyond it: `verify`, `report` and
+/// other commands refuse the record.
 constexpr std::size_t kLongestRow = 4096;
 
 }  // namespace

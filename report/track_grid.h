@@ -18,6 +18,8 @@ namespace ergocast {
 /// are too many positions.
 class TrackGrid {
  public:
+  /// Limit (Page): positions of all agents on the page. Beyond it: every second row is removed, and
+  /// from then on only every second tick is added.
   static constexpr std::int64_t kMostPositions = 400'000;
 
   /// @param agents  as many as are planned; others may come

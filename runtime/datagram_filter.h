@@ -18,6 +18,8 @@ struct Repeated {
 };
 
 /// Of the repeats, a random one in so many datagrams passes.
+/// Limit (Network): further repeats for each one that the kernel passes. Beyond it: they are
+/// dropped and counted as `rate`.
 inline constexpr std::uint32_t kShareThatPasses = 32;
 
 /// From now on the kernel passes on to this socket only unfragmented LCM messages on the channels

@@ -21,10 +21,17 @@ namespace ergocast {
 inline constexpr std::uint32_t kEventSync = 0xEDA1DA01;
 inline constexpr std::size_t kEventHeaderBytes = 28;
 
+/// Limit (Record): length of the event log, unless `--event-log-limit` sets it [MiB]. Beyond it:
+/// the oldest segment is removed and counted.
 inline constexpr std::int64_t kEventLogMib = 4096;
 
+/// Limit (Record): length of a segment of the event log [bytes]. Beyond it: the next segment
+/// begins.
+inline constexpr std::int64_t kEventSegmentBytes = 64 << 20;
+
 struct EventLogLimits {
-  std::int64_t segment_bytes = 64 << 20;  ///< at this size a segment ends and the next begins
+  std::int64_t segment_bytes =
+      kEventSegmentBytes;  ///< at this size a segment ends and the next begins
   std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest are removed first
   bool compressed = false;  ///< finished segments become events-….lcm.zst, also those of before
 };

@@ -20,6 +20,7 @@ namespace ergocast {
 namespace {
 
 constexpr std::string_view kTitle = "ergocast key 1";
+/// Limit (Commands): length of a key file [bytes]. Beyond it: the command refuses it.
 constexpr std::size_t kLongestFile = 4096;
 
 /// Closes the file in its destructor.

@@ -18,6 +18,8 @@ inline constexpr int kLastBasePort = 26997;
 
 /// Asked for each receiving socket unless the URL says another size; the machine may allow less. It
 /// holds what arrives while a process waits for a processor, for example the beginning of a flood.
+/// Limit (Network): receive buffer that a process asks for on each bus; the kernel may grant less
+/// [bytes]. Beyond it: the newest message is lost and counted.
 inline constexpr int kReceiveBufferBytes = 4 << 20;
 
 /// `udpm://group:port[?ttl=N&recv_buf_size=N]`. Parsed and checked here, because LCM accepts

@@ -127,8 +127,8 @@ void add_key_option(CLI::App& app, MessageAuthenticator& authenticator, std::str
                authenticator = MessageAuthenticator(std::get<MissionKey>(key));
                if (file != nullptr) *file = name;
              },
-             "Mission key of the team, as `ergocast keygen` writes it; without one, anybody on the "
-             "network can speak for the team")
+             "Mission key of the team, as `ergocast keygen` writes it; without a key, any host on "
+             "the network can send messages of the team")
           ->envname(kKeyVariable)
           ->type_name("FILE");
   app.parse_complete_callback([option] { refuse_empty_key_variable(*option); });
@@ -154,7 +154,7 @@ void add_bus_options(CLI::App& app, BusOptions& options) {
 
 void add_node_options(CLI::App& app, NodeOptions& options) {
   add_bus_options(app, options);
-  app.add_option("--log-level", options.log_level, "What is logged: this and what is worse")
+  app.add_option("--log-level", options.log_level, "Least severity of the lines in the log")
       ->capture_default_str()
       ->envname("ERGOCAST_LOG_LEVEL")
       ->check(CLI::IsMember(kLogLevels))
@@ -174,6 +174,9 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->envname("ERGOCAST_MODES")
       ->type_name("FILE");
   app.set_version_flag("--version", version_text());
+  app.footer(
+      "Exit codes: 0 done; 2 bad arguments; 3 LCM cannot be used on this machine; 4 the mission\n"
+      "failed.");
 }
 
 CLI::Option* add_plan_option(CLI::App& app, std::vector<std::byte>& plan) {
@@ -191,7 +194,8 @@ CLI::Option* add_plan_option(CLI::App& app, std::vector<std::byte>& plan) {
 }
 
 void add_event_log_options(CLI::App& app, std::int64_t& mib, bool& compressed) {
-  app.add_option("--event-log-limit", mib, "Most that events-*.lcm may hold; the oldest go first")
+  app.add_option("--event-log-limit", mib,
+                 "Greatest size of all events-*.lcm together; the oldest are removed first")
       ->capture_default_str()
       ->check(CLI::Range(128, 1 << 30))  // at least two segments
       ->type_name("MIB");

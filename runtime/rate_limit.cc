@@ -12,6 +12,8 @@
 namespace ergocast {
 namespace {
 
+/// Limit (Network): messages of one sender [times what the mission asks for]. Beyond it: they are
+/// refused with `rate`.
 constexpr double kMargin = 8;
 /// How often the world repeats a tick at most; all agents then repeat their messages. In real time
 /// the world repeats none, but the network may.

@@ -25,6 +25,8 @@ namespace ergocast {
 class RepeatGuard {
  public:
   /// So many repeats in a window are a flood; a team repeats fewer.
+  /// Limit (Network): repeats of old messages on a bus in 0.1 s. Beyond it: the kernel passes only
+  /// a share of them and drops the others.
   static constexpr int kMostRepeats = 200;
   static constexpr std::chrono::nanoseconds kWindow = std::chrono::milliseconds(100);
   /// A flood ends after so many windows with few repeats together: a delayed process receives

@@ -16,6 +16,10 @@ using namespace std::chrono_literals;
 
 namespace {
 
+/// Limit (Time): time between two warnings of one kind in a log, at least [s]. Below it: the
+/// warning is left out.
+constexpr auto kLogPeriod = 10s;
+
 /// Explains refusals caused by keys, with the likely fault in the hosts of a team.
 std::string key_advice(const RefusalCounts& refused, bool keyed) {
   const auto some = [&refused](Refusal kind) {
@@ -54,7 +58,7 @@ bool TrafficWatch::look(Instant now, std::int64_t late_commands) {
   warn_of_late_commands(late_commands, now);
   const RefusalCounts& refused = transport_.refused();
   if (now < next_log_ || (refused == logged_ && kernel_drops_ == logged_drops_)) return true;
-  next_log_ = now + 10s;
+  next_log_ = now + kLogPeriod;
   std::string reasons;
   for (std::size_t i = 0; i < refused.size(); ++i) {
     if (refused[i] == 0) continue;
@@ -94,7 +98,7 @@ bool TrafficWatch::look(Instant now, std::int64_t late_commands) {
 void TrafficWatch::warn_of_late_commands(std::int64_t count, Instant now) {
   if (count == warned_late_ || now < next_late_warning_) return;
   warned_late_ = count;
-  next_late_warning_ = now + 10s;
+  next_late_warning_ = now + kLogPeriod;
   spdlog::warn(
       "late={}: a command to stop, pause or resume names a tick that has passed long ago, and is "
       "ignored: it was delayed, or somebody repeats a recording of it; an operator who still wants "
@@ -106,7 +110,7 @@ void TrafficWatch::warn_of_unknown_format(Instant now) {
   const Transport::UnknownFormat& unknown = transport_.unknown_format();
   if (unknown.count == warned_unknown_ || now < next_warning_) return;
   warned_unknown_ = unknown.count;
-  next_warning_ = now + 10s;
+  next_warning_ = now + kLogPeriod;
   spdlog::warn(
       "{} arrives in a format that version {} does not know: another version of Ergocast is "
       "on this URL",

@@ -23,6 +23,8 @@
 namespace ergocast {
 namespace {
 
+/// Limit (Network): datagrams of a bus that a process reads in a turn. Beyond it: the next turn
+/// reads on.
 constexpr std::size_t kMaxDatagramsPerTurn = 256;
 /// So many times the expected datagrams are no statuses and digests of the team: somebody floods a
 /// bus, and for so long nothing gathers.

@@ -16,9 +16,13 @@
 namespace ergocast {
 namespace {
 
+/// Limit (Scenario): share of the target's weight in the domain, at least. Below it: the scenario
+/// is refused.
 constexpr double kMinMassInside = 1e-6;
 /// The maximum error of any μ_mn. Only Gaussians with correlation or beside keep-outs come near it,
 /// if almost all of them is cut off.
+/// Limit (Scenario): error of a coefficient μ of the target; only Gaussians that are correlated or
+/// beside keep-outs can have more. Beyond it: the scenario is refused.
 constexpr double kMaxTargetError = 1e-7;
 
 /// As many cells along the longer side of the domain as a person can distinguish in a picture, and

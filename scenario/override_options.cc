@@ -5,7 +5,7 @@
 namespace ergocast {
 
 void add_override_options(CLI::App& command, Overrides& overrides) {
-  command.add_option("--seed", overrides.seed, "Other random numbers")
+  command.add_option("--seed", overrides.seed, "Seed of the random numbers")
       ->check([](const std::string& text) {
         return text.starts_with('-') ? "--seed must not be negative" : std::string();
       });
@@ -14,7 +14,7 @@ void add_override_options(CLI::App& command, Overrides& overrides) {
                      "Team size: listed starts are cut, or random ones added");
   auto* lockstep = command.add_flag_callback(
       "--lockstep", [&overrides] { overrides.pace = Pace::kLockstep; },
-      "As fast as the machine goes, bit for bit repeatable");
+      "As fast as the machine allows; runs repeat bit for bit");
   command
       .add_option_function<double>(
           "--realtime",
@@ -40,7 +40,7 @@ void add_set_option(CLI::App& command, std::vector<FieldValue>& fields) {
               fields.push_back({std::move(path), std::move(value), "--set " + text});
             }
           },
-          "A field of the scenario and its value, such as law.epsilon=0.1; again for another field")
+          "A field of the scenario and its value, such as law.epsilon=0.1; once for each field")
       ->allow_extra_args(false)
       ->type_name("FIELD=VALUE");
 }

@@ -45,6 +45,7 @@ struct Overrides {
   std::vector<FieldValue> fields{};
 };
 
+/// Limit (Scenario): length of a scenario file [bytes]. Beyond it: the command refuses it.
 inline constexpr std::size_t kMaxScenarioBytes = std::size_t{1} << 20;
 
 /// A scenario without problems, all defaults filled in, random starts drawn.

@@ -29,6 +29,8 @@ using limits::kMaxTicks;
 using limits::kMinWallStep_s;
 using limits::kPeriod_ticks;
 
+/// Limit (Scenario): length of a description, `Scenario.description` [bytes]. Beyond it: the
+/// scenario is refused.
 constexpr std::size_t kMaxDescriptionBytes = 2000;
 
 class Validator {

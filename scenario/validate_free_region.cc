@@ -11,6 +11,8 @@
 namespace ergocast {
 namespace {
 
+/// Limit (Scenario): share of the domain that walls leave free, at least. Below it: the scenario is
+/// refused.
 constexpr double kLeastFreeShare = 0.05;
 
 std::string percent(double share) { return shortest(rounded_up(100 * share)) + " %"; }

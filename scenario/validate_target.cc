@@ -13,15 +13,28 @@
 namespace ergocast {
 namespace {
 
+/// Limit (Scenario): standard deviations, `Gaussian.sigma_m`, `Gaussian.sigma_z_m` [times the
+/// domain's longest side]. Beyond it: the scenario is refused.
 constexpr Range kSigmaPerSide = limits::between(1e-4, 1e4);
+/// Limit (Scenario): Gaussians, `Target.gaussians`. Beyond it: the scenario is refused.
 constexpr int kMaxGaussians = 64;
+/// Limit (Scenario): maps, `Target.maps`, and grids, `Target.voxels`. Beyond it: the scenario is
+/// refused.
 constexpr int kMaxMaps = 16;
+/// Limit (Scenario): regions, `Target.regions`. Beyond it: the scenario is refused.
 constexpr int kMaxRegions = 64;
+/// Limit (Scenario): keep-outs, `Target.keep_outs`. Beyond it: the scenario is refused.
 constexpr int kMaxKeepOuts = 64;
 /// Above this the ridge is too narrow for the quadrature of μ.
+/// Limit (Scenario): size of a covariance, `Covariance.xy_m2`, `Covariance.xz_m2`,
+/// `Covariance.yz_m2` [times the root of the product of both variances]. Beyond it: the scenario is
+/// refused.
 constexpr double kMaxCorrelation = 0.99;
 /// Of a Gaussian in a box with deviations of 1, for the same reason.
+/// Limit (Scenario): eigenvalues of a covariance with deviations of 1, at least. Below it: the
+/// scenario is refused.
 constexpr double kLeastEigenvalue = 1 - kMaxCorrelation;
+/// Limit (Scenario): layers of a map, `Map.layers`. Beyond it: the scenario is refused.
 constexpr int kMaxLayers = 256;
 constexpr double kLeastHeightPerDomain = 1e-8;
 

@@ -8,6 +8,7 @@
 namespace ergocast {
 
 /// All polygons together.
+/// Limit (Scenario): vertices of all regions and keep-outs. Beyond it: the scenario is refused.
 inline constexpr int kMaxVertices = 4096;
 /// The least area of a polygon, by the domain's longer side [m].
 constexpr double least_area_m2(double longer_side_m) {

@@ -6,8 +6,9 @@
 
 int main(int argc, char** argv) {
   using namespace ergocast;
-  CLI::App app("The simulated world: integrates commands, reflects at the edge, keeps the tick.",
-               "ergocast-sim");
+  CLI::App app(
+      "The simulated world: integrates commands, reflects vehicles at the edges, counts the ticks.",
+      "ergocast-sim");
   NodeOptions node;
   add_node_options(app, node);
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;

@@ -15,8 +15,12 @@
 
 namespace ergocast {
 
-inline constexpr int kMaxMapSide = 8192;      ///< columns, and rows
-inline constexpr double kMaxMapValue = 1e30;  ///< so that no sum of values overflows
+/// Limit (Files of a scenario): columns and rows of a map, and cells of a grid along an axis.
+/// Beyond it: the scenario is refused.
+inline constexpr int kMaxMapSide = 8192;
+/// No sum of such values overflows.
+/// Limit (Files of a scenario): value of a map. Beyond it: the scenario is refused.
+inline constexpr double kMaxMapValue = 1e30;
 
 /// Why a map cannot be used.
 struct MapProblem {

@@ -11,6 +11,7 @@ namespace {
 constexpr int kReadOnly = 0, kText = 2, kLastNumber = 11;  // NC_NOWRITE, NC_CHAR, NC_UINT64
 constexpr std::size_t kLongestName = 256;                  // NC_MAX_NAME
 constexpr std::size_t kLongestText = 1000;
+/// Limit (Files of a scenario): chunk of a NetCDF file [bytes]. Beyond it: the scenario is refused.
 constexpr std::size_t kMostChunkBytes = std::size_t{64} << 20;
 
 using Name = std::array<char, kLongestName + 1>;

@@ -18,6 +18,7 @@
 namespace ergocast {
 
 /// More cells take minutes to read.
+/// Limit (Files of a scenario): cells of a NetCDF grid. Beyond it: the scenario is refused.
 inline constexpr std::size_t kMostVoxels = std::size_t{1} << 28;
 
 /// What to read of a file.

@@ -20,6 +20,7 @@
 namespace ergocast {
 
 /// A sender is silent after so many heartbeats without a sign of life.
+/// Limit (Time): heartbeats that a process may miss. Beyond it: the process counts as silent.
 inline constexpr int kMissedHeartbeats = 6;
 
 /// How a listening process detects that the coordinator is alive.
@@ -71,6 +72,8 @@ class Liveness {
   std::int64_t lost(const Author& author, Bus bus) const;
 
   /// Twice the size of a roster: coordinators, worlds and loggers may have several incarnations.
+  /// Limit (Team): incarnations of any process that a process tells apart. Beyond it: messages of
+  /// others count as silence.
   static constexpr std::size_t kMaxIncarnations = 2 * kMaxRosterEntries;
 
  private:

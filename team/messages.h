@@ -18,10 +18,16 @@
 
 namespace ergocast {
 
+/// Limit (Messages): vehicles in a part of WORLD_STATE. Beyond it: the state has several parts.
 inline constexpr int kMaxVehiclesPerState = 16;
+/// Limit (Messages): roster entries in a part of MISSION. Beyond it: the mission has several parts.
 inline constexpr int kMaxRosterEntriesPerMessage = 8;
+/// Limit (Messages): entries of a digest. Beyond it: entries take turns.
 inline constexpr int kMaxDigestEntriesPerMessage = 40;
+/// Limit (Messages): bytes of the plan in a part of MISSION. Beyond it: the mission has several
+/// parts.
 inline constexpr int kMaxPlanBytesPerMessage = 512;
+/// Limit (Messages): parts of a plan. Beyond it: the scenario is refused.
 inline constexpr int kMaxPlanParts = 512;
 inline constexpr std::size_t kMaxPlanBytes = std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage;
 inline constexpr int kMaxHoldsPerMessage = 1;
@@ -215,6 +221,8 @@ struct RecordAck {
 };
 /// Lockstep: how many ticks the world may be ahead of the logger's acknowledgement, unless it has
 /// given that logger up.
+/// Limit (Time): lead of the world over the record in lockstep [steps]. Beyond it: the world waits
+/// for the logger.
 inline constexpr Tick kRecordWindowTicks = 64;
 
 using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,

@@ -13,6 +13,8 @@ namespace ergocast {
 namespace {
 
 /// The maximum number of incomplete revisions.
+/// Limit (Team): unfinished revisions of the mission that a process keeps. Beyond it: the oldest is
+/// forgotten.
 constexpr std::size_t kMostRevisions = 4;
 
 /// Mixes `value` into `hash`: a multiplication spreads each bit upwards, a shift downwards.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reads every #include of the tree and compares it with the one table of allowed dependencies.
+// Reads every import of the pages' modules and finds circles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -108,6 +110,8 @@ const std::vector<Rule> kRules = {
     {"python",
      {"text", "core", "target", "scenario", "runtime", "logger", "report", "lab", "cli", "python"},
      {kPython, kFiles}},
+    // What the generated reference says of fields and messages.
+    {"docs/reference", {"text", "core", "team", "lcmtypes", "scenario"}, {kProtobuf, kFiles}},
     // Somebody else's program: it sees the installed headers alone.
     {"examples/embed", {}, {kInstalled, kSystem}},
     // The example to copy: a participant with its main.
@@ -265,14 +269,70 @@ std::vector<std::string> code_of_the_tree() {
   return paths;
 }
 
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// Modules of JavaScript in one folder, each with those that it imports.
+using Modules = std::map<std::string, std::vector<std::string>>;
+
+std::vector<std::string> imports_in(const std::string& text) {
+  std::vector<std::string> names;
+  for (const std::string_view before : {"from './", "import './", "import('./"}) {
+    for (auto at = text.find(before); at != text.npos; at = text.find(before, at + 1)) {
+      const std::size_t name = at + before.size();
+      names.push_back(text.substr(name, text.find('\'', name) - name));
+    }
+  }
+  return names;
+}
+
+Modules modules_of_the_pages() {
+  Modules modules;
+  const std::filesystem::path folder(ERGOCAST_SOURCE_DIR "/report/web");
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.path().extension() != ".js") continue;
+    modules[file.path().filename().string()] = imports_in(text_of(file.path()));
+  }
+  return modules;
+}
+
+/// "a.js > b.js > a.js" if modules import each other so; empty if none do.
+std::string circle_in(Modules modules) {
+  const auto next_of = [&modules](const std::vector<std::string>& imports) {
+    return std::find_if(imports.begin(), imports.end(),
+                        [&](const std::string& name) { return modules.contains(name); });
+  };
+  // A module that imports none of the others is in no circle.
+  while (std::erase_if(modules, [&](const auto& module) {
+           return next_of(module.second) == module.second.end();
+         }) > 0) {
+  }
+  if (modules.empty()) return "";
+  std::vector<std::string> path{modules.begin()->first};
+  while (std::count(path.begin(), path.end(), path.back()) == 1)
+    path.push_back(*next_of(modules.at(path.back())));
+  std::string circle;
+  for (auto name = std::find(path.begin(), path.end(), path.back()); name != path.end(); ++name)
+    circle += (circle.empty() ? "" : " > ") + *name;
+  return circle;
+}
+
 TEST(Layering, NoFileIncludesWhatItsLayerMayNotKnow) {
   for (const std::string& path : code_of_the_tree()) {
-    std::ifstream file(std::filesystem::path(ERGOCAST_SOURCE_DIR) / path);
-    std::stringstream text;
-    text << file.rdbuf();
-    ASSERT_FALSE(text.str().empty()) << path;
-    for (const std::string& violation : violations_in(path, text.str())) ADD_FAILURE() << violation;
+    const std::string text = text_of(std::filesystem::path(ERGOCAST_SOURCE_DIR) / path);
+    ASSERT_FALSE(text.empty()) << path;
+    for (const std::string& violation : violations_in(path, text)) ADD_FAILURE() << violation;
   }
+}
+
+TEST(Layering, ModulesOfThePagesImportEachOtherInNoCircle) {
+  const Modules modules = modules_of_the_pages();
+  EXPECT_GE(modules.size(), 40U);
+  EXPECT_EQ(circle_in(modules), "");
 }
 
 TEST(Layering, EveryRuleIsAboutSomethingThatIsThere) {
@@ -297,6 +357,19 @@ TEST(Sources, BeginWithTheirLicenceAndASentenceOfTheirOwn) {
   std::sort(sentences.begin(), sentences.end());
   const auto twice = std::adjacent_find(sentences.begin(), sentences.end());
   EXPECT_EQ(twice, sentences.end()) << *twice;
+}
+
+TEST(Sources, ModulesBeginWithTheirLicenceAndASentenceOfTheirOwn) {
+  std::set<std::string> sentences;
+  for (const auto& [name, imports] : modules_of_the_pages()) {
+    std::ifstream file(std::filesystem::path(ERGOCAST_SOURCE_DIR "/report/web") / name);
+    std::string licence, sentence;
+    std::getline(file, licence) && std::getline(file, sentence);
+    EXPECT_EQ(licence, "// SPDX-License-Identifier: BSD-3-Clause") << name;
+    EXPECT_TRUE(sentence.starts_with("// ") && sentence.ends_with('.'))
+        << name << ": say on this line what the module is";
+    EXPECT_TRUE(sentences.insert(sentence).second) << name << ": " << sentence;
+  }
 }
 
 /// The checker's report on one line in a file.
@@ -387,6 +460,21 @@ TEST(LayeringChecker, LetsThroughWhatTheArchitectureAllows) {
       {"agent/agent.cc", "  // the coordinator/coordinator.h side of it"},
   };
   for (const auto& [path, line] : honest) EXPECT_EQ(problem_of(path, line), "");
+}
+
+TEST(LayeringChecker, NamesTheModulesOfACircle) {
+  const Modules honest = {{"a.js", {"b.js", "c.js"}}, {"b.js", {"c.js"}}, {"c.js", {}}};
+  EXPECT_EQ(circle_in(honest), "");
+  for (const std::string line :
+       {"import { far } from './a.js';", "import {\n  far,\n} from './a.js';", "import './a.js';",
+        "export { far } from './a.js';", "await import('./a.js');"}) {
+    Modules planted = honest;
+    planted["c.js"] = imports_in("// first\n" + line + "\nlet x = 'a.js';\n");
+    EXPECT_EQ(circle_in(planted), "a.js > b.js > c.js > a.js") << line;
+  }
+  EXPECT_EQ(circle_in({{"a.js", {"a.js"}}}), "a.js > a.js");
+  EXPECT_EQ(circle_in({{"a.js", {"b.js"}}, {"b.js", {"c.js"}}, {"c.js", {"b.js"}}}),
+            "b.js > c.js > b.js");
 }
 
 }  // namespace

@@ -187,7 +187,6 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/plan_test.cc
     scenario/polygon_flaw_test.cc
     scenario/problems_test.cc
-    scenario/proto_comments_test.cc
     scenario/scenario_test.cc
     scenario/space_test.cc
     scenario/svg_target_test.cc
@@ -200,12 +199,11 @@ ergocast_test(NAME studies_tests LABELS unit
     lab/studies/confidence_test.cc
     lab/studies/encoding_test.cc
     lab/studies/linearised_test.cc
-    lab/studies/plans_test.cc
     lab/studies/rare_modes_test.cc
     lab/studies/study_run_test.cc
     lab/studies/study_table_test.cc
     lab/studies/table_test.cc
-  LIBS ergocast_studies ergocast_theorems ergocast_plans ergocast_scenario_messages PNG::PNG)
+  LIBS ergocast_studies ergocast_theorems ergocast_scenario_messages PNG::PNG)
 
 ergocast_test(NAME example_tests LABELS unit
   SOURCES examples/driver_test.cc

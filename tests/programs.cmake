@@ -173,6 +173,11 @@ function(ergocast_nightly_script_test NAME LABEL SCRIPT)
 endfunction()
 ergocast_script_test(deployed_over_ssh hosts hosts/deploy_ssh_test.sh
   ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto)
+# The pages of docs/reference/ are what the code prints now.
+add_test(NAME reference_is_current
+  COMMAND ${CMAKE_SOURCE_DIR}/docs/reference/make --check ${CMAKE_BINARY_DIR})
+set_tests_properties(reference_is_current PROPERTIES LABELS process)
+add_dependencies(all_process reference-facts)
 add_test(NAME mcap_reference_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/export/mcap_test.sh
   $<TARGET_FILE:ergocast> ${CMAKE_BINARY_DIR}/mcap_reader)
 set_tests_properties(mcap_reference_reader PROPERTIES LABELS process TIMEOUT 300)
@@ -224,3 +229,4 @@ if(TARGET ergocast_python)
   add_subdirectory(python)
 endif()
 add_subdirectory(spy)
+add_subdirectory(documents)

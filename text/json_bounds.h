@@ -23,6 +23,8 @@ struct JsonTooLarge : std::runtime_error {
 /// Counts what nlohmann::json::sax_parse() tells of a text, and stops it above a limit.
 class JsonBounds {
  public:
+  /// Limit (Files of a scenario): levels of nested values in any JSON file. Beyond it: the file is
+  /// refused.
   static constexpr int kDeepest = 64;
 
   explicit JsonBounds(std::size_t most_values) : most_values_(most_values) {}

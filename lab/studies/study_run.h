@@ -16,10 +16,13 @@
 
 namespace ergocast::studies {
 
+/// Limit (Studies): columns of φ² over time in `study.csv`, ten in a decade from 1 s on. Beyond it:
+/// later times have none.
+inline constexpr std::size_t kLadderTimes = 71;
 /// Ten a decade (Renard's R10: 1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8, 10 …) up to 10⁷.
-constexpr std::array<double, 71> times_to_note_s() {
+constexpr std::array<double, kLadderTimes> times_to_note_s() {
   constexpr double kDecade[] = {1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8};
-  std::array<double, 71> times{};
+  std::array<double, kLadderTimes> times{};
   double power = 1;
   for (std::size_t i = 0; i < times.size(); ++i) {
     times[i] = kDecade[i % 10] * power;
@@ -29,7 +32,7 @@ constexpr std::array<double, 71> times_to_note_s() {
 }
 
 /// Times at which φ² is noted, as far as a mission goes.
-inline constexpr std::array<double, 71> kLadder_s = times_to_note_s();
+inline constexpr std::array<double, kLadderTimes> kLadder_s = times_to_note_s();
 
 /// Closer to an edge than this share of the domain's shorter side counts as at the edge.
 inline constexpr double kAtEdgeShare = 1e-3;

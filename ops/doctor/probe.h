@@ -18,6 +18,8 @@ namespace ergocast::doctor {
 inline constexpr int kProbesPerSecond = 20;
 inline constexpr int kMaxPeerSeconds = 600;
 inline constexpr std::uint32_t kMaxProbes = kProbesPerSecond * kMaxPeerSeconds;
+/// Limit (Commands): tests of other hosts that `ergocast doctor --peer` tells apart. Beyond it:
+/// others are not shown.
 inline constexpr std::size_t kMaxPeers = 24;
 /// Every fourth probe is as long as our longest message with LCM's header: 1280 bytes with IP and
 /// UDP.

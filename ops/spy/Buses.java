@@ -15,8 +15,7 @@ final class Buses {
   static final String BASE_URL = "ergocast.url";
 
   private static final Pattern URL = Pattern.compile("(udpm://[0-9.]+:)([0-9]{1,5})(.*)");
-  private static final String CHANNELS =
-      "(ERGOCAST|REPLAYED)_(MISSION|WORLD_STATE|TEAM_STATUS|AGENT_STATUS_[0-9]+|CONTRIBUTION_[0-9]+)";
+  private static final String CHANNELS = "(ERGOCAST|REPLAYED)_(MISSION|WORLD_STATE|TEAM_STATUS)";
   private static final Map<String, Team> TEAMS = new HashMap<>();
 
   private Buses() {}
@@ -27,9 +26,8 @@ final class Buses {
     if (base != null) return team(base);
     String spied = System.getenv("LCM_DEFAULT_URL");
     if (spied == null || spied.isEmpty()) spied = "udpm://239.255.76.67:7667?ttl=0";
-    // WORLD_STATE is sent one port above the base.
-    return team(
-        above(spied, channel.fingerprint == ergocast.world_state_t.LCM_FINGERPRINT ? -1 : 0));
+    boolean onWorldBus = channel.fingerprint == ergocast.world_state_t.LCM_FINGERPRINT;
+    return team(above(spied, onWorldBus ? -1 : 0)); // one port above the base
   }
 
   /** Opens the swarm and the world bus, unless they are open. */
@@ -43,21 +41,20 @@ final class Buses {
           synchronized (team) {
             team.receive(in);
             team.replay = channel.startsWith("REPLAYED_");
+          }
+        });
       }
-    });
+    } catch (IOException | RuntimeException refused) {
+      System.err.println("ergocast: " + base + ": " + refused.getMessage());
+      return null;
+    }
+    TEAMS.put(base, team);
+    return team;
   }
-}
-catch (IOException | RuntimeException refused) {
-  System.err.println("ergocast: " + base + ": " + refused.getMessage());
-  return null;
-}
-TEAMS.put(base, team);
-return team;
-}
 
-private static String above(String url, int ports) {
-  Matcher parts = URL.matcher(url);
-  if (!parts.matches()) return url;
-  return parts.group(1) + (Integer.parseInt(parts.group(2)) + ports) + parts.group(3);
-}
+  private static String above(String url, int ports) {
+    Matcher parts = URL.matcher(url);
+    if (!parts.matches()) return url;
+    return parts.group(1) + (Integer.parseInt(parts.group(2)) + ports) + parts.group(3);
+  }
 }

@@ -6,14 +6,17 @@ import java.io.DataInput;
 import java.io.EOFException;
 import java.io.IOException;
 import java.lang.reflect.Proxy;
+import java.util.ArrayDeque;
 import java.util.Arrays;
+import java.util.Deque;
+import java.util.Locale;
 import java.util.Map;
 import java.util.TreeMap;
 import java.util.function.LongSupplier;
 import lcm.lcm.LCMDataInputStream;
 
 /**
- * The messages of one run, as far as they are drawn. Call its methods with its lock held.
+ * The messages of one run, as far as they are shown. Call its methods with its lock held.
  * The hash of the messages is not checked here, because only a picture depends on it.
  */
 final class Team {
@@ -21,29 +24,26 @@ final class Team {
   private static final int MAX_PARTS = 512;
   private static final int MAX_COUNT = 100000;
   private static final int MAX_PART_BYTES = 1024;
+  private static final int TRAIL = 200; // places
   private static final long SILENCE_NS = 3_000_000_000L;
 
-  /** One agent's track and the metric that it reports. */
+  /** Where one agent is and was [m]. */
   static final class Agent {
-    final History track = new History();
-    final double[] place = new double[3]; // newest [m]
-    long tick = -1; // of the newest position
-    double metric = Double.NaN;
-    long metricTick = -1;
+    final Deque<double[]> trail = new ArrayDeque<>(); // the newest last
+    long tick = -1; // of the newest
   }
 
   final Map<Integer, Agent> agents = new TreeMap<>();
-  History metric = new History(); // median of the agents' values over time [s]
   Plan plan; // null until it has been received
-  Coverage coverage;
-  long tick; // newest received
-  String status = ""; // the coordinator's report
-  boolean replay; // sent by `ergocast replay`: nobody flies
+  boolean replay; // sent by `ergocast replay`
 
   private final LongSupplier clock; // [ns]
   private long run;
   private long heardNs;
+  private long tick; // newest received
   private long uncounted; // ticks so far in which the mission was paused
+  private ergocast.team_status_t status; // the coordinator's newest; null: none yet
+  private long statusNs;
   private byte[][] parts = new byte[0][];
 
   Team() {
@@ -55,6 +55,27 @@ final class Team {
     this.clock = clock;
   }
 
+  /** The mission and its time, which stands while the mission is paused. */
+  String headline() {
+    if (plan == null) return "No mission received yet: it is sent once a second";
+    return String.format(Locale.ROOT, "%s%s, %.1f of %.0f s", replay ? "replay of " : "",
+        plan.name, (tick - uncounted) * plan.dt, plan.lastTick * plan.dt);
+  }
+
+  /** What the coordinator reports: the number of agents and the newest metric. */
+  String report() {
+    if (status == null) return "no report of the coordinator yet";
+    String[] states = {"waiting", "running", "ended", "failed"};
+    int state = status.mission_state;
+    double metric = status.median_ergodic_metric; // 0 before the first
+    long silentS = (clock.getAsLong() - statusNs) / 1_000_000_000L;
+    return (status.team_paused ? "paused" : state >= 0 && state < 4 ? states[state] : "?") + ", "
+        + status.agents_alive + " of " + status.agents_expected + " agents alive"
+        + (status.silent_agent >= 0 ? ", agent " + status.silent_agent + " is silent" : "")
+        + (metric > 0 ? String.format(Locale.ROOT, ", φ² = %.3g", metric) : "")
+        + (silentS >= 3 ? "; no report of the coordinator for " + silentS + " s" : "");
+  }
+
   /** Takes in a message; invalid bytes and messages of another active run have no effect. */
   void receive(LCMDataInputStream bytes) {
     try {
@@ -63,26 +84,7 @@ final class Team {
       DataInput in = bounded(bytes);
       if (fingerprint == ergocast.mission_t.LCM_FINGERPRINT) on(new ergocast.mission_t(in));
       if (fingerprint == ergocast.world_state_t.LCM_FINGERPRINT) on(new ergocast.world_state_t(in));
-      if (fingerprint == ergocast.agent_status_t.LCM_FINGERPRINT) {
-        on(new ergocast.agent_status_t(in));
-      }
       if (fingerprint == ergocast.team_status_t.LCM_FINGERPRINT) on(new ergocast.team_status_t(in));
-      if (fingerprint == ergocast.contribution_t.LCM_FINGERPRINT) {
-        ergocast.contribution_t heard = new ergocast.contribution_t(in);
-        if (isOfAnAgent(heard.header)) coverage.add(heard);
-      }
-      if (fingerprint == ergocast.averages_t.LCM_FINGERPRINT) {
-        ergocast.averages_t heard = new ergocast.averages_t(in);
-        if (isOfAnAgent(heard.header)) coverage.add(heard);
-      }
-      if (fingerprint == ergocast.low_sums_t.LCM_FINGERPRINT) {
-        ergocast.low_sums_t heard = new ergocast.low_sums_t(in);
-        if (isOfAnAgent(heard.header)) coverage.add(heard);
-      }
-      if (fingerprint == ergocast.low_averages_t.LCM_FINGERPRINT) {
-        ergocast.low_averages_t heard = new ergocast.low_averages_t(in);
-        if (isOfAnAgent(heard.header)) coverage.add(heard);
-      }
     } catch (IOException | RuntimeException notOurs) {
       // Any error of invalid bytes ends here: LCM's thread must continue.
     }
@@ -113,77 +115,39 @@ final class Team {
     ByteArrayOutputStream whole = new ByteArrayOutputStream();
     for (byte[] part : parts) whole.write(part);
     plan = new Plan(whole.toByteArray());
-    coverage = new Coverage(plan);
   }
 
   private void on(ergocast.world_state_t message) {
+    long at = message.header.tick;
     long held = message.uncounted_ticks;
-    if (message.header.tick >= tick && held >= 0 && held <= message.header.tick
-        && isOfThisRun(message.header)) {
-      uncounted = held;
+    if (!isOfThisRun(message.header) || plan == null || at < 0 || held < 0 || held > at
+        || at - held > plan.lastTick) {
+      return;
     }
-    if (!isUnderWay(message.header)) return;
     for (ergocast.vehicle_t vehicle : message.vehicles) {
-      Agent agent = agent(vehicle.vehicle_id);
-      double[] place = vehicle.position_m;
-      if (agent == null || !isInside(place) || message.header.tick < agent.tick) continue;
-      System.arraycopy(place, 0, agent.place, 0, 3);
-      agent.tick = message.header.tick;
-      agent.track.add(agent.tick, place);
+      int id = vehicle.vehicle_id;
+      if (id < 0 || id >= MAX_AGENTS || !isInside(vehicle.position_m)) continue;
+      Agent agent = agents.computeIfAbsent(id, added -> new Agent());
+      if (at <= agent.tick) continue;
+      if (agent.trail.size() == TRAIL) agent.trail.removeFirst();
+      agent.trail.add(vehicle.position_m);
+      agent.tick = at;
     }
-    tick = Math.max(tick, message.header.tick);
-  }
-
-  private void on(ergocast.agent_status_t message) {
-    Agent agent = isUnderWay(message.header) ? agent(message.header.sender) : null;
-    if (agent == null || !(message.ergodic_metric > 1e-30 && message.ergodic_metric < 1e12)) return;
-    agent.metric = message.ergodic_metric;
-    agent.metricTick = message.header.tick;
-    tick = Math.max(tick, message.header.tick);
-    double[] all = agents.values()
-                       .stream()
-                       .filter(this::isCurrent)
-                       .mapToDouble(a -> a.metric)
-                       .sorted()
-                       .toArray();
-    if (all.length > 0) {
-      double median = (all[all.length / 2] + all[(all.length - 1) / 2]) / 2;
-      metric.add(message.header.tick, elapsed(), median);
-    }
+    if (at < tick) return;
+    tick = at;
+    uncounted = held;
   }
 
   private void on(ergocast.team_status_t message) {
     if (!isOfThisRun(message.header)) return;
-    String[] states = {"waiting", "running", "ended", "failed"};
-    int state = message.mission_state;
-    status = (state >= 0 && state < states.length ? states[state] : "?") + ", "
-        + message.agents_alive + " of " + message.agents_expected + " agents alive"
-        + (message.silent_agent >= 0 ? ", agent " + message.silent_agent + " is silent" : "");
-  }
-
-  private boolean isOfAnAgent(ergocast.header_t header) {
-    return isUnderWay(header) && agent(header.sender) != null;
-  }
-
-  /** Whether the agent's value of phi^2 is from the last ten seconds. */
-  private boolean isCurrent(Agent agent) {
-    return agent.metricTick >= 0 && (tick - agent.metricTick) * plan.dt <= 10;
+    status = message;
+    statusNs = clock.getAsLong();
   }
 
   private boolean isOfThisRun(ergocast.header_t header) {
     if (run == 0 || header.run_id != run || isSilent()) return false;
     heardNs = clock.getAsLong();
     return true;
-  }
-
-  private boolean isUnderWay(ergocast.header_t header) {
-    return isOfThisRun(header) && plan != null && header.tick >= 0
-        && header.tick - uncounted <= plan.lastTick;
-  }
-
-  /** Mission time [s]: while the mission is paused it stands. */
-  double elapsed() {
-    return (tick - uncounted) * plan.dt;
   }
 
   private boolean isSilent() {
@@ -196,27 +160,17 @@ final class Team {
     run = header.run_id;
     heardNs = clock.getAsLong();
     agents.clear();
-    metric = new History();
     plan = null;
-    coverage = null;
-    status = "";
+    status = null;
     tick = 0;
     uncounted = 0;
     parts = new byte[0][];
     return run != 0;
   }
 
-  /** A plane's z is not looked at. */
+  /** Seen from above, with room for rounding. */
   private boolean isInside(double[] place) {
-    boolean inside = true;
-    for (int axis = 0; axis < (plan.inBox() ? 3 : 2); ++axis) {
-      double share = (place[axis] - plan.origin[axis]) / plan.size[axis];
-      inside = inside && share >= -0.01 && share <= 1.01;
-    }
-    return inside;
-  }
-
-  private Agent agent(int id) {
-    return id < 0 || id >= MAX_AGENTS ? null : agents.computeIfAbsent(id, added -> new Agent());
+    return Math.abs((place[0] - plan.origin[0]) / plan.size[0] - 0.5) <= 0.51
+        && Math.abs((place[1] - plan.origin[1]) / plan.size[1] - 0.5) <= 0.51;
   }
 }

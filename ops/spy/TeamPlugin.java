@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 package ergocast.spy;
 
-import java.awt.Dimension;
+import java.awt.Window;
+import java.awt.event.ActionEvent;
+import java.beans.PropertyVetoException;
+import javax.swing.AbstractAction;
 import javax.swing.Action;
-import javax.swing.JComponent;
 import javax.swing.JDesktopPane;
-import javax.swing.JPanel;
+import javax.swing.JInternalFrame;
+import javax.swing.SwingUtilities;
+import javax.swing.Timer;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** WORLD_STATE and TEAM_STATUS: the positions and tracks of the team, and its ergodic metric. */
+/** Opens the view of the team for WORLD_STATE and TEAM_STATUS in a window of lcm-spy. */
 public final class TeamPlugin implements SpyPlugin {
-  /** Listens from lcm-spy's start if the base URL is known, so that tracks are complete. */
+  private static final int WIDTH = 560, HEIGHT = 620;
+  private static final int REFRESH_MS = 250;
+
+  /** Listens from lcm-spy's start if the base URL is known: LCM repeats no old message. */
   public TeamPlugin() {
     String base = System.getProperty(Buses.BASE_URL);
     if (base != null) Buses.team(base);
@@ -23,30 +30,41 @@ public final class TeamPlugin implements SpyPlugin {
         || fingerprint == ergocast.team_status_t.LCM_FINGERPRINT;
   }
 
+  /** lcm-spy first asks for the name alone, with neither desktop nor channel. */
   @Override
   public Action getAction(JDesktopPane desktop, ChannelData channel) {
-    return new Viewer("Team", desktop, channel, TeamPlugin::picture, new Dimension(1040, 560));
-  }
-
-  /** A map and the metric; of a box from above, from the front and from the side, in quarters. */
-  static JComponent picture(Team team) {
-    MapView map = new MapView(team);
-    MapView front = new MapView(team, 0, 2);
-    MapView side = new MapView(team, 1, 2);
-    MetricView metric = new MetricView(team);
-    JPanel all = new JPanel(null) {
+    return new AbstractAction("Team") {
       @Override
-      public void doLayout() {
-        boolean box = map.inBox();
-        int height = box ? getHeight() / 2 : getHeight();
-        int left = box ? getWidth() / 2 : Math.min(getWidth() / 2, map.widthFor(height));
-        map.setBounds(0, 0, left, height);
-        metric.setBounds(left, 0, getWidth() - left, height);
-        front.setBounds(0, height, box ? left : 0, getHeight() - height);
-        side.setBounds(left, height, box ? getWidth() - left : 0, getHeight() - height);
+      public void actionPerformed(ActionEvent event) {
+        Team team = Buses.teamOf(channel);
+        if (team != null) open(desktop, team);
       }
     };
-    for (JComponent picture : new JComponent[] {map, metric, front, side}) all.add(picture);
-    return all;
+  }
+
+  private static void open(JDesktopPane desktop, Team team) {
+    JInternalFrame frame = new JInternalFrame("Team", true, true, true, true);
+    frame.setContentPane(new TeamView(team));
+    frame.setSize(WIDTH, HEIGHT);
+    desktop.add(frame);
+    frame.setVisible(true);
+    fill(desktop, frame);
+    Timer refresh = new Timer(REFRESH_MS, tick -> {
+      frame.repaint();
+      if (frame.isClosed() || !desktop.isShowing()) ((Timer) tick.getSource()).stop();
+    });
+    refresh.start();
+  }
+
+  /** lcm-spy 1.2 and later open a small window for each viewer; earlier ones have one for all. */
+  private static void fill(JDesktopPane desktop, JInternalFrame frame) {
+    Window window = SwingUtilities.getWindowAncestor(desktop);
+    if (window == null || desktop.getAllFrames().length > 1) return;
+    window.setSize(WIDTH, HEIGHT);
+    try {
+      frame.setMaximum(true);
+    } catch (PropertyVetoException remainsSmall) {
+      frame.setLocation(0, 0);
+    }
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A quantity over time. Draws on a canvas, or on anything with the same methods (svg.js).
+// Paints the chart of a run: one quantity over time.
+// It draws on a canvas, or on anything with the same methods (svg.js).
 import { paintColumns, paintRows, rangeOf, scalesFor, segment } from './axes.js';
 import { readable } from './text.js';
 import { indexAt } from './run.js';
@@ -21,19 +22,30 @@ export const QUANTITIES = {
 
 // The scales of a chart of that size.
 export function scalesOf(run, { quantity, axis }, width, height) {
-  const { t } = run.metrics, { of, log } = QUANTITIES[quantity], values = of(run.metrics), logT = axis === 'log';
-  const end = Math.max(t[t.length - 1] ?? 1, run.step * 2), begin = logT ? Math.min(t.find(at => at > 0) ?? 1, end / 2) : 0;
-  const up = rangeOf(values.filter((_, i) => t[i] >= begin * 0.999), log);
+  const { t } = run.metrics,
+    { of, log } = QUANTITIES[quantity],
+    values = of(run.metrics),
+    logT = axis === 'log';
+  const end = Math.max(t[t.length - 1] ?? 1, run.step * 2),
+    begin = logT ? Math.min(t.find(at => at > 0) ?? 1, end / 2) : 0;
+  const up = rangeOf(
+    values.filter((_, i) => t[i] >= begin * 0.999),
+    log,
+  );
   if (!log) Object.assign(up, { low: 0, high: up.high > 0 ? up.high * 1.08 : 1 });
-  const s = scalesFor(width, height, { low: begin, high: end, log: logT }, up), { x } = s;
+  const s = scalesFor(width, height, { low: begin, high: end, log: logT }, up),
+    { x } = s;
   return Object.assign(s, { values, begin, end, x: at => x(Math.max(at, begin)) });
 }
 
 // 1/t, to hold φ² against.
 function paintGuide(g, s, run, colours) {
-  const { t } = run.metrics, from = s.end / 5;
+  const { t } = run.metrics,
+    from = s.end / 5;
   let level = 0;
-  s.values.forEach((v, i) => { if (t[i] >= from && v * t[i] > level) level = v * t[i]; });
+  s.values.forEach((v, i) => {
+    if (t[i] >= from && v * t[i] > level) level = v * t[i];
+  });
   if (!level || !(s.end > 4 * s.begin)) return;
   level *= 1.35 / from;
   let pen = false;
@@ -43,9 +55,11 @@ function paintGuide(g, s, run, colours) {
   g.setLineDash([4, 4]);
   g.beginPath();
   for (let i = 0; i <= 40; i++) {
-    const at = from * 5 ** (i / 40), y = s.y((level * from) / at);
+    const at = from * 5 ** (i / 40),
+      y = s.y((level * from) / at);
     if (y < s.room.top) continue;
-    if (pen) g.lineTo(s.x(at), y); else g.moveTo(s.x(at), y);
+    if (pen) g.lineTo(s.x(at), y);
+    else g.moveTo(s.x(at), y);
     pen = true;
   }
   g.stroke();
@@ -57,13 +71,19 @@ function paintGuide(g, s, run, colours) {
 }
 
 function curve(g, s, t, from, to) {
-  let pen = false, last = -9;
+  let pen = false,
+    last = -9;
   g.beginPath();
   for (let i = from; i <= to; i++) {
-    const v = s.values[i], x = s.x(t[i]);
-    if (!isFinite(v) || (s.up.log && !(v > 0)) || t[i] < s.begin * 0.999) { pen = false; continue; }
+    const v = s.values[i],
+      x = s.x(t[i]);
+    if (!isFinite(v) || (s.up.log && !(v > 0)) || t[i] < s.begin * 0.999) {
+      pen = false;
+      continue;
+    }
     if (pen && x - last < 0.4 && i < to) continue;
-    if (pen) g.lineTo(x, s.y(v)); else g.moveTo(x, s.y(v));
+    if (pen) g.lineTo(x, s.y(v));
+    else g.moveTo(x, s.y(v));
     pen = true;
     last = x;
   }
@@ -72,7 +92,9 @@ function curve(g, s, t, from, to) {
 
 // `t` is the time of the page, `pointer` that under the pointer or −1.
 export function paintChart(g, run, { t: now, quantity, axis, colours, guide, pointer }, width, height) {
-  const s = scalesOf(run, { quantity, axis }, width, height), { t } = run.metrics, { bottom, right, room } = s;
+  const s = scalesOf(run, { quantity, axis }, width, height),
+    { t } = run.metrics,
+    { bottom, right, room } = s;
   paintRows(g, s, colours);
   paintColumns(g, s, colours, ' s');
   if (quantity === 'phi' && guide) paintGuide(g, s, run, colours);
@@ -96,11 +118,14 @@ export function paintChart(g, run, { t: now, quantity, axis, colours, guide, poi
   g.globalAlpha = 1;
   curve(g, s, t, 0, i);
   for (const incident of run.incidents) {
-    g.fillStyle = colours[{ silent: 'bad', gone: 'gone', late: 'warn', paused: 'muted' }[incident.kind] ?? 'ok'];
+    g.fillStyle =
+      colours[{ silent: 'bad', gone: 'gone', late: 'warn', paused: 'muted' }[incident.kind] ?? 'ok'];
     g.fillRect(s.x(incident.t) - 1, bottom - 6, 2, 6);
   }
   const cursor = (at, colour, dashed) => {
-    const k = indexAt(t, at), v = s.values[k], x = s.x(at);
+    const k = indexAt(t, at),
+      v = s.values[k],
+      x = s.x(at);
     g.strokeStyle = g.fillStyle = colour;
     g.lineWidth = 1;
     g.setLineDash(dashed ? [3, 3] : []);

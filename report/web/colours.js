@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours: eight hues for agents, and ramps for densities that are straight lines in OKLab.
+// Holds the colours: eight hues for agents, and ramps for densities that are straight lines in OKLab.
 export const HUES = {
   light: ['#0063a8', '#b04a00', '#00705a', '#a3327a', '#7a6000', '#5a48b8', '#0f7488', '#505a66'],
   dark: ['#58aefb', '#ff9455', '#3fd0a2', '#f492cb', '#e8c547', '#b3a5ff', '#6fdbe8', '#c6ced8'],
@@ -7,8 +7,16 @@ export const HUES = {
 
 // From little to much, and from too little over as wanted to too much.
 export const STOPS = {
-  light: { heat: ['#eef1f5', '#5f9bd3', '#0a4f9c'], amount: ['#ffffff', '#f8d899', '#e9b457', '#da9a3a'], difference: ['#b98a5e', '#fbfbfb', '#6f90bd'] },
-  dark: { heat: ['#1d2630', '#2f6aa5', '#7cc0ff'], amount: ['#0f151b', '#3d301b', '#66491d', '#80591f'], difference: ['#96653a', '#12181f', '#436a9c'] },
+  light: {
+    heat: ['#eef1f5', '#5f9bd3', '#0a4f9c'],
+    amount: ['#ffffff', '#f8d899', '#e9b457', '#da9a3a'],
+    difference: ['#b98a5e', '#fbfbfb', '#6f90bd'],
+  },
+  dark: {
+    heat: ['#1d2630', '#2f6aa5', '#7cc0ff'],
+    amount: ['#0f151b', '#3d301b', '#66491d', '#80591f'],
+    difference: ['#96653a', '#12181f', '#436a9c'],
+  },
 };
 
 const linear = v => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
@@ -40,13 +48,15 @@ function toBytes([lightness, a, b]) {
 
 // At a share of the way along colours.
 function between(lab, u) {
-  const at = u * (lab.length - 1), k = Math.min(Math.floor(at), lab.length - 2);
+  const at = u * (lab.length - 1),
+    k = Math.min(Math.floor(at), lab.length - 2);
   return lab[k].map((v, j) => v + (lab[k + 1][j] - v) * (at - k));
 }
 
 // 256 pixels of an ImageData, as 32-bit numbers.
 export function ramp(stops) {
-  const lab = stops.map(toOklab), pixels = new Uint32Array(256);
+  const lab = stops.map(toOklab),
+    pixels = new Uint32Array(256);
   for (let i = 0; i < 256; i++) {
     const [r, g, b] = toBytes(between(lab, i / 255));
     pixels[i] = 0xff000000 | (b << 16) | (g << 8) | r;
@@ -56,7 +66,12 @@ export function ramp(stops) {
 
 // The colour at a share of the way along these stops, "#rrggbb".
 export function mix(stops, u) {
-  return '#' + toBytes(between(stops.map(toOklab), u)).map(v => v.toString(16).padStart(2, '0')).join('');
+  return (
+    '#' +
+    toBytes(between(stops.map(toOklab), u))
+      .map(v => v.toString(16).padStart(2, '0'))
+      .join('')
+  );
 }
 
 // What can be read on that colour.
@@ -66,7 +81,8 @@ const NAMES = ['bg', 'panel', 'ink', 'muted', 'line', 'soft', 'accent', 'ok', 'w
 
 // The colours of a theme, which page.css has as custom properties.
 export function themeColours(theme) {
-  const style = getComputedStyle(document.documentElement), colours = { theme };
+  const style = getComputedStyle(document.documentElement),
+    colours = { theme };
   for (const name of NAMES) colours[name] = style.getPropertyValue('--' + name).trim();
   const hues = HUES[theme];
   colours.agent = id => hues[id % hues.length];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// c_k from positions, for any row at once: the sums are kept every 128 rows. The order is that of
-// the wire: the modes along z count slowest, those along y fastest. Where kinds of agents see
-// differently, each place counts with its kind's quality and footprint.
+// Computes the coverage c_k from positions, for any row at once.
+// The sums are kept every 128 rows. The order is that of the wire: the modes along z count slowest, those
+// along y fastest. Where kinds of agents see differently, each place counts with its kind's quality and
+// footprint.
 const EVERY = 128;
 
 // cos(m π u) of all m, by recurrence.
@@ -24,39 +25,47 @@ export class Coverage {
   // The planned kind of an agent, or null where all see alike.
   sensorOf(id) {
     const { seen } = this.run.mission;
-    return seen ? seen.find(kind => (id -= kind.count) < 0) ?? seen[0] : null;
+    return seen ? (seen.find(kind => (id -= kind.count) < 0) ?? seen[0]) : null;
   }
   // Forgets what rows from `row` on say: they have changed.
   reset(row) {
     const keep = Math.floor(row / EVERY) + 1;
     if (!row || !this.sums) {
-      this.sums = [new Float64Array(this.M * this.N * this.P)];  // sums[i]: Σ f_k over the rows [0, 128 i)
-      this.counts = [0];                                // how many positions these are
+      this.sums = [new Float64Array(this.M * this.N * this.P)]; // sums[i]: Σ f_k over the rows [0, 128 i)
+      this.counts = [0]; // how many positions these are
     }
     this.sums.length = this.counts.length = Math.min(this.sums.length, keep);
-    if (!this.sum || this.upto > row) { this.sum = this.sums[0].slice(); this.count = 0; this.upto = 0; }
+    if (!this.sum || this.upto > row) {
+      this.sum = this.sums[0].slice();
+      this.count = 0;
+      this.upto = 0;
+    }
   }
   add(sum, from, to) {
-    const { M, N, P, cx, cy, cz, run } = this, [lx, ly, lz] = run.size;
+    const { M, N, P, cx, cy, cz, run } = this,
+      [lx, ly, lz] = run.size;
     let count = 0;
     cz[0] = 1;
     for (const track of run.tracks) {
       const sensor = this.sensorOf(track.id);
       for (const [begin, until] of track.member) {
-        const { p, z } = track, end = Math.min(to, until, track.last + 1);
+        const { p, z } = track,
+          end = Math.min(to, until, track.last + 1);
         for (let k = Math.max(from, begin, track.first); k < end; k++) {
-          const px = p[2 * k], py = p[2 * k + 1];
-          if (run.holds.length && run.heldAt(k)) continue;  // the mission is paused
+          const px = p[2 * k],
+            py = p[2 * k + 1];
+          if (run.holds.length && run.heldAt(k)) continue; // the mission is paused
           if (!(px >= 0 && px <= lx && py >= 0 && py <= ly)) continue;
           count += sensor ? sensor.quality : 1;
           cosines(cx, px / lx);
           cosines(cy, py / ly);
           if (z) cosines(cz, z[k] / lz);
-          for (let l = 0, i = 0; l < P; l++) for (let m = 0; m < M; m++) {
-            const c = cz[l] * cx[m];
-            if (sensor) for (let n = 0; n < N; n++, i++) sum[i] += sensor.qg[i] * c * cy[n];
-            else for (let n = 0; n < N; n++) sum[i++] += c * cy[n];
-          }
+          for (let l = 0, i = 0; l < P; l++)
+            for (let m = 0; m < M; m++) {
+              const c = cz[l] * cx[m];
+              if (sensor) for (let n = 0; n < N; n++, i++) sum[i] += sensor.qg[i] * c * cy[n];
+              else for (let n = 0; n < N; n++) sum[i++] += c * cy[n];
+            }
         }
       }
     }
@@ -64,10 +73,12 @@ export class Coverage {
   }
   // Makes checkpoints for at most `budget` ms; true when all are there.
   build(budget) {
-    const stop = performance.now() + budget, last = Math.floor(this.run.rows / EVERY);
+    const stop = performance.now() + budget,
+      last = Math.floor(this.run.rows / EVERY);
     while (this.sums.length <= last) {
       if (performance.now() > stop) return false;
-      const i = this.sums.length, sum = this.sums[i - 1].slice();
+      const i = this.sums.length,
+        sum = this.sums[i - 1].slice();
       this.counts.push(this.counts[i - 1] + this.add(sum, (i - 1) * EVERY, i * EVERY));
       this.sums.push(sum);
     }
@@ -75,7 +86,8 @@ export class Coverage {
   }
   // c_k over the rows 0 … row.
   at(row) {
-    const to = row + 1, mark = Math.min(Math.floor(to / EVERY), this.sums.length - 1);
+    const to = row + 1,
+      mark = Math.min(Math.floor(to / EVERY), this.sums.length - 1);
     if (to < this.upto || mark * EVERY > this.upto) {
       this.sum.set(this.sums[mark]);
       this.count = this.counts[mark];
@@ -87,7 +99,8 @@ export class Coverage {
   }
   // φ² up to that row; NaN if nothing was covered.
   metric(row) {
-    const { target, weights } = this.run.mission, c = this.at(row);
+    const { target, weights } = this.run.mission,
+      c = this.at(row);
     let sum = 0;
     for (let k = 0; k < c.length; k++) sum += weights[k] * (c[k] - target[k]) ** 2;
     return this.count ? sum : NaN;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the chosen points do over time: φ² with its bands, or the share of agents that escaped.
+// Paints what the chosen points of a study do over time: φ² with its bands, or the share that escaped.
 import { FONT, paintColumns, paintRows, rangeOf, scalesFor } from './axes.js';
 import { HUES } from './colours.js';
 import { readable, share } from './text.js';
@@ -15,9 +15,17 @@ const escapes = {
 const kindOf = curve => (curve === 'escapes' ? escapes : phi);
 
 export function curveScales(points, curve, width, height) {
-  const { of, log } = kindOf(curve), all = points.flatMap(of).filter(p => p.t > 0), times = all.map(p => p.t);
-  const up = log ? rangeOf(all.flatMap(p => [p.v, p.low, p.high]), true) : { low: 0, high: 1.03, log: false };
-  const low = Math.min(...times, 1), high = Math.max(...times, low * 10);
+  const { of, log } = kindOf(curve),
+    all = points.flatMap(of).filter(p => p.t > 0),
+    times = all.map(p => p.t);
+  const up = log
+    ? rangeOf(
+        all.flatMap(p => [p.v, p.low, p.high]),
+        true,
+      )
+    : { low: 0, high: 1.03, log: false };
+  const low = Math.min(...times, 1),
+    high = Math.max(...times, low * 10);
   return scalesFor(width, height, { low, high, log: true }, up);
 }
 
@@ -31,13 +39,17 @@ function band(g, s, list) {
 
 function steps(g, s, list) {
   list.forEach((p, i) => {
-    if (i) { g.lineTo(s.x(p.t), s.y(list[i - 1].v)); g.lineTo(s.x(p.t), s.y(p.v)); } else g.moveTo(s.x(p.t), s.y(p.v));
+    if (i) {
+      g.lineTo(s.x(p.t), s.y(list[i - 1].v));
+      g.lineTo(s.x(p.t), s.y(p.v));
+    } else g.moveTo(s.x(p.t), s.y(p.v));
   });
 }
 
 // `colourOf` a point; `pointer`: the time under it, or −1.
 export function paintCurves(g, points, { curve, colours, colourOf, hover, pointer }, width, height) {
-  const s = curveScales(points, curve, width, height), { of, log } = kindOf(curve);
+  const s = curveScales(points, curve, width, height),
+    { of, log } = kindOf(curve);
   paintRows(g, s, colours);
   paintColumns(g, s, colours, ' s');
   const strength = point => (hover < 0 || hover === point.index ? 1 : 0.25);
@@ -56,7 +68,8 @@ export function paintCurves(g, points, { curve, colours, colourOf, hover, pointe
     g.lineJoin = 'round';
     g.setLineDash(points.indexOf(point) < HUES.light.length ? [] : [6, 3]);
     g.beginPath();
-    if (log) list.forEach((p, i) => (i ? g.lineTo(s.x(p.t), s.y(p.v)) : g.moveTo(s.x(p.t), s.y(p.v)))); else steps(g, s, list);
+    if (log) list.forEach((p, i) => (i ? g.lineTo(s.x(p.t), s.y(p.v)) : g.moveTo(s.x(p.t), s.y(p.v))));
+    else steps(g, s, list);
     g.stroke();
   }
   g.globalAlpha = 1;
@@ -75,7 +88,8 @@ export function paintCurves(g, points, { curve, colours, colourOf, hover, pointe
 
 // What a point has at a time.
 export function curveReading(point, curve, t) {
-  const list = kindOf(curve).of(point), at = list.findLast(p => p.t <= t * (1 + 1e-9));
+  const list = kindOf(curve).of(point),
+    at = list.findLast(p => p.t <= t * (1 + 1e-9));
   if (!at) return '–';
   return curve === 'escapes' ? share(at.v) : `${readable(at.v)} at ${readable(at.t)} s`;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pointer, wheel and fingers on the map: zoom, move, choose an agent, read a place.
+// Handles pointer, wheel and fingers on the map: zoom, move, choose an agent, read a place.
 import { S, inSpace, mapState, shown } from './state.js';
 import { markersOf } from './markers.js';
 import { coordinate, nameOf } from './places.js';
@@ -8,7 +8,7 @@ import { hover, pin } from './team.js';
 import { redraw, view } from './screen.js';
 import { $, put } from './text.js';
 
-const PER_PIXEL = 0.008;      // radians
+const PER_PIXEL = 0.008; // radians
 
 export function zoom(factor, px = view.width / 2, py = view.height / 2) {
   view.zoomAt(factor, px, py, shown().size);
@@ -28,10 +28,17 @@ export function turn(right, up) {
 
 // The agent whose place, body or pin is nearest.
 function nearest(x, y) {
-  let best = -1, least = 18;
+  let best = -1,
+    least = 18;
   for (const { track, x: px, y: py, head, body } of markersOf(shown(), view, mapState())) {
-    const d = Math.min(Math.max(0, Math.hypot(px - x, py - y) - Math.min(...body)), Math.hypot(head[0] - x, head[1] - y));
-    if (d < least) { least = d; best = track.id; }
+    const d = Math.min(
+      Math.max(0, Math.hypot(px - x, py - y) - Math.min(...body)),
+      Math.hypot(head[0] - x, head[1] - y),
+    );
+    if (d < least) {
+      least = d;
+      best = track.id;
+    }
   }
   return best;
 }
@@ -39,23 +46,32 @@ function nearest(x, y) {
 const placeText = place => `${place.map(v => v.toFixed(0)).join(', ')} m`;
 
 function agentText(run, agent) {
-  const track = run.track(agent), row = run.rowAt(S.t), speed = run.speedAt(track, row), at = track.rowAt(row);
+  const track = run.track(agent),
+    row = run.rowAt(S.t),
+    speed = run.speedAt(track, row),
+    at = track.rowAt(row);
   const place = run.mission.origin_m.map((origin, axis) => coordinate(track, axis, at) + origin);
-  return `agent ${agent}: ${stateOf(run, track, S.t).text}, at ${placeText(place)}${speed === null ? '' : `, ${speed.toFixed(1)} m/s`}`;
+  const motion = speed === null ? '' : `, ${speed.toFixed(1)} m/s`;
+  return `agent ${agent}: ${stateOf(run, track, S.t).text}, at ${placeText(place)}${motion}`;
 }
 
 // Of a place of the map; null outside of the domain, and in space, where a pixel is no place.
 function groundText(run, x, y) {
   if (inSpace()) return null;
-  const [mx, my] = view.metres(x, y), [lx, ly] = run.size, { width, height, cells, full } = run.density;
+  const [mx, my] = view.metres(x, y),
+    [lx, ly] = run.size,
+    { width, height, cells, full } = run.density;
   if (!(mx >= 0 && my >= 0 && mx <= lx && my <= ly)) return null;
-  const i = Math.min(width - 1, Math.floor((mx / lx) * width)), j = Math.min(height - 1, Math.floor((1 - my / ly) * height));
-  const place = [mx, my].map((v, k) => v / run.stretch[k] + run.mission.origin_m[k]), names = run.inBox ? `${run.axes.map(nameOf).join(', ')}: ` : '';
+  const i = Math.min(width - 1, Math.floor((mx / lx) * width)),
+    j = Math.min(height - 1, Math.floor((1 - my / ly) * height));
+  const place = [mx, my].map((v, k) => v / run.stretch[k] + run.mission.origin_m[k]),
+    names = run.inBox ? `${run.axes.map(nameOf).join(', ')}: ` : '';
   return `${names}${placeText(place)} · target ${((cells[j * width + i] / 255) * full).toFixed(2)}×`;
 }
 
 function showTip(x, y, agent) {
-  const tip = $('tip'), text = agent >= 0 ? agentText(S.run, agent) : groundText(shown(), x, y);
+  const tip = $('tip'),
+    text = agent >= 0 ? agentText(S.run, agent) : groundText(shown(), x, y);
   tip.hidden = text === null;
   if (tip.hidden) return;
   put(tip, text);
@@ -64,7 +80,8 @@ function showTip(x, y, agent) {
 }
 
 export function connectMap() {
-  const map = $('markers'), fingers = new Map();
+  const map = $('markers'),
+    fingers = new Map();
   let moved = 0;
   map.onpointerdown = e => {
     fingers.set(e.pointerId, [e.offsetX, e.offsetY]);
@@ -76,7 +93,9 @@ export function connectMap() {
     if (e.type === 'pointerup' && moved < 4 && S.hover >= 0) pin(S.hover);
   };
   map.onpointermove = e => {
-    const was = fingers.get(e.pointerId), x = e.offsetX, y = e.offsetY;
+    const was = fingers.get(e.pointerId),
+      x = e.offsetX,
+      y = e.offsetY;
     if (was) {
       const other = [...fingers].find(([id]) => id !== e.pointerId)?.[1];
       if (other) {
@@ -95,6 +114,16 @@ export function connectMap() {
     hover(agent);
     showTip(x, y, agent);
   };
-  map.onpointerleave = () => { hover(-1); $('tip').hidden = true; };
-  map.addEventListener('wheel', e => { e.preventDefault(); zoom(Math.exp(-e.deltaY * 0.0016), e.offsetX, e.offsetY); }, { passive: false });
+  map.onpointerleave = () => {
+    hover(-1);
+    $('tip').hidden = true;
+  };
+  map.addEventListener(
+    'wheel',
+    e => {
+      e.preventDefault();
+      zoom(Math.exp(-e.deltaY * 0.0016), e.offsetX, e.offsetY);
+    },
+    { passive: false },
+  );
 }

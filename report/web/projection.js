@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mission in a box seen along one axis: a run in a plane, which the map draws.
+// Shows a mission in a box along one axis, as a run in a plane that the map can draw.
 import { averageOf, picture } from './cosine_sums.js';
 import { Places, axesOf } from './places.js';
 import { targetOfModes } from './run.js';
 import { stretchOf } from './space_view.js';
 
 function projectedTrack(track, axes, factors) {
-  const places = new Places(track, axes, factors), seen = Object.create(track);
-  Object.defineProperty(seen, 'p', { get() { places.update(); return places.array; } });
+  const places = new Places(track, axes, factors),
+    seen = Object.create(track);
+  Object.defineProperty(seen, 'p', {
+    get() {
+      places.update();
+      return places.array;
+    },
+  });
   seen.distance = row => track.distance(row);
   return seen;
 }
@@ -17,18 +23,39 @@ function projectedTrack(track, axes, factors) {
 export function projected(run, name) {
   run.projections ??= new Map();
   if (run.projections.has(name)) return run.projections.get(name);
-  const axes = axesOf(name), hidden = 3 - axes[0] - axes[1], { mission } = run, { modes } = mission, [a, b] = axes, tracks = new Map();
-  const pick = list => axes.map(axis => list[axis]), stretch = axes.map(axis => (axis === 2 ? stretchOf(mission.size_m) : 1));
+  const axes = axesOf(name),
+    hidden = 3 - axes[0] - axes[1],
+    { mission } = run,
+    { modes } = mission,
+    [a, b] = axes,
+    tracks = new Map();
+  const pick = list => axes.map(axis => list[axis]),
+    stretch = axes.map(axis => (axis === 2 ? stretchOf(mission.size_m) : 1));
   const size = pick(mission.size_m).map((l, i) => l * stretch[i]);
-  const seen = Object.assign(Object.create(run), { axes, size, stretch, outline: undefined, levels: undefined, nowhere: undefined, pace: undefined,
+  const seen = Object.assign(Object.create(run), {
+    axes,
+    size,
+    stretch,
+    outline: undefined,
+    levels: undefined,
+    nowhere: undefined,
+    pace: undefined,
     mission: { ...mission, size_m: size, box_m: mission.size_m, origin_m: pick(mission.origin_m) },
     // From above the record has the density itself.
-    density: hidden === 2 ? run.density : targetOfModes(averageOf(mission.target, modes, hidden), modes[a], modes[b], size),
-    picture: (layer, row, width, height) => picture(averageOf(run.coefficients(layer, row), modes, hidden), modes[a], modes[b], width, height) });
-  Object.defineProperty(seen, 'tracks', { get: () => run.tracks.map(track => {
-    if (!tracks.has(track)) tracks.set(track, projectedTrack(track, axes, stretch));
-    return tracks.get(track);
-  }) });
+    density:
+      hidden === 2
+        ? run.density
+        : targetOfModes(averageOf(mission.target, modes, hidden), modes[a], modes[b], size),
+    picture: (layer, row, width, height) =>
+      picture(averageOf(run.coefficients(layer, row), modes, hidden), modes[a], modes[b], width, height),
+  });
+  Object.defineProperty(seen, 'tracks', {
+    get: () =>
+      run.tracks.map(track => {
+        if (!tracks.has(track)) tracks.set(track, projectedTrack(track, axes, stretch));
+        return tracks.get(track);
+      }),
+  });
   run.projections.set(name, seen);
   return seen;
 }

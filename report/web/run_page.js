@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of a run: brings data, drawing and controls together.
+// Brings data, drawing and controls together on the page of a run.
 import { S, ask, focusOf, mapState, onFrame, shown } from './state.js';
 import { TAILS } from './map.js';
 import { markersOf } from './markers.js';
@@ -17,7 +17,7 @@ import { svgText } from './save.js';
 import { addLog, watchLive } from './live.js';
 import { $, clamp, put } from './text.js';
 
-let frames = [];      // milliseconds that each took
+let frames = []; // milliseconds that each took
 
 function frame(now) {
   if (!S.run) return;
@@ -31,7 +31,7 @@ function frame(now) {
 }
 
 const dark = matchMedia('(prefers-color-scheme: dark)');
-const wishes = new URLSearchParams(location.hash.slice(1));   // for links: #theme=dark&t=299&layer=achieved
+const wishes = new URLSearchParams(location.hash.slice(1)); // for links: #theme=dark&t=299&layer=achieved
 const data = JSON.parse($('data').textContent);
 
 onFrame(frame);
@@ -59,11 +59,24 @@ if (wishes.has('t') && S.run) seek(Number(wishes.get('t')) || 0);
 
 // What tests ask the page; it changes nothing but what is shown.
 window.ergocast = {
-  S, seek, set, shown, showView, pin, hover, setTheme, svgText: () => svgText(view), focus: focusOf,
-  get view() { return view; },
+  S,
+  seek,
+  set,
+  shown,
+  showView,
+  pin,
+  hover,
+  setTheme,
+  svgText: () => svgText(view),
+  focus: focusOf,
+  get view() {
+    return view;
+  },
   marker: id => markersOf(shown(), view, mapState()).find(({ track }) => track.id === id),
   frames: () => frames,
-  clearFrames: () => { frames = []; },
+  clearFrames: () => {
+    frames = [];
+  },
   // Draws a tick at once; the time until its pixels can be read [ms].
   draw(t) {
     const begin = performance.now();
@@ -75,6 +88,8 @@ window.ergocast = {
   // The greatest relative difference between φ² of the record and of the positions in the page.
   worstMetric() {
     const { run } = S;
-    return Math.max(...run.metrics.t.map((t, i) => Math.abs(run.coverage.metric(run.rowAt(t)) / run.metrics.phi[i] - 1)));
+    return Math.max(
+      ...run.metrics.t.map((t, i) => Math.abs(run.coverage.metric(run.rowAt(t)) / run.metrics.phi[i] - 1)),
+    );
   },
 };

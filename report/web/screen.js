@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The canvases of a run's page: each is drawn only when what it shows has changed.
+// Draws each canvas of a run's page when what it shows has changed.
 import { S, ask, inSpace, mapState, shown } from './state.js';
 import { View } from './view.js';
 import { Space } from './space.js';
@@ -10,13 +10,16 @@ import { paintChart, readingAt } from './chart.js';
 import { buildStrip } from './timeline.js';
 import { $, clamp, put } from './text.js';
 
-const SIDE = 508;             // pixels that the table of agents needs
+const SIDE = 508; // pixels that the table of agents needs
 const LAYERS = ['shading', 'trails', 'markers', 'chart'];
 
-const flat = new View(), turning = new SpaceView();
+const flat = new View(),
+  turning = new SpaceView();
 let space = null;
 export let view = flat;
-let scale = 1, shadingKey = '', trail = { key: '', row: -1, upto: 0 };
+let scale = 1,
+  shadingKey = '',
+  trail = { key: '', row: -1, upto: 0 };
 
 function context(id) {
   const g = $(id).getContext('2d');
@@ -25,7 +28,8 @@ function context(id) {
 }
 
 function drawShading() {
-  const row = S.run.rowAt(S.t), key = [S.layer, S.layer === 'target' ? '' : row, view.key, S.theme, S.run.id, S.view].join();
+  const row = S.run.rowAt(S.t),
+    key = [S.layer, S.layer === 'target' ? '' : row, view.key, S.theme, S.run.id, S.view].join();
   if (key === shadingKey) return;
   shadingKey = key;
   paintShading(context('shading'), shown(), view, mapState());
@@ -33,9 +37,14 @@ function drawShading() {
 
 // The whole history grows on its canvas; a bounded trail is drawn anew.
 function drawTrails() {
-  const run = shown(), row = run.rowAt(S.t), key = [run.id, S.view, S.tail, view.key, S.theme, S.hover, ...S.pins].join();
+  const run = shown(),
+    row = run.rowAt(S.t),
+    key = [run.id, S.view, S.tail, view.key, S.theme, S.hover, ...S.pins].join();
   if (key === trail.key && row === trail.row) return;
-  const g = context('trails'), state = mapState(), part = trailOf(run, state), whole = TAILS[S.tail] === Infinity;
+  const g = context('trails'),
+    state = mapState(),
+    part = trailOf(run, state),
+    whole = TAILS[S.tail] === Infinity;
   if (!whole || key !== trail.key || row < trail.upto) {
     g.clearRect(0, 0, view.width, view.height);
     trail.upto = 0;
@@ -51,7 +60,17 @@ function drawTrails() {
 }
 
 function drawSpace() {
-  const key = [S.run.id, S.run.rowAt(S.t), S.layer, S.tail, S.slices, view.key, S.theme, S.hover, ...S.pins].join();
+  const key = [
+    S.run.id,
+    S.run.rowAt(S.t),
+    S.layer,
+    S.tail,
+    S.slices,
+    view.key,
+    S.theme,
+    S.hover,
+    ...S.pins,
+  ].join();
   if (key !== shadingKey) space.paint(S.run, view, mapState(), scale);
   shadingKey = key;
 }
@@ -63,7 +82,8 @@ function drawMarkers() {
 }
 
 function drawChart() {
-  const canvas = $('chart'), g = context('chart');
+  const canvas = $('chart'),
+    g = context('chart');
   g.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
   paintChart(g, S.run, S, canvas.clientWidth, canvas.clientHeight);
   put($('reading'), S.pointer >= 0 ? readingAt(S.run, S.quantity, S.pointer) : '');
@@ -103,18 +123,28 @@ export function canTurn() {
 export function layout() {
   if (!S.run) return;
   view = inSpace() ? turning : flat;
-  const narrow = innerWidth <= 820, [lx, ly] = inSpace() ? [narrow ? 0.95 : 1.15, 1] : shown().size, main = document.querySelector('main');
+  const narrow = innerWidth <= 820,
+    [lx, ly] = inSpace() ? [narrow ? 0.95 : 1.15, 1] : shown().size,
+    main = document.querySelector('main');
   document.documentElement.style.setProperty('--aspect', clamp(lx / ly, 0.5, 4));
   main.classList.toggle('wide', lx / ly > 1.2);
   if (!narrow) {
     const wanted = clamp(((main.clientHeight - 42) * lx) / ly, 420, main.clientWidth * 0.68);
-    main.style.setProperty('--mapWidth', `${Math.round(Math.min(wanted, main.clientWidth - Math.min(SIDE, main.clientWidth / 2)))}px`);
+    main.style.setProperty(
+      '--mapWidth',
+      `${Math.round(Math.min(wanted, main.clientWidth - Math.min(SIDE, main.clientWidth / 2)))}px`,
+    );
   }
   scale = Math.min(devicePixelRatio || 1, 2);
   view.resize($('stage').clientWidth, $('stage').clientHeight);
   for (const id of [...LAYERS, 'space']) {
-    const canvas = $(id), width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
-    if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
+    const canvas = $(id),
+      width = Math.round(canvas.clientWidth * scale),
+      height = Math.round(canvas.clientHeight * scale);
+    if (canvas.width !== width || canvas.height !== height) {
+      canvas.width = width;
+      canvas.height = height;
+    }
   }
   view.place(shown().size);
   redraw();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which run the page shows: a record, or a team that flies and then is a record.
+// Chooses which run the page shows: a record, or a running team that later becomes a record.
 import { S, ask, startTail } from './state.js';
 import { buildStrip, seek, showFollowing } from './timeline.js';
 import { buildTeam } from './team.js';
@@ -73,8 +73,15 @@ export const livePage = {
       run.newIncidents = false;
       buildStrip();
     }
-    if (performance.now() - (run.stripAt ?? 0) > 500) { run.stripAt = performance.now(); buildStrip(); showFacts(facts); }
-    if (run.tracks.length > 12 && !run.tailChosen) { run.tailChosen = true; set('tail', startTail(run)); }
+    if (performance.now() - (run.stripAt ?? 0) > 500) {
+      run.stripAt = performance.now();
+      buildStrip();
+      showFacts(facts);
+    }
+    if (run.tracks.length > 12 && !run.tailChosen) {
+      run.tailChosen = true;
+      set('tail', startTail(run));
+    }
     put($('authentication'), facts.replay ? 'replay' : facts.authenticated ? '' : 'not authenticated');
     $('authentication').title = facts.replay ? 'ergocast replay sends a record: nobody flies' : NO_KEY;
     $('authentication').hidden = facts.authenticated && !facts.replay;

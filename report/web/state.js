@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the page shows now. Whoever changes it asks for a frame.
+// Holds what the page of a run shows now; whoever changes it asks for a frame.
 import { TAILS } from './map.js';
 import { projected } from './projection.js';
 
@@ -8,23 +8,23 @@ export const LAYERS = ['target', 'achieved', 'difference'];
 
 export const S = {
   run: null,
-  t: 0,                // mission time that is shown
-  live: false,         // whether the mission still grows
-  facts: null,         // of a team that flies: what live.js knows of it
-  following: false,    // whether t is the newest time
+  t: 0, // mission time that is shown
+  live: false, // whether the mission still grows
+  facts: null, // of a team that flies: what live.js knows of it
+  following: false, // whether t is the newest time
   playing: false,
   speed: 20,
   tail: 3,
   layer: 'target',
-  view: 'xy',          // of a box: 'turn', or the axes of a projection
-  slices: [null, null, null],  // of the view that turns, across x, y and z: shares of the box, null for none
+  view: 'xy', // of a box: 'turn', or the axes of a projection
+  slices: [null, null, null], // of the view that turns, across x, y and z: shares of the box, null for none
   axis: 'log',
   quantity: 'phi',
   guide: true,
   radio: true,
-  hover: -1,           // the agent under the pointer
-  pins: new Set(),     // agents that were chosen
-  pointer: -1,         // time under the pointer in the chart
+  hover: -1, // the agent under the pointer
+  pins: new Set(), // agents that were chosen
+  pointer: -1, // time under the pointer in the chart
   theme: 'light',
   colours: null,
 };
@@ -37,14 +37,30 @@ export const inSpace = () => S.run.inBox && S.view === 'turn';
 export const shown = () => (S.run.inBox && !inSpace() ? projected(S.run, S.view) : S.run);
 
 // The part of it that map.js needs.
-export const mapState = () => ({ row: S.run.rowAt(S.t), t: S.t, tail: S.tail, layer: S.layer, radio: S.radio, colours: S.colours, focus: focusOf(), inSpace: inSpace(), slices: S.slices });
+export const mapState = () => ({
+  row: S.run.rowAt(S.t),
+  t: S.t,
+  tail: S.tail,
+  layer: S.layer,
+  radio: S.radio,
+  colours: S.colours,
+  focus: focusOf(),
+  inSpace: inSpace(),
+  slices: S.slices,
+});
 
 export const startTail = run => (run.tracks.length > 12 ? TAILS.indexOf(60) : TAILS.length - 1);
 
-let paint = null, asked = false;
-export function onFrame(callback) { paint = callback; }
+let paint = null,
+  asked = false;
+export function onFrame(callback) {
+  paint = callback;
+}
 export function ask() {
   if (asked || !paint) return;
   asked = true;
-  requestAnimationFrame(now => { asked = false; paint(now); });
+  requestAnimationFrame(now => {
+    asked = false;
+    paint(now);
+  });
 }

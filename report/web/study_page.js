@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of a study: brings data, figures, table and controls together.
+// Brings data, figures, table and controls together on the page of a study.
 import { themeColours } from './colours.js';
 import { S, curvesOf } from './study_state.js';
 import { QUANTITIES, Study, cellsOf, intervalText, sorted } from './study.js';
@@ -11,20 +11,43 @@ import { SvgContext } from './svg.js';
 import { download } from './download.js';
 import { $, element, grouped, put, readable } from './text.js';
 
-let shown = { points: [], cells: [], best: null, near: [], curves: [] }, pointer = -1, asked = false;
+let shown = { points: [], cells: [], best: null, near: [], curves: [] },
+  pointer = -1,
+  asked = false;
 
 // --- what is shown ---
 
 function choose() {
-  const { study } = S, points = sorted(study.chosen(S), S), best = study.best(points, S.quantity);
-  shown = { points, best, near: study.near(points, S.quantity, best), curves: curvesOf(points),
-    cells: cellsOf(study, points, S.quantity, S.across, S.up === S.across ? null : S.up) };
+  const { study } = S,
+    points = sorted(study.chosen(S), S),
+    best = study.best(points, S.quantity);
+  shown = {
+    points,
+    best,
+    near: study.near(points, S.quantity, best),
+    curves: curvesOf(points),
+    cells: cellsOf(study, points, S.quantity, S.across, S.up === S.across ? null : S.up),
+  };
 }
 
 const colourOf = point => S.colours.agent(shown.curves.indexOf(point));
 const hot = point => S.hover === point.index || S.pins.has(point.index);
-const figureState = () => ({ across: S.across, up: S.up === S.across ? null : S.up, quantity: S.quantity, best: shown.best, near: shown.near, hot, colours: S.colours });
-const curveState = () => ({ curve: S.curve, colours: S.colours, colourOf, hover: shown.curves.some(p => p.index === S.hover) ? S.hover : -1, pointer });
+const figureState = () => ({
+  across: S.across,
+  up: S.up === S.across ? null : S.up,
+  quantity: S.quantity,
+  best: shown.best,
+  near: shown.near,
+  hot,
+  colours: S.colours,
+});
+const curveState = () => ({
+  curve: S.curve,
+  colours: S.colours,
+  colourOf,
+  hover: shown.curves.some(p => p.index === S.hover) ? S.hover : -1,
+  pointer,
+});
 
 function paintFigure(g, width, height) {
   const state = figureState();
@@ -33,36 +56,70 @@ function paintFigure(g, width, height) {
 }
 
 function showBest() {
-  const { best, near, points } = shown, box = $('best'), q = QUANTITIES[S.quantity];
+  const { best, near, points } = shown,
+    box = $('best'),
+    q = QUANTITIES[S.quantity];
   box.hidden = !best;
   if (!best) return;
   const others = near.length === 1 ? 'One other point is' : `${grouped(near.length)} other points are`;
-  box.replaceChildren('Best of ', points.length === S.study.points.length ? 'all' : 'what is shown', ': ', element('b', '', S.study.nameOf(best)),
-    `. ${q.title} `, element('b', '', intervalText(best, S.quantity)), ` of ${grouped(best.runs)} ${best.runs === 1 ? 'run' : 'runs'}. `,
-    q.bounds(best) ? (near.length ? `${others} not told apart from it.` : 'Its interval overlaps with no other.') : '');
+  box.replaceChildren(
+    'Best of ',
+    points.length === S.study.points.length ? 'all' : 'what is shown',
+    ': ',
+    element('b', '', S.study.nameOf(best)),
+    `. ${q.title} `,
+    element('b', '', intervalText(best, S.quantity)),
+    ` of ${grouped(best.runs)} ${best.runs === 1 ? 'run' : 'runs'}. `,
+    q.bounds(best)
+      ? near.length
+        ? `${others} not told apart from it.`
+        : 'Its interval overlaps with no other.'
+      : '',
+  );
 }
 
 function showKey() {
-  $('key').replaceChildren(...shown.curves.map(point => {
-    const li = element('li', '', S.study.nameOf(point) + (pointer > 0 ? `: ${curveReading(point, S.curve, pointer)}` : ''));
-    li.style.setProperty('--c', colourOf(point));
-    li.onpointerenter = () => hover(point.index);
-    li.onpointerleave = () => hover(-1);
-    return li;
-  }));
+  $('key').replaceChildren(
+    ...shown.curves.map(point => {
+      const li = element(
+        'li',
+        '',
+        S.study.nameOf(point) + (pointer > 0 ? `: ${curveReading(point, S.curve, pointer)}` : ''),
+      );
+      li.style.setProperty('--c', colourOf(point));
+      li.onpointerenter = () => hover(point.index);
+      li.onpointerleave = () => hover(-1);
+      return li;
+    }),
+  );
   const flown = shown.points.filter(point => point.runs > 0).length;
-  put($('reading'), pointer > 0 ? `t ${readable(pointer)} s` : !S.pins.size && flown > shown.curves.length ? `the first ${shown.curves.length} rows; click others` : '');
+  put(
+    $('reading'),
+    pointer > 0
+      ? `t ${readable(pointer)} s`
+      : !S.pins.size && flown > shown.curves.length
+        ? `the first ${shown.curves.length} rows; click others`
+        : '',
+  );
   $('showFirst').hidden = !S.pins.size;
 }
 
 function noteOf() {
   const most = Math.max(0, ...shown.cells.map(cell => cell.list.length));
-  return most > 1 ? `Each ${S.figure === 'map' && figureState().up ? 'cell' : 'dot'} is the best of up to ${most} points that differ in other fields.` : '';
+  return most > 1
+    ? `Each ${S.figure === 'map' && figureState().up ? 'cell' : 'dot'} is the best of up to ${most} points ` +
+        'that differ in other fields.'
+    : '';
 }
 
 function context(id) {
-  const canvas = $(id), scale = Math.min(devicePixelRatio || 1, 2), { clientWidth: width, clientHeight: height } = canvas;
-  if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(height * scale)) { canvas.width = Math.round(width * scale); canvas.height = Math.round(height * scale); }
+  const canvas = $(id),
+    scale = Math.min(devicePixelRatio || 1, 2),
+    { clientWidth: width, clientHeight: height } = canvas;
+  if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(height * scale)) {
+    canvas.width = Math.round(width * scale);
+    canvas.height = Math.round(height * scale);
+  }
   const g = canvas.getContext('2d');
   g.setTransform(scale, 0, 0, scale, 0, 0);
   g.clearRect(0, 0, width, height);
@@ -81,7 +138,10 @@ function draw() {
   showKey();
   put($('figureNote'), noteOf());
   const words = $('best').hidden ? '' : $('best').textContent;
-  $('picture').setAttribute('aria-label', `${QUANTITIES[S.quantity].title} against ${S.across.name}. ${words}`);
+  $('picture').setAttribute(
+    'aria-label',
+    `${QUANTITIES[S.quantity].title} against ${S.across.name}. ${words}`,
+  );
   $('curves').setAttribute('aria-label', `${$('curveTitle').textContent} of ${shown.curves.length} points`);
 }
 
@@ -119,7 +179,8 @@ function sort(by) {
   set({ by, down: same ? !S.down : by.key ? (QUANTITIES[by.key]?.better ?? 1) > 0 : false });
 }
 function pin(index) {
-  if (index < 0) S.pins.clear(); else if (!S.pins.delete(index)) S.pins.add(index);
+  if (index < 0) S.pins.clear();
+  else if (!S.pins.delete(index)) S.pins.add(index);
   ask();
 }
 function hover(index) {
@@ -134,14 +195,17 @@ function setTheme(theme) {
 }
 
 function filter(number, value) {
-  if (value) S.filters.set(number, value); else S.filters.delete(number);
+  if (value) S.filters.set(number, value);
+  else S.filters.delete(number);
   set({});
 }
 
 function buildFilters() {
-  const { study } = S, form = $('filters');
+  const { study } = S,
+    form = $('filters');
   for (const { name, number, values } of study.varied) {
-    const label = element('label', '', name), select = element('select');
+    const label = element('label', '', name),
+      select = element('select');
     select.append(new Option('all', ''), ...values.map(value => new Option(value, value)));
     select.dataset.number = number;
     select.onchange = () => filter(number, select.value);
@@ -149,14 +213,22 @@ function buildFilters() {
     form.append(label);
   }
   const words = element('input');
-  Object.assign(words, { type: 'search', id: 'words', placeholder: 'words, like epsilon=0.2', ariaLabel: 'Words in the name of a point' });
+  Object.assign(words, {
+    type: 'search',
+    id: 'words',
+    placeholder: 'words, like epsilon=0.2',
+    ariaLabel: 'Words in the name of a point',
+  });
   words.oninput = () => set({ words: words.value });
   form.append(words, element('span', 'grow'));
   form.onsubmit = e => e.preventDefault();
   for (const id of ['across', 'up']) {
-    for (const { name, number } of study.varied.length ? study.varied : study.dimensions.slice(0, 1)) $(id).append(new Option(name, number));
+    for (const { name, number } of study.varied.length ? study.varied : study.dimensions.slice(0, 1))
+      $(id).append(new Option(name, number));
     $(id).onchange = e => {
-      const other = id === 'across' ? 'up' : 'across', chosen = study.dimensions[e.target.value], swap = S[other] === chosen;
+      const other = id === 'across' ? 'up' : 'across',
+        chosen = study.dimensions[e.target.value],
+        swap = S[other] === chosen;
       set({ [id]: chosen, ...(swap ? { [other]: S[id] } : {}) });
     };
   }
@@ -166,26 +238,55 @@ function buildFilters() {
 }
 
 function connectFigures() {
-  const picture = $('picture'), curves = $('curves'), tip = $('tip');
-  const cell = e => S.figure === 'map' && figureState().up ? cellAt(picture.getContext('2d'), shown.cells, figureState(), picture.clientWidth, picture.clientHeight, e.offsetX, e.offsetY) : null;
+  const picture = $('picture'),
+    curves = $('curves'),
+    tip = $('tip');
+  const cell = e =>
+    S.figure === 'map' && figureState().up
+      ? cellAt(
+          picture.getContext('2d'),
+          shown.cells,
+          figureState(),
+          picture.clientWidth,
+          picture.clientHeight,
+          e.offsetX,
+          e.offsetY,
+        )
+      : null;
   picture.onpointermove = e => {
     const at = cell(e);
     hover(at ? at.point.index : -1);
     tip.hidden = !at;
     if (!at) return;
-    put(tip, `${S.study.nameOf(at.point)}: ${intervalText(at.point, S.quantity)}, ${grouped(at.point.runs)} runs`);
+    put(
+      tip,
+      `${S.study.nameOf(at.point)}: ${intervalText(at.point, S.quantity)}, ${grouped(at.point.runs)} runs`,
+    );
     tip.style.left = `${Math.max(0, Math.min(e.offsetX + 14, picture.clientWidth - tip.offsetWidth - 4))}px`;
     tip.style.top = `${e.offsetY > 60 ? e.offsetY - 34 : e.offsetY + 16}px`;
   };
-  picture.onpointerleave = () => { hover(-1); tip.hidden = true; };
-  picture.onclick = e => { const at = cell(e); if (at) pin(at.point.index); };
-  curves.onpointermove = e => { pointer = curveScales(shown.curves, S.curve, curves.clientWidth, curves.clientHeight).at(e.offsetX); ask(); };
-  curves.onpointerleave = () => { pointer = -1; ask(); };
+  picture.onpointerleave = () => {
+    hover(-1);
+    tip.hidden = true;
+  };
+  picture.onclick = e => {
+    const at = cell(e);
+    if (at) pin(at.point.index);
+  };
+  curves.onpointermove = e => {
+    pointer = curveScales(shown.curves, S.curve, curves.clientWidth, curves.clientHeight).at(e.offsetX);
+    ask();
+  };
+  curves.onpointerleave = () => {
+    pointer = -1;
+    ask();
+  };
 }
 
 function svgText() {
   choose();
-  const { clientWidth: w, clientHeight: h } = $('picture'), g = new SvgContext(2 * w + 48, h + 46);
+  const { clientWidth: w, clientHeight: h } = $('picture'),
+    g = new SvgContext(2 * w + 48, h + 46);
   g.fillStyle = S.colours.panel;
   g.fillRect(0, 0, g.width, g.height);
   g.fillStyle = S.colours.ink;
@@ -211,10 +312,24 @@ function connectButtons() {
   $('showFirst').onclick = () => pin(-1);
   $('detailsButton').onclick = () => $('details').showModal();
   $('saveSvg').onclick = save;
-  const keys = { '/': () => $('words').focus(), d: () => $('theme').click(), s: save, i: () => $('details').showModal(), escape: () => pin(-1) };
+  const keys = {
+    '/': () => $('words').focus(),
+    d: () => $('theme').click(),
+    s: save,
+    i: () => $('details').showModal(),
+    escape: () => pin(-1),
+  };
   addEventListener('keydown', e => {
     const action = keys[e.key.toLowerCase()];
-    if (!action || e.ctrlKey || e.metaKey || e.altKey || document.querySelector('dialog[open]') || ['INPUT', 'SELECT'].includes(e.target.tagName)) return;
+    if (
+      !action ||
+      e.ctrlKey ||
+      e.metaKey ||
+      e.altKey ||
+      document.querySelector('dialog[open]') ||
+      ['INPUT', 'SELECT'].includes(e.target.tagName)
+    )
+      return;
     e.preventDefault();
     action();
   });
@@ -222,8 +337,9 @@ function connectButtons() {
 
 // --- start ---
 
-const dark = matchMedia('(prefers-color-scheme: dark)'), wishes = new URLSearchParams(location.hash.slice(1));  // for links: #theme=dark
-const study = S.study = new Study(JSON.parse($('data').textContent).study);
+const dark = matchMedia('(prefers-color-scheme: dark)'),
+  wishes = new URLSearchParams(location.hash.slice(1)); // for links: #theme=dark
+const study = (S.study = new Study(JSON.parse($('data').textContent).study));
 // The two fields with the most values.
 const [first, second] = [...study.varied].sort((a, b) => b.values.length - a.values.length);
 Object.assign(S, { across: first ?? study.dimensions[0], up: second ?? first ?? study.dimensions[0] });
@@ -242,5 +358,21 @@ new ResizeObserver(ask).observe(document.body);
 draw();
 
 // What tests ask the page; it changes nothing but what is shown.
-window.ergocast = { S, set, sort, pin, filter, setTheme, svgText, shown: () => shown,
-  middleOf: cell => middleOf($('picture').getContext('2d'), cell, figureState(), $('picture').clientWidth, $('picture').clientHeight) };
+window.ergocast = {
+  S,
+  set,
+  sort,
+  pin,
+  filter,
+  setTheme,
+  svgText,
+  shown: () => shown,
+  middleOf: cell =>
+    middleOf(
+      $('picture').getContext('2d'),
+      cell,
+      figureState(),
+      $('picture').clientWidth,
+      $('picture').clientHeight,
+    ),
+};

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The points as a table: sorted by a click on a head, chosen by a click on a row.
+// Shows the points as a table: a click on a head sorts it, a click on a row chooses.
 import { S } from './study_state.js';
 import { QUANTITIES, intervalText } from './study.js';
 import { $, element, grouped, put } from './text.js';
 
-let rows = new Map(), order = '', columns = [];
+let rows = new Map(),
+  order = '',
+  columns = [];
 
 // A field's name may be broken before its parts.
 function head({ title, means, number, by }, sort) {
-  const th = element('th', number ? 'number' : ''), button = element('button');
+  const th = element('th', number ? 'number' : ''),
+    button = element('button');
   title.split(/(?=[._])/).forEach((part, i) => button.append(...(i ? [element('wbr')] : []), part));
   th.scope = 'col';
   th.title = means ?? '';
@@ -19,8 +22,12 @@ function head({ title, means, number, by }, sort) {
 
 // The command that flies a point, in a row of its own.
 function toggleCommand(tr, point) {
-  if (tr.nextSibling?.className === 'how') { tr.nextSibling.remove(); return; }
-  const how = element('tr', 'how'), td = element('td');
+  if (tr.nextSibling?.className === 'how') {
+    tr.nextSibling.remove();
+    return;
+  }
+  const how = element('tr', 'how'),
+    td = element('td');
   td.colSpan = columns.length + 1;
   td.append(element('pre', '', point.command));
   how.append(td);
@@ -30,16 +37,23 @@ function toggleCommand(tr, point) {
 function row(point, { pin, hover }) {
   const tr = element('tr', point.runs ? '' : 'none');
   for (const { number, text } of columns) tr.append(element('td', number ? 'number' : '', text(point)));
-  const last = element('td'), button = element('button', 'command', 'Command'), sign = element('span', '', '$');
+  const last = element('td'),
+    button = element('button', 'command', 'Command'),
+    sign = element('span', '', '$');
   sign.setAttribute('aria-hidden', 'true');
   button.append(sign);
   button.title = 'The command that runs this point';
-  button.onclick = e => { e.stopPropagation(); toggleCommand(tr, point); };
+  button.onclick = e => {
+    e.stopPropagation();
+    toggleCommand(tr, point);
+  };
   last.append(button);
   tr.append(last);
   tr.tabIndex = 0;
   tr.onclick = () => pin(point.index);
-  tr.onkeydown = e => { if (e.key === 'Enter' && e.target === tr) pin(point.index); };
+  tr.onkeydown = e => {
+    if (e.key === 'Enter' && e.target === tr) pin(point.index);
+  };
   tr.onpointerenter = tr.onfocus = () => hover(point.index);
   tr.onpointerleave = tr.onblur = () => hover(-1);
   return tr;
@@ -50,8 +64,20 @@ export function buildTable(study, actions) {
   const fields = study.varied.length ? study.varied : study.dimensions.slice(0, 1);
   columns = [
     ...fields.map(by => ({ by, title: by.name, number: false, text: point => point.all[by.number] })),
-    { by: { key: 'runs' }, title: 'Runs', means: 'Missions of this point, one for each seed', number: true, text: point => grouped(point.runs) },
-    ...study.quantities.map(key => ({ by: { key }, means: QUANTITIES[key].means, title: QUANTITIES[key].title + (QUANTITIES[key].unit ? ` [${QUANTITIES[key].unit}]` : ''), number: true, text: point => intervalText(point, key) })),
+    {
+      by: { key: 'runs' },
+      title: 'Runs',
+      means: 'Missions of this point, one for each seed',
+      number: true,
+      text: point => grouped(point.runs),
+    },
+    ...study.quantities.map(key => ({
+      by: { key },
+      means: QUANTITIES[key].means,
+      title: QUANTITIES[key].title + (QUANTITIES[key].unit ? ` [${QUANTITIES[key].unit}]` : ''),
+      number: true,
+      text: point => intervalText(point, key),
+    })),
   ];
   const last = element('th');
   last.append(element('span', 'hidden', 'Command'));
@@ -67,8 +93,10 @@ export function showTable(points, best, near) {
     $('rows').replaceChildren(...points.map(point => rows.get(point.index)));
   }
   columns.forEach(({ by }, i) => {
-    const th = $('heads').children[i], on = by === S.by || (by.key && by.key === S.by?.key);
-    if (on) th.setAttribute('aria-sort', S.down ? 'descending' : 'ascending'); else th.removeAttribute('aria-sort');
+    const th = $('heads').children[i],
+      on = by === S.by || (by.key && by.key === S.by?.key);
+    if (on) th.setAttribute('aria-sort', S.down ? 'descending' : 'ascending');
+    else th.removeAttribute('aria-sort');
   });
   for (const point of points) {
     const { classList } = rows.get(point.index);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers as text, and elements. Text from a record or a network only becomes textContent.
+// Writes numbers as text and makes elements; text from a record or network only becomes textContent.
 export const clamp = (v, low, high) => (v < low ? low : v > high ? high : v);
 export const $ = id => document.getElementById(id);
 
@@ -25,10 +25,18 @@ export const ofModes = mission => (mission.free_domain ? ' in modes of the free 
 export function readable(v) {
   if (typeof v !== 'number' || !isFinite(v)) return '–';
   if (v === 0) return '0';
-  let exponent = Math.floor(Math.log10(Math.abs(v))), mantissa = v / 10 ** exponent;
-  if (Math.abs(mantissa) >= 9.995) { mantissa /= 10; exponent++; }
-  const text = exponent >= -2 && exponent < 3 ? v.toPrecision(3)
-    : exponent >= 3 && exponent < 6 ? grouped(Math.round(v)) : `${mantissa.toFixed(2)}·10${superscript(exponent)}`;
+  let exponent = Math.floor(Math.log10(Math.abs(v))),
+    mantissa = v / 10 ** exponent;
+  if (Math.abs(mantissa) >= 9.995) {
+    mantissa /= 10;
+    exponent++;
+  }
+  const text =
+    exponent >= -2 && exponent < 3
+      ? v.toPrecision(3)
+      : exponent >= 3 && exponent < 6
+        ? grouped(Math.round(v))
+        : `${mantissa.toFixed(2)}·10${superscript(exponent)}`;
   return text.replace('-', '−');
 }
 
@@ -37,7 +45,9 @@ export const grouped = n => String(n).replace(/\B(?=(\d{3})+(?!\d))/g, '\u202f')
 
 export function duration(s) {
   if (!(s >= 120)) return `${s.toFixed(s < 10 ? 1 : 0)} s`;
-  const whole = Math.round(s), h = Math.floor(whole / 3600), m = Math.floor(whole / 60) % 60;
+  const whole = Math.round(s),
+    h = Math.floor(whole / 3600),
+    m = Math.floor(whole / 60) % 60;
   return h ? `${h} h ${m} min` : `${m} min ${whole % 60} s`;
 }
 

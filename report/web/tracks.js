@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracks on a grid of ticks, as report/track_grid.h codes them.
+// Reads tracks on a grid of ticks, as report/track_grid.h codes them.
 
 export function bytesOf(base64) {
-  const text = atob(base64), bytes = new Uint8Array(text.length);
+  const text = atob(base64),
+    bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
   return bytes;
 }
@@ -16,14 +17,15 @@ export class Track {
     this.z = inBox ? new Float32Array(0) : null;
     this.first = Infinity;
     this.last = -1;
-    this.member = [[0, Infinity]];  // rows in which its coverage counts, ascending
+    this.member = [[0, Infinity]]; // rows in which its coverage counts, ascending
     this.way = new Float64Array(0); // metres gone up to a row, filled on demand
     this.known = 0;
-    this.version = 0;               // grows when rows have changed that were known
+    this.version = 0; // grows when rows have changed that were known
   }
   reserve(rows) {
     if (this.p.length >= 2 * rows) return;
-    const most = Math.max(rows, this.p.length, 64), p = new Float32Array(2 * most).fill(NaN);
+    const most = Math.max(rows, this.p.length, 64),
+      p = new Float32Array(2 * most).fill(NaN);
     p.set(this.p);
     this.p = p;
     if (!this.z) return;
@@ -31,7 +33,9 @@ export class Track {
     z.set(this.z);
     this.z = z;
   }
-  has(row) { return row >= 0 && 2 * row < this.p.length && this.p[2 * row] === this.p[2 * row]; }
+  has(row) {
+    return row >= 0 && 2 * row < this.p.length && this.p[2 * row] === this.p[2 * row];
+  }
   // The newest row up to `row` that is known; −1: none.
   rowAt(row) {
     if (row > this.last) row = this.last;
@@ -43,7 +47,9 @@ export class Track {
     const { p, z } = this;
     return Math.hypot(p[2 * k] - p[2 * i], p[2 * k + 1] - p[2 * i + 1], z ? z[k] - z[i] : 0);
   }
-  isMember(row) { return this.member.some(([from, until]) => row >= from && row < until); }
+  isMember(row) {
+    return this.member.some(([from, until]) => row >= from && row < until);
+  }
   // The way up to each row, in metres.
   distance(row) {
     if (this.way.length < this.p.length / 2) {
@@ -52,7 +58,8 @@ export class Track {
       this.way = way;
     }
     for (; this.known <= row; this.known++) {
-      const k = this.known, d = k > 0 ? this.between(k - 1, k) : 0;
+      const k = this.known,
+        d = k > 0 ? this.between(k - 1, k) : 0;
       this.way[k] = (k > 0 ? this.way[k - 1] : 0) + (d === d ? d : 0);
     }
     return this.way[row];
@@ -61,22 +68,32 @@ export class Track {
 
 // Adds a block of rows to the run's tracks. Returns the first row that it changed.
 export function addTracks(run, block) {
-  const bytes = bytesOf(block.data), full = 2 ** block.bits - 1;
-  let at = 0, first = Infinity;
+  const bytes = bytesOf(block.data),
+    full = 2 ** block.bits - 1;
+  let at = 0,
+    first = Infinity;
   for (const { id, runs } of block.agents) {
     const track = run.track(id);
     for (let i = 0; i < runs.length; i += 2) {
-      const from = runs[i], count = runs[i + 1];
+      const from = runs[i],
+        count = runs[i + 1];
       track.reserve(from + count > run.capacity ? from + count : Math.min(run.capacity, 2 * (from + count)));
       for (let axis = 0; axis < run.size.length; axis++) {
         const scale = run.size[axis] / full;
         for (let k = from, before = 0, beforeThat = 0; k < from + count; k++) {
-          let z = 0, unit = 1, byte;
-          do { byte = bytes[at++]; z += (byte & 127) * unit; unit *= 128; } while (byte > 127);
+          let z = 0,
+            unit = 1,
+            byte;
+          do {
+            byte = bytes[at++];
+            z += (byte & 127) * unit;
+            unit *= 128;
+          } while (byte > 127);
           const v = (z % 2 ? -(z + 1) / 2 : z / 2) + 2 * before - beforeThat;
           beforeThat = before;
           before = v;
-          if (axis < 2) track.p[2 * k + axis] = v * scale; else track.z[k] = v * scale;
+          if (axis < 2) track.p[2 * k + axis] = v * scale;
+          else track.z[k] = v * scale;
         }
       }
       if (from <= track.last) track.version++;

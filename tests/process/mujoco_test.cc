@@ -49,7 +49,7 @@ TEST_F(RobotsInPhysics, RefuseAMissionOfOtherVehicles) {
   EXPECT_TRUE(world.prints("vehicle { kind: POINT }")) << world.printed();
 }
 
-/// What README.md shows: robots with real contacts in the office, held on the way.
+/// What docs/running.md shows: robots with real contacts in the office, held on the way.
 class RobotsInTheOffice : public RunningMission {
  protected:
   /// After 300 s they have covered the office as well as that; it begins at 0.78.

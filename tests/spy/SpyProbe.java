@@ -5,8 +5,11 @@ import java.awt.image.BufferedImage;
 import java.io.DataInput;
 import java.nio.file.Files;
 import java.nio.file.Paths;
+import java.util.ArrayList;
 import java.util.Arrays;
 import java.util.HashSet;
+import java.util.List;
+import java.util.Locale;
 import java.util.Random;
 import java.util.Set;
 import lcm.lcm.LCM;
@@ -18,6 +21,7 @@ import lcm.spy.LCMTypeDatabase;
 /** The Java checks of the tests: each prints its result, or ends with an exception. */
 public final class SpyProbe {
   private static final long RUN = 4711;
+  private static final int SIDE = 400; // of the drawn map [pixels]
 
   private SpyProbe() {}
 
@@ -36,14 +40,11 @@ public final class SpyProbe {
       case "plan":
         plan(rest[0]);
         return;
-      case "modes":
-        modes(rest[0], Integer.parseInt(rest[1]));
-        return;
       case "map":
-        map(rest[0], rest[1]);
+        map(rest[0]);
         return;
-      case "ink":
-        ink(rest[0], Double.parseDouble(rest[1]), Double.parseDouble(rest[2]));
+      case "words":
+        words(rest[0]);
         return;
       case "hostile":
         hostile(rest[0]);
@@ -111,84 +112,74 @@ public final class SpyProbe {
   private static void plan(String file) throws Exception {
     Plan plan = new Plan(Files.readAllBytes(Paths.get(file)));
     System.out.println(plan.name);
-    for (double value :
-        new double[] {plan.origin[0], plan.origin[1], plan.origin[2], plan.size[0], plan.size[1],
-            plan.size[2], plan.dt, plan.duration}) {
-      System.out.println(Double.toHexString(value));
-    }
-    System.out.println(plan.modes[0] + " " + plan.modes[1] + " " + plan.modes[2]);
-    for (double value : plan.target) System.out.println(Double.toHexString(value));
-  }
-
-  /** The modes of each block with so much room. */
-  private static void modes(String file, int room) throws Exception {
-    Plan plan = new Plan(Files.readAllBytes(Paths.get(file)));
-    for (int block = 0; plan.modesOf(block, room).length > 0; ++block) {
-      StringBuilder line = new StringBuilder("block " + block);
-      for (int mode : plan.modesOf(block, room)) line.append(' ').append(mode);
-      System.out.println(line);
+    double[] numbers = {plan.origin[0], plan.origin[1], plan.size[0], plan.size[1], plan.dt};
+    for (double value : numbers) System.out.println(Double.toHexString(value));
+    System.out.println(plan.lastTick + " " + plan.walls.size());
+    for (double[] ring : plan.walls) {
+      for (double value : ring) System.out.println(Double.toHexString(value));
     }
   }
 
-  /**
-   * Where agent 1's colour and the darkest grey are in the map of two axes, "xy", with (0, 0) below
-   * and left.
-   */
-  private static void map(String planFile, String axes) throws Exception {
+  /** Where agent 1's colour is in the map, (0, 0) below and left, and how much of it is wall. */
+  private static void map(String planFile) throws Exception {
     Team team = teamWith(Files.readAllBytes(Paths.get(planFile)));
-    ergocast.world_state_t world = world(team.plan, 0.75, 0.125);
-    team.receive(stream(bytesOf(world)));
-    BufferedImage image = draw(new MapView(team, "xyz".indexOf(axes.charAt(0)),
-        "xyz".indexOf(axes.charAt(1))));
-    print("agent", image, Colors.agent(1).getRGB() & 0xffffff);
-    print("target", image, Colors.pencil(1));
+    int walls = colored(draw(team), java.awt.Color.GRAY.getRGB()).length;
+    team.receive(stream(bytesOf(world(team.plan, 0.75, 0.125))));
+    double[][] agent = colored(draw(team), TeamView.color(1).getRGB());
+    System.out.printf(Locale.ROOT, "agent %.4f %.4f walls %d%n",
+        Arrays.stream(agent).mapToDouble(at -> at[0]).average().orElse(-1),
+        Arrays.stream(agent).mapToDouble(at -> at[1]).average().orElse(-1), walls);
   }
 
-  /** The mean place of a colour's pixels, as shares of the map's sides. */
-  private static void print(String what, BufferedImage image, int color) {
-    double x = 0, y = 0;
-    int count = 0;
-    for (int i = 72; i < 72 + 400; ++i) {
-      for (int j = 58; j < 58 + 400; ++j) {
-        if ((image.getRGB(i, j) & 0xffffff) != color) continue;
-        x += (i + 0.5 - 72) / 400;
-        y += 1 - (j + 0.5 - 58) / 400;
-        ++count;
+  /** The places of a colour's pixels, as shares of the map's sides. */
+  private static double[][] colored(BufferedImage image, int color) {
+    List<double[]> found = new ArrayList<>();
+    for (int i = 1; i < SIDE; ++i) {
+      for (int j = 1; j < SIDE; ++j) {
+        if (image.getRGB(TeamView.LEFT + i, TeamView.TOP + j) != color) continue;
+        found.add(new double[] {(i + 0.5) / SIDE, 1 - (j + 0.5) / SIDE});
       }
     }
-    System.out.printf(java.util.Locale.ROOT, "%s %.4f %.4f%n", what, x / count, y / count);
+    return found.toArray(new double[0][]);
   }
 
-  /** How many pixels of the map are drawn in ink near a place, by its shares of the map's sides. */
-  private static void ink(String planFile, double shareX, double shareY) throws Exception {
-    BufferedImage image = draw(new MapView(teamWith(Files.readAllBytes(Paths.get(planFile)))));
-    int x = 72 + (int) (400 * shareX), y = 58 + (int) (400 * (1 - shareY)), count = 0;
-    for (int i = x - 20; i <= x + 20; ++i) {
-      for (int j = y - 20; j <= y + 20; ++j)
-        count += (image.getRGB(i, j) & 0xffffff) == (Colors.INK.getRGB() & 0xffffff) ? 1 : 0;
+  /** What the view says: at first, once there is a plan, with reports, and after silence. */
+  private static void words(String planFile) throws Exception {
+    long[] now = {0};
+    Team team = new Team(() -> now[0]);
+    System.out.println(team.headline());
+    receivePlan(team, Files.readAllBytes(Paths.get(planFile)));
+    System.out.println(team.headline() + "; " + team.report());
+    for (double metric : new double[] {0, 0.00012345}) {
+      team.receive(stream(bytesOf(world(team.plan, 0.5, 0.5))));
+      team.receive(stream(bytesOf(status(metric))));
+      System.out.println(team.headline() + "; " + team.report());
     }
-    System.out.println("ink " + count);
+    for (int second = 1; second <= 4; ++second) {
+      now[0] += 1_000_000_000L;
+      team.receive(stream(bytesOf(world(team.plan, 0.5, 0.5))));
+    }
+    System.out.println(team.report());
   }
 
-  /** Draws the map at 400 x 400 pixels. */
-  private static BufferedImage draw(Picture view) {
-    view.setSize(72 + 400 + 84, 58 + 400 + 50);
+  /** Draws a square domain at SIDE x SIDE pixels. */
+  private static BufferedImage draw(Team team) {
+    TeamView view = new TeamView(team);
+    view.setSize(
+        TeamView.LEFT + SIDE + TeamView.RIGHT, TeamView.TOP + SIDE + TeamView.BOTTOM);
     BufferedImage image =
         new BufferedImage(view.getWidth(), view.getHeight(), BufferedImage.TYPE_INT_RGB);
     view.paint(image.createGraphics());
     return image;
   }
 
-  /**
-   * Tens of thousands of changed messages: nothing may be thrown, and all pictures still
-   * drawn.
-   */
+  /** Tens of thousands of changed messages: nothing may be thrown, and the view still drawn. */
   private static void hostile(String planFile) throws Exception {
     byte[] plan = Files.readAllBytes(Paths.get(planFile));
     Team team = teamWith(plan);
     Random random = new Random(1);
     byte[][] honest = {bytesOf(mission(plan)), bytesOf(world(team.plan, 0.5, 0.5)),
-        bytesOf(status()), bytesOf(contribution(team.plan))};
+        bytesOf(status(0.1))};
     for (byte[] message : honest) team.receive(stream(message));
     for (int i = 0; i < 60000; ++i) {
       byte[] message = honest[i % honest.length].clone();
@@ -198,11 +189,7 @@ public final class SpyProbe {
       }
       int length = random.nextInt(4) == 0 ? random.nextInt(message.length) : message.length;
       team.receive(stream(Arrays.copyOf(message, length)));
-      if (i % 1000 == 0) {
-        draw(new MapView(team));
-        draw(new MetricView(team));
-        draw(new CoefficientsView(team));
-      }
+      if (i % 1000 == 0) draw(team);
     }
     for (int i = 0; i < 4000; ++i) { // plans that come in one part
       byte[] changed = plan.clone();
@@ -211,16 +198,20 @@ public final class SpyProbe {
       other.receive(stream(bytesOf(mission(Arrays.copyOf(changed, 1024)))));
       other.receive(
           stream(bytesOf(mission(Arrays.copyOf(changed, Math.min(1024, changed.length))))));
-      if (other.plan != null && i % 20 == 0) draw(new MapView(other));
+      if (other.plan != null && i % 20 == 0) draw(other);
     }
-    System.out.println(
-        "unharmed, " + team.agents.size() + " agents, " + team.coverage.agents().length + " heard");
+    System.out.println("unharmed, " + team.agents.size() + " agents");
   }
 
   // ---- honest messages ----
 
   private static Team teamWith(byte[] plan) throws Exception {
     Team team = new Team(() -> 0); // silence would end the run on a slow machine
+    receivePlan(team, plan);
+    return team;
+  }
+
+  private static void receivePlan(Team team, byte[] plan) throws Exception {
     int parts = (plan.length + 511) / 512;
     for (int part = 0; part < parts; ++part) {
       ergocast.mission_t message =
@@ -230,7 +221,6 @@ public final class SpyProbe {
       team.receive(stream(bytesOf(message)));
     }
     if (team.plan == null) throw new IllegalStateException("the plan did not arrive");
-    return team;
   }
 
   private static ergocast.header_t header(int sender, long tick) {
@@ -261,28 +251,23 @@ public final class SpyProbe {
     message.vehicle_count = 1;
     ergocast.vehicle_t vehicle = new ergocast.vehicle_t();
     vehicle.vehicle_id = 1;
-    double[] shares = {shareX, shareY, 0.625};
-    for (int axis = 0; axis < 3; ++axis) {
+    double[] shares = {shareX, shareY};
+    for (int axis = 0; axis < 2; ++axis) {
       vehicle.position_m[axis] = plan.origin[axis] + shares[axis] * plan.size[axis];
     }
     message.vehicles = new ergocast.vehicle_t[] {vehicle};
     return message;
   }
 
-  private static ergocast.agent_status_t status() {
-    ergocast.agent_status_t message = new ergocast.agent_status_t();
-    message.header = header(1, 5);
-    message.ergodic_metric = 0.1;
-    message.status_host = "host";
-    return message;
-  }
-
-  private static ergocast.contribution_t contribution(Plan plan) {
-    ergocast.contribution_t message = new ergocast.contribution_t();
-    message.header = header(1, 5);
-    message.steps = 6;
-    message.elapsed_s = 6 * plan.dt;
-    message.mode_count = plan.target.length;
+  private static ergocast.team_status_t status(double metric) {
+    ergocast.team_status_t message = new ergocast.team_status_t();
+    message.header = header(-2, 5);
+    message.mission_state = 1;
+    message.agents_alive = 3;
+    message.agents_expected = 4;
+    message.silent_agent = 2;
+    message.median_ergodic_metric = metric;
+    message.team_host = "host";
     return message;
   }
 

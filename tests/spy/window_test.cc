@@ -10,12 +10,12 @@ namespace {
 constexpr const char* kWorldUrl = "udpm://239.255.76.67:24701?ttl=0";
 constexpr const char* kCommandUrl = "udpm://239.255.76.67:24702?ttl=0";
 
-/// The colours of agents 0 to 3, as in Colors.java.
+/// The colours of agents 0 to 3, as in TeamView.java.
 constexpr int kAgentColors[] = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7};
 /// Pixels of an agent's disc that have its colour alone.
 constexpr std::size_t kMarker = 40;
 /// Rows of the swarm bus: names in order, four agents.
-constexpr int kContributionRow = 4, kTeamStatusRow = 13;
+constexpr int kTeamStatusRow = 13;
 
 class Spy : public Desk {
  protected:
@@ -44,14 +44,13 @@ TEST_F(Spy, EveryMessageOfAMissionIsDecoded) {
   wait_for(listener);
 }
 
-TEST_F(Spy, DrawsTheTeamAsItMovesAndItsCoefficients) {
+TEST_F(Spy, DrawsTheTeamAsItMoves) {
   Child mission = start_mission();
   Child spy = start("ergocast", {"spy", "--lcm-url", kUrl});
   ASSERT_TRUE(sees("LCM Spy")) << output();
 
   ASSERT_TRUE(open("ERGOCAST_TEAM_STATUS", kTeamStatusRow));
-  Area team = front("ERGOCAST_TEAM_STATUS");
-  team.width /= 2;  // the map; the curve is beside it
+  const Area team = front("ERGOCAST_TEAM_STATUS");
   const auto agents = [&] {
     const auto pixels = look().pixels_by_color(team);
     std::vector<std::set<Pixel>> found;
@@ -67,17 +66,19 @@ TEST_F(Spy, DrawsTheTeamAsItMovesAndItsCoefficients) {
   };
   std::vector<std::set<Pixel>> before;
   EXPECT_TRUE(eventually([&] { return all_there(before = agents()); }));
+  // The window finds its size in a few pictures, and only later ones come from the mission.
+  constexpr int kPictures = 10;
+  int pictures = 0;
   EXPECT_TRUE(eventually([&] {
     const auto after = agents();
     bool all_moved = all_there(after);
     for (std::size_t i = 0; i < after.size(); ++i) all_moved = all_moved && after[i] != before[i];
-    return all_moved;
+    if (all_moved) {
+      ++pictures;
+      before = after;
+    }
+    return pictures >= kPictures;
   }));
-
-  ASSERT_TRUE(open("ERGOCAST_CONTRIBUTION_0", kContributionRow));
-  const Area coefficients = front("ERGOCAST_CONTRIBUTION_0");
-  constexpr std::size_t kShades = 100;  // of a scale of hundreds, for 6 × 256 coefficients
-  EXPECT_TRUE(eventually([&] { return look().pixels_by_color(coefficients).size() > kShades; }));
 
   end(spy, kJavaInterrupted);
   end(mission, 0);
@@ -94,10 +95,9 @@ TEST_F(Spy, DebiansScriptTakesTheJarToo) {
   for (const char* name : {"JDK_JAVA_OPTIONS", "CLASSPATH", "LCM_DEFAULT_URL"}) unsetenv(name);
   ASSERT_TRUE(sees("LCM Spy")) << text_of(log);
   EXPECT_TRUE(
-      eventually([&] { return text_of(log).find("Found 2 plugins") != std::string::npos; }));
+      eventually([&] { return text_of(log).find("Found 1 plugins") != std::string::npos; }));
   ASSERT_TRUE(open("ERGOCAST_TEAM_STATUS", kTeamStatusRow));
-  Area map = front("ERGOCAST_TEAM_STATUS");
-  map.width /= 2;
+  const Area map = front("ERGOCAST_TEAM_STATUS");
   EXPECT_TRUE(eventually([&] { return look().pixels_by_color(map).contains(kAgentColors[0]); }));
   end(spy, kJavaInterrupted);
   end(mission, 0);
