@@ -39,8 +39,8 @@ using namespace std::chrono_literals;
 
 struct RunOptions : MissionOptions {
   std::optional<LcmUrl> url;  ///< nothing: this host only, on ports that the run reserves
-  MessageAuthenticator seal;
-  std::string key_file;  ///< the file of the key in `seal`; empty: none
+  MessageAuthenticator authenticator;
+  std::string key_file;  ///< the file of the key in `authenticator`; empty: none
   std::int64_t event_log_mib = kEventLogMib;
   bool event_log_zstd = false;
   fs::path world;                            ///< empty: ergocast-sim
