@@ -125,8 +125,9 @@ void add_pause(CLI::App& app, Action& action);
 /// Reports every problem of a scenario. With `print`, prints the scenario with all defaults.
 int check(const std::filesystem::path& scenario, const Overrides& overrides, bool print);
 
-/// Makes the report of a run directory, again if it exists.
-int report(const std::filesystem::path& run_dir);
+/// Makes the report of a run directory, again if it exists. With `figures` ends as ergocast.plot,
+/// which draws figures/.
+int report(const std::filesystem::path& run_dir, bool figures);
 
 /// Simulates a recorded run again and compares every file of the record.
 int verify(const std::filesystem::path& run_dir);

@@ -181,7 +181,7 @@ int parse_and_do(int argc, char** argv) {
   app.set_version_flag("--version", version_text());
   MissionOptions mission;
   std::filesystem::path path;
-  bool print = false;
+  bool print = false, figures = false;
   Action action;
 
   auto* run_command = app.add_subcommand("run", "Run a mission as processes over LCM on this host");
@@ -253,7 +253,10 @@ int parse_and_do(int argc, char** argv) {
 
   auto* report_command = app.add_subcommand("report", "Make a run's report again");
   report_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");
-  report_command->callback([&] { action = [&] { return report(path); }; });
+  report_command->add_flag("--figures", figures,
+                           "Also draw DIR/figures/*.svg and *.pdf; needs python3-ergocast and "
+                           "python3-matplotlib");
+  report_command->callback([&] { action = [&] { return report(path, figures); }; });
 
   auto* verify_command =
       app.add_subcommand("verify", "Simulate a recorded run again and compare the trajectories");
