@@ -12,6 +12,7 @@ except ModuleNotFoundError:
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a4fb5")
 SOLID, DASHED, DOTS = {"linestyle": "-"}, {"linestyle": "--"}, {"linestyle": "none"}
@@ -22,7 +23,7 @@ def draw(folder, images, name, panels, kinds=None, beside=0.0):
     """Draws FOLDER/NAME.csv into IMAGES/NAME.svg, if it is there.
 
     panels: what matplotlib's Axes.set() takes for each panel, in the order of the file;
-        the file names them.
+        the file names them. `bound`, a height, and `equal`, where x is y, are dotted lines.
     kinds: how the lines of each kind look; intervals have a dot in their middle.
     beside: by which share of the axis neighbours are moved, so that all intervals can be seen.
     """
@@ -36,6 +37,12 @@ def draw(folder, images, name, panels, kinds=None, beside=0.0):
     figure, axes = plt.subplots(1, len(panels), figsize=(width, 3.4), layout="constrained", squeeze=False)
     lines = list(dict.fromkeys((row["series"], row["kind"]) for row in rows))
     for ax, title, panel in zip(axes[0], titles, panels):
+        line = {"color": "#333333", "linewidth": 0.8, "linestyle": ":"}
+        panel = dict(panel)
+        if panel.pop("equal", False):
+            ax.axline((1, 1), (10, 10), **line)
+        if (bound := panel.pop("bound", None)) is not None:
+            ax.axhline(bound, **line)
         ax.set(**{"title": title, **panel})
         for place, (one, kind) in enumerate(lines):
             points = [
@@ -57,6 +64,12 @@ def draw(folder, images, name, panels, kinds=None, beside=0.0):
             else:
                 ax.plot(x, middle, linewidth=1.4, **look)
         ax.grid(color="#e3e5e8", linewidth=0.5)
+        for axis in (ax.xaxis, ax.yaxis):
+            low, high = axis.get_view_interval()
+            if axis.get_scale() == "log" and 1e-3 < low and high < 100 * low:  # few powers of ten, and short numbers
+                axis.set_minor_locator(LogLocator(subs=(1, 2, 5) if high > 4 * low else range(1, 10)))
+                axis.set_minor_formatter("{x:g}")
+                axis.set_major_formatter("{x:g}")
     key = [Line2D([], [], color=COLOURS[i % len(COLOURS)], label=text) for i, text in enumerate(series)]
     if len(drawn_kinds) > 1:
         for kind in drawn_kinds:

@@ -145,7 +145,7 @@ def study(table: Place, ax: Any = None, *, x: str | None = None, y: str = "ergod
     y: a column of study.csv. φ² has a logarithmic axis.
     """
     rows, fields = _read_study(table)
-    field = x or max(fields, key=lambda name: rows[name].nunique(), default="scenario")
+    field: str = x or max(fields, key=lambda name: int(rows[name].nunique()), default="scenario")
     if lacking := {field, y} - set(rows):
         raise ErgocastError(f"{os.fspath(table)} has no column {lacking.pop()}")
     numbers = pd.to_numeric(rows[field], errors="coerce")
@@ -302,9 +302,6 @@ def _draw_tracks(ax: Any, run: Run, seen: _View) -> list[Any]:
     return keys + ([Line2D([], [], label="station", **square)] if stations else [])
 
 
-# ---- φ² and studies ----
-
-
 def _style(ax: Any) -> Any:
     return plt.rc_context(STYLE) if ax is None else contextlib.nullcontext()
 
@@ -318,9 +315,12 @@ def _make_logarithmic(ax: Any, *names: str) -> None:
     for name in names:
         ax.set(**{f"{name}scale": "log"})
         axis = getattr(ax, f"{name}axis")
-        axis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(2, 2 if name == "x" else 0.5)))
+        low, high = axis.get_view_interval()
+        axis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(2, 0.5)))
         if name == "x":  # labels beside each other need more room
             axis.set_minor_locator(LogLocator(subs=(2, 5)))
+            axis.set_minor_formatter("{x:g}" if high < 100 * low else "")
+            axis.set_major_formatter("{x:g}" if low > 1e-4 else LogFormatterSciNotation())
 
 
 def _look(i: int) -> dict[str, Any]:

@@ -11,17 +11,17 @@ folder, images = sys.argv[1:]
 ESCAPE = {"measured": DOTS, "predicted": SOLID, "past neglected": DASHED}
 draw(
     folder, images, "theorem_1_noise",
-    2 * [{"xscale": "log", "xlabel": "σ [m/√s]", "ylabel": "time of escape [s]", "ylim": (0, 600)}],
+    [{"xscale": "log", "xlabel": "σ [m/√s]", "ylabel": "time of escape [s]", "ylim": (0, 600)}] * 2,
     ESCAPE,
 )
 draw(
     folder, images, "theorem_1_epsilon",
-    2 * [{"xscale": "log", "yscale": "log", "xlabel": "ε [1/m]", "ylabel": "time of escape [s]"}],
+    [{"xscale": "log", "yscale": "log", "xlabel": "ε [1/m]", "ylabel": "time of escape [s]"}] * 2,
     ESCAPE,
 )
 draw(
     folder, images, "theorem_1_distribution",
-    2 * [{"xlabel": "time [s]", "ylabel": "share escaped"}],
+    [{"xlabel": "time [s]", "ylabel": "share escaped"}] * 2,
     {"measured": SOLID, "predicted": DASHED},
 )
 draw(
@@ -31,13 +31,13 @@ draw(
          "ylabel": "standard deviation [m]", "ylim": (0.1, 1e12)},
         {"title": "equal if the law is exact: a dot a set and σ", "xscale": "log", "yscale": "log",
          "xlabel": "predicted spread at the measured median, σ = 1 m/√s [m]",
-         "ylabel": "spread that escape takes: 20 m / (0.674 σ)"},
+         "ylabel": "spread that escape takes: 20 m / (0.674 σ)", "equal": True},
     ],
     ESCAPE,
 )
 draw(
     folder, images, "theorem_2_mean_square",
-    [{"xlabel": "time / duration of the case", "ylabel": "mean of ‖x − c‖² / bound", "ylim": (0, 1.1)}],
+    [{"xlabel": "time / duration of the case", "ylabel": "mean of ‖x − c‖² / bound", "ylim": (0, 1.1), "bound": 1}],
     {"edges reflect": SOLID, "no edges": DASHED},
 )
 draw(
