@@ -145,7 +145,7 @@ def study(table: Place, ax: Any = None, *, x: str | None = None, y: str = "ergod
     y: a column of study.csv. φ² has a logarithmic axis.
     """
     rows, fields = _read_study(table)
-    field: str = x or max(fields, key=lambda name: int(rows[name].nunique()), default="scenario")
+    field = x or max(fields or ["scenario"], key=lambda name: int(rows[name].nunique()))
     if lacking := {field, y} - set(rows):
         raise ErgocastError(f"{os.fspath(table)} has no column {lacking.pop()}")
     numbers = pd.to_numeric(rows[field], errors="coerce")
