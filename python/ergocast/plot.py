@@ -82,7 +82,7 @@ def map(run: Run, ax: Any = None, *, view: str = "xy") -> Any:
         if view == "xy":
             keys += _draw_walls(ax, run.mission) + _draw_kept_out(ax, run.target_density, seen)
         seen.frame(ax)
-        ax.legend(handles=keys, loc="lower center", bbox_to_anchor=(0.5, 1), ncol=4, columnspacing=1)
+        ax.legend(handles=keys, loc="lower center", bbox_to_anchor=(0.5, 1), ncol=4, columnspacing=1, frameon=False)
     return ax
 
 
