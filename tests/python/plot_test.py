@@ -143,12 +143,20 @@ class Maps(unittest.TestCase):
             for ax in (covered, target):
                 self.assertAlmostEqual(float(ax.images[0].get_array().mean()), 1, places=9)
             self.assertEqual(covered.get_xlabel(), f"{view[0]} [m]")
-        # The mean over the other axis of a view is the same from both sides.
-        from_above = plot.coverage(run, view="xy")[1].images[0].get_array().mean(axis=0)
-        from_the_side = plot.coverage(run, view="xz")[1].images[0].get_array().mean(axis=0)
-        np.testing.assert_allclose(from_above, from_the_side, atol=1e-9)
+        # Along an axis that two views share, the means over the others are the same.
+        xy, xz, yz = (plot.coverage(run, view=view)[1].images[0].get_array() for view in ("xy", "xz", "yz"))
+        np.testing.assert_allclose(xy.mean(axis=0), xz.mean(axis=0), atol=1e-9)
+        np.testing.assert_allclose(xy.mean(axis=1), yz.mean(axis=0), atol=1e-9)
+        np.testing.assert_allclose(xz.mean(axis=1), yz.mean(axis=1), atol=1e-9)
         with self.assertRaisesRegex(ValueError, "view='zz'"):
             plot.map(run, view="zz")
+
+    def test_of_the_modes_are_the_target_where_it_is_smooth(self):
+        run = ergocast.simulate("quadrimodal_corners", set={"time.duration_s": 2})
+        seen = plot.coverage(run)[1].images[0].get_array().T
+        nearest = ((np.arange(len(seen)) + 0.5) / len(seen) * len(run.target_density)).astype(int)
+        target = run.target_density[np.ix_(nearest, nearest)]
+        self.assertLess(np.abs(seen - target).max(), 0.05 * target.max())
 
 
 class Metrics(unittest.TestCase):
