@@ -14,7 +14,7 @@
 #include "cli/team_history.h"
 #include "cli/team_view.h"
 #include "core/mission.h"
-#include "report/raster.h"
+#include "report/target_density.h"
 #include "report/track_grid.h"
 #include "team/participant.h"
 

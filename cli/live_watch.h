@@ -11,7 +11,7 @@
 
 #include "cli/page_server.h"
 #include "core/mission.h"
-#include "report/raster.h"
+#include "report/target_density.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {

@@ -272,22 +272,16 @@ FileComparison compare_summary(const fs::path& run_dir, const Mission& mission,
   return summary;
 }
 
-std::vector<FileComparison> compare_report(const fs::path& run_dir, const Mission& mission) {
+FileComparison compare_report(const fs::path& run_dir, const Mission& mission) {
   const auto drawn = draw_report(run_dir, mission, recorded_team(run_dir, mission));
   if (const auto* problem = std::get_if<std::string>(&drawn))
-    return {{kReportFile, "", "", *problem + '\n'}};
+    return {kReportFile, "", "", *problem + '\n'};
   const bool sources_are_there =
       fs::exists(run_dir / kSummaryFile) && fs::exists(run_dir / kTargetDensityFile);
-  std::vector<FileComparison> files;
-  for (const ReportFile& file : std::get<std::vector<ReportFile>>(drawn)) {
-    const std::string name = file.path.string();
-    FileComparison compared = compare_text(run_dir, name, file.text, "drawn anew");
-    if (!compared.difference.empty() && !sources_are_there) {
-      compared = {name, "", "a file that it may have been drawn from is not there", ""};
-    }
-    files.push_back(std::move(compared));
-  }
-  return files;
+  const FileComparison compared =
+      compare_text(run_dir, kReportFile, std::get<ReportPage>(drawn).html, "drawn anew");
+  if (compared.difference.empty() || sources_are_there) return compared;
+  return {kReportFile, "", "a file that it may have been drawn from is not there", ""};
 }
 
 }  // namespace ergocast::cli

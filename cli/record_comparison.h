@@ -51,9 +51,8 @@ FileComparison compare_summary(const std::filesystem::path& run_dir, const Missi
                                const nlohmann::ordered_json& recorded,
                                const Expectation& expectation);
 
-/// Compares report.html and the figures with what the other files produce. If the summary or the
-/// target's picture is missing, it may have existed when they were drawn.
-std::vector<FileComparison> compare_report(const std::filesystem::path& run_dir,
-                                           const Mission& mission);
+/// Compares report.html with what the other files produce. If the summary or the target's picture
+/// is missing, it may have existed when the page was made.
+FileComparison compare_report(const std::filesystem::path& run_dir, const Mission& mission);
 
 }  // namespace ergocast::cli

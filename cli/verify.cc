@@ -188,7 +188,7 @@ std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Miss
   files.push_back(summary.empty() ? FileComparison{kSummaryFile, "", "is not there", ""}
                                   : compare_summary(run_dir, mission, summary, expectation));
   if (!files.back().difference.empty()) return files;
-  for (FileComparison& file : compare_report(run_dir, mission)) files.push_back(std::move(file));
+  files.push_back(compare_report(run_dir, mission));
   return files;
 }
 

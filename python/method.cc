@@ -2,6 +2,7 @@
 // Binds the basis and the mission. In a plane coefficients have two indices, in a box three.
 #include "core/mission.h"
 #include "core/mission_limits.h"
+#include "core/station.h"
 #include "python/arrays.h"
 #include "python/module.h"
 
@@ -85,6 +86,26 @@ Numbers starts(const Mission& mission) {
   double* out = result.mutable_data();
   for (const Eigen::Vector3d& start : mission.starts_m) out = std::copy_n(start.data(), axes, out);
   return result;
+}
+
+py::list walls(const Mission& mission) {
+  py::list rings;
+  for (const Ring& ring : mission.walls) {
+    Numbers corners({static_cast<py::ssize_t>(ring.size()), py::ssize_t{2}});
+    double* out = corners.mutable_data();
+    for (const Eigen::Vector2d& corner_m : ring) out = std::copy_n(corner_m.data(), 2, out);
+    rings.append(std::move(corners));
+  }
+  return rings;
+}
+
+py::dict stations(const Mission& mission) {
+  py::dict places;
+  for (int agent = 0; agent < static_cast<int>(mission.starts_m.size()); ++agent) {
+    if (const auto station_m = station_of(mission, agent))
+      places[py::int_(agent)] = array_of(*station_m, mission.domain);
+  }
+  return places;
 }
 
 py::tuple tuple_of(const Eigen::Vector3d& vector, const Box& domain) {
@@ -173,6 +194,12 @@ compile_mission() makes it from a scenario; a record has its own.)")
           "mu", [](const Mission& m) { return array_of(m.target_coefficients, m.basis); },
           "μ of the target, (3): shape (modes_x, modes_y); mu[0, 0] is 1.")
       .def_property_readonly("starts_m", &starts, "Where agent i begins: shape (agents, 2) [m].")
+      .def_property_readonly(
+          "walls_m", &walls,
+          "Rings of the walls, each of shape (corners, 2) [m]. A place is solid if "
+          "an odd number of rings contains it.")
+      .def_property_readonly("stations_m", &stations,
+                             "Where each agent that has a station is at the end: shape (2,) [m].")
       .def_property_readonly(
           "dt_s", [](const Mission& m) { return m.timing.dt_s; }, "Control step [s].")
       .def_property_readonly(

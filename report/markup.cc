@@ -81,12 +81,6 @@ std::string escape(std::string_view text) {
   return out;
 }
 
-std::string fixed(double value, int decimals) {
-  std::string digits = plain_fixed(value, decimals);
-  trim_zeros(digits);
-  return digits == "-0" ? "0" : digits;
-}
-
 std::string readable(double value) {
   if (!std::isfinite(value)) return "–";
   if (value == 0) return "0";
@@ -105,47 +99,6 @@ std::string readable(double value) {
   }
   trim_zeros(mantissa);
   return typeset(mantissa) + " × 10" + superscript(decade);
-}
-
-std::string with_unit(double value, std::string_view unit) {
-  static constexpr const char* kPrefixes[] = {"µ", "m", "", "k", "M", "G", "T"};
-  int prefix = value == 0 ? 0 : static_cast<int>(std::floor(decade_of(value) / 3.0));
-  prefix = std::clamp(prefix, -2, 4);
-  const double scaled = value / std::pow(1000, prefix);
-  return readable(scaled) + "\u00a0" + kPrefixes[prefix + 2] + std::string(unit);
-}
-
-std::string duration(double seconds) {
-  if (!(seconds >= 120 && seconds < 1e15)) return readable(seconds) + "\u00a0s";
-  const double unit = seconds < 3600 ? 1 : 60;  // seconds do not matter in hours
-  const auto whole = static_cast<long long>(std::round(seconds / unit) * unit);
-  const long long hours = whole / 3600, minutes = whole / 60 % 60, rest = whole % 60;
-  std::string text;
-  if (hours > 0) text += std::to_string(hours) + "\u00a0h ";
-  if (minutes > 0) text += std::to_string(minutes) + "\u00a0min ";
-  if (rest > 0) text += std::to_string(rest) + "\u00a0s ";
-  text.pop_back();
-  return text;
-}
-
-std::string power_of_ten(int exponent, bool plain) {
-  if (!plain) return "10" + superscript(exponent);
-  return typeset(plain_fixed(std::pow(10, exponent), std::max(0, -exponent)));
-}
-
-double text_width(std::string_view text, double size) {
-  constexpr double kMeanAdvance = 0.56;  // of the size, for digits and lower case
-  const auto starts_character = [](char c) {
-    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-  };
-  const auto characters = std::count_if(text.begin(), text.end(), starts_character);
-  return kMeanAdvance * size * static_cast<double>(characters);
-}
-
-std::string axis_label(double value, double step) {
-  const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 12);
-  // A tick within a rounding error of 0 is 0.
-  return typeset(plain_fixed(std::abs(value) < step * 1e-6 ? 0 : value, decimals));
 }
 
 }  // namespace ergocast

@@ -7,7 +7,7 @@
 
 #include "core/mission.h"
 #include "logger/run_data.h"
-#include "report/raster.h"
+#include "report/target_density.h"
 
 namespace ergocast {
 

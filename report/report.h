@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "core/mission.h"
 
@@ -15,28 +14,27 @@ namespace ergocast {
 
 inline constexpr const char* kReportFile = "report.html";
 
-/// A file of the report: its path within the run directory, and its content.
-struct ReportFile {
-  std::filesystem::path path;
-  std::string text;
+/// The content of report.html.
+struct ReportPage {
+  std::string html;
 };
 
-/// Draws report.html and figures/*.svg from the run's trajectory.csv, metrics.csv and, if they
-/// exist, summary.json and target_density.csv. An empty run and an incomplete last line are
-/// allowed. On failure, an error with its place and remedy.
+/// Makes the page from the run's trajectory.csv, metrics.csv and, if they exist, summary.json and
+/// target_density.csv. An empty run and an incomplete last line are allowed. On failure, an error
+/// with its place and remedy.
 /// @param team  how the agents were over time, for the page (cli/recorded_team.h); may be null
 /// @pre `mission` is that of the run's plan.
-std::variant<std::vector<ReportFile>, std::string> draw_report(const std::filesystem::path& run_dir,
-                                                               const Mission& mission,
-                                                               const nlohmann::ordered_json& team);
+std::variant<ReportPage, std::string> draw_report(const std::filesystem::path& run_dir,
+                                                  const Mission& mission,
+                                                  const nlohmann::ordered_json& team);
 
 /// What the page shows of a record, or the error; see page.h.
 std::variant<nlohmann::ordered_json, std::string> read_page_record(
     const std::filesystem::path& run_dir, const Mission& mission,
     const nlohmann::ordered_json& team);
 
-/// Writes them into `run_dir` and replaces existing files, each as a whole or not at all. Nothing
-/// on success, otherwise the error.
+/// Writes report.html into `run_dir`, as a whole or not at all. Nothing on success, otherwise the
+/// error.
 std::optional<std::string> write_report(const std::filesystem::path& run_dir,
                                         const Mission& mission, const nlohmann::ordered_json& team);
 

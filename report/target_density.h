@@ -3,14 +3,16 @@
 // maps.
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
 
-#include "report/raster.h"
-
 namespace ergocast {
+
+/// One value a cell: row i along x, column j along y, both upwards from the domain's origin.
+using Field = Eigen::MatrixXd;
 
 /// The density in multiples of the uniform density: a table with the north-west first.
 inline constexpr const char* kTargetDensityFile = "target_density.csv";

@@ -26,4 +26,11 @@ fs::path spy_jar() {
   return {};
 }
 
+fs::path python_of_this_build() {
+  std::error_code error;
+  const fs::path programs = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path folder = (programs / "../python").lexically_normal();
+  return fs::exists(folder / "ergocast" / "plot.py", error) ? folder : fs::path();
+}
+
 }  // namespace ergocast

@@ -14,4 +14,8 @@ std::filesystem::path shipped_folder(const std::string& name, const std::string&
 /// ergocast-spy.jar of an installation, or of this build. Empty: it was not built without a JDK.
 std::filesystem::path spy_jar();
 
+/// The folder with the Python package ergocast of this build. Empty: the program is installed, and
+/// so is the package, or it was not built.
+std::filesystem::path python_of_this_build();
+
 }  // namespace ergocast

@@ -4,6 +4,7 @@
 #include "scenario/findings.h"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <string_view>
 

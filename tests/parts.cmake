@@ -157,13 +157,11 @@ ergocast_test(NAME status_tests LABELS unit
 
 ergocast_test(NAME logger_tests LABELS unit
   SOURCES
-    report/axes_test.cc
     logger/drivers_test.cc
     logger/farewell_test.cc
     logger/full_disk_test.cc
     logger/line_file_test.cc
     logger/recorder_test.cc
-    report/projection_test.cc
     report/report_test.cc
     logger/resume_test.cc
     report/statistics_test.cc

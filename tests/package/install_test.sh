@@ -57,6 +57,14 @@ check_missions() {
   grep -q harbour_patrol "$work/said" || fail 'the shipped scenarios are not named'
 }
 
+# Figures are Python's, which this package does not need.
+check_figures() {
+  local status=0
+  in_root ergocast report --figures /tmp/test/simulated >/dev/null 2>"$work/said" || status=$?
+  [ "$status" -eq 3 ] && grep -q '^no figures: .* apt-get install python3-' "$work/said" ||
+    fail "figures without Python, code $status: $(cat "$work/said")"
+}
+
 # The page is served from the programs alone.
 check_page() {
   "${offline[@]}" ergocast watch --port 8765 /tmp/test/simulated >"$work/watch" 2>&1 &
@@ -83,6 +91,7 @@ cp "$deb" "$root/tmp/"
 apt_install "/tmp/$(basename "$deb")"
 check_files
 check_missions
+check_figures
 check_page
 in_root ergocast --version
 

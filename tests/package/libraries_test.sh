@@ -57,6 +57,21 @@ END
   expect_file usr/share/doc/python3-ergocast/examples/run_and_sweep.ipynb
 }
 
+# What is recommended was not installed, and is installed then.
+check_figures() {
+  local status=0
+  case $(dpkg-deb -f "$root/tmp/python3-ergocast.deb" Recommends) in
+    *python3-matplotlib*) ;;
+    *) fail 'python3-ergocast does not recommend python3-matplotlib' ;;
+  esac
+  in_root ergocast report --figures /tmp/test/simulated >/dev/null 2>"$work/said" || status=$?
+  [ "$status" -eq 3 ] && grep -qx 'no figures: .* apt-get install python3-matplotlib' "$work/said" ||
+    fail "figures without matplotlib, code $status: $(cat "$work/said")"
+  apt_install python3-matplotlib
+  in_root ergocast report --figures /tmp/test/simulated >/dev/null || fail 'report --figures'
+  [ -s "$work/simulated/figures/map.svg" ] || fail 'there is no map'
+}
+
 make_bare_system
 pack
 for name in ergocast libergocast-dev python3-ergocast; do
@@ -67,6 +82,7 @@ check_headers
 check_versions
 check_example
 check_python
+check_figures
 in_root dpkg --purge ergocast libergocast-dev python3-ergocast >/dev/null
 left=$(files_of_system | grep -i ergocast || true)
 [ -z "$left" ] || fail "purged, and there still is: $left"

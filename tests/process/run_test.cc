@@ -35,11 +35,12 @@ TEST_F(MissionRun, DefaultScenarioLeavesACompleteRecordThatIsTheSimulationsByteF
   EXPECT_EQ(facts["record_complete"], true);
   EXPECT_EQ(facts["agents"].size(), 4U);
   EXPECT_LT(facts["ergodic_metric"]["last"], facts["ergodic_metric"]["first"]);
-  for (const char* name : {"scenario.textproto", "plan.binpb", "events-000.lcm", "report.html",
-                           "figures/trajectories.svg", "log/agent-3.log", "log/sim.log",
-                           "log/coordinator.log", "log/logger.log"}) {
+  for (const char* name :
+       {"scenario.textproto", "plan.binpb", "events-000.lcm", "report.html", "log/agent-3.log",
+        "log/sim.log", "log/coordinator.log", "log/logger.log"}) {
     EXPECT_GT(std::filesystem::file_size(out() / name), 0U) << name;
   }
+  EXPECT_FALSE(std::filesystem::exists(out() / "figures"));
 }
 
 TEST_F(MissionRun, RecordedScenarioRunsAgainToTheSameTrajectory) {

@@ -58,7 +58,7 @@ class SameAsTheCommand(WithRecord):
         self.assertEqual(list(ours), list(theirs))
         for name, content in theirs.items():
             self.assertEqual(ours[name], content, name)
-        self.assertIn("figures/trajectories.svg", ours)
+        self.assertIn("trajectory.csv", ours)
 
     def test_verify_finds_no_difference(self):
         verified = command("verify", self.run_dir)

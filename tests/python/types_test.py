@@ -11,10 +11,11 @@ import unittest
 from pathlib import Path
 
 import ergocast
+from ergocast import plot
 
 PACKAGE = Path(ergocast.__file__).parent
 FOLDER = Path(sys.argv.pop())
-CONFIGURATION = "[mypy]\nstrict = True\n[mypy-pandas.*]\nignore_missing_imports = True\n"
+CONFIGURATION = "[mypy]\nstrict = True\n[mypy-pandas.*]\nignore_missing_imports = True\n[mypy-matplotlib.*]\nignore_missing_imports = True\n"
 
 # What pybind11 gives every class, and classes that only C++ makes.
 ALLOWED = """ergocast\\._native\\.[A-Z][A-Za-z]*
@@ -25,6 +26,7 @@ GOOD = """
 import numpy as np
 import numpy.typing as npt
 import ergocast
+from ergocast import plot
 
 run: ergocast.Run = ergocast.load("runs/one")
 c: npt.NDArray[np.float64] = run.coverage(5)
@@ -34,6 +36,9 @@ simulated = ergocast.simulate("x", seed=1, set={"law.epsilon": 0.2, "time.pace":
 mu, error = ergocast.Target([ergocast.Gaussian((0, 0), sigma_m=1)]).coefficients(
     simulated.mission.domain, simulated.mission.basis
 )
+ax = plot.map(run, view="xy")
+plot.metric({"ours": [run, flown], "theirs": run}, ax)
+plot.study("runs/noise", y="slope")
 command: npt.NDArray[np.float64] = ergocast.Controller(run.mission).command(0, 0, (1.0, 2.0))
 """
 
@@ -79,9 +84,10 @@ class Types(unittest.TestCase):
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 
     def test_everything_public_has_a_contract(self):
-        for name in ergocast.__all__:
-            thing = getattr(ergocast, name)
-            if name.startswith("__"):
+        public = [(module, name) for module in (ergocast, plot) for name in module.__all__]
+        for module, name in public:
+            thing = getattr(module, name)
+            if name.startswith("__") or name.isupper():
                 continue
             self.assertTrue(thing.__doc__, name)
             for member, value in vars(thing).items() if isinstance(thing, type) else ():

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables and figures of docs/law.md and docs/results/law.md, from the studies that
-// lab/studies/law/run has flown.
+// Tables of docs/law.md and docs/results/law.md, and what their figures are drawn from, of the
+// studies that lab/studies/law/run has flown.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
 
-#include "lab/studies/panels.h"
+#include "lab/studies/curves.h"
 #include "lab/studies/table.h"
-#include "report/figures.h"
 #include "report/statistics.h"
 
 namespace ergocast::studies {
@@ -144,28 +143,20 @@ void print_escapes(const Points& ours, const Points& old, const Points& papers) 
 }
 
 /// φ² over time, by the columns ergodic_metric_at_T_s.
-void draw_decay(const fs::path& folder, const std::string& group, const fs::path& images) {
-  Panel panel{
-      "φ², geometric mean", log_axis("time [s]", 10, 20000), log_axis("φ²", 5e-8, 0.4), {}, {}};
-  std::vector<KeyEntry> key;
-  for (std::size_t i = 0; i < std::size(kLaws); ++i) {
-    Curve curve{agent_color(static_cast<AgentId>(i)), {}};
-    const StudyRuns runs =
-        read_study(folder / (group + "-" + kLaws[i].folder) / "study.csv").front();
+void write_decay(const fs::path& folder, const std::string& group, const fs::path& file) {
+  const std::string begin = std::string(kMetric) + "_at_";
+  std::vector<CurvePoint> curves;
+  for (const Law& law : kLaws) {
+    const StudyRuns runs = read_study(folder / (group + "-" + law.folder) / "study.csv").front();
     for (const auto& [column, values] : runs.columns) {
-      const std::string begin = std::string(kMetric) + "_at_";
       if (!column.starts_with(begin)) continue;
       const double t_s = std::stod(column.substr(begin.size()));
-      if (t_s >= 10) curve.points.push_back({t_s, geometric_mean(values)});
+      if (t_s >= 10) curves.emplace_back("", law.name, "", t_s, geometric_mean(values));
     }
-    curve.points.push_back({std::stod(runs.names.at(1)), geometric_mean(runs.of(kMetric))});
-    std::sort(curve.points.begin(), curve.points.end(),
-              [](const auto& a, const auto& b) { return a.x() < b.x(); });
-    panel.curves.push_back(curve);
-    key.push_back({kLaws[i].name, curve.color});
+    curves.emplace_back("", law.name, "", std::stod(runs.names.at(1)),
+                        geometric_mean(runs.of(kMetric)));
   }
-  write_figure(images / "law_decay.svg",
-               figure("law_decay", "φ² over time under four laws", key, {panel}));
+  write_curves(file, curves);
 }
 
 // ---- one constant varied ----
@@ -205,39 +196,16 @@ void print_ladders(const std::vector<Points>& studies) {
 }
 
 /// One curve for each scenario and duration.
-void draw_ladder(const Ladder& ladder, const Points& points, const fs::path& images) {
-  Panel panel{"φ² against its value at " + std::string(ladder.usual),
-              range_axis("", "", 0, 1),
-              range_axis("", "", 0, 1),
-              {},
-              {}};
-  std::vector<std::string> lines;
-  double low = 1e300, high = 0, least = 0.7, most = 1.6;
+void write_ladder(const Ladder& ladder, const Points& points, const fs::path& file) {
+  std::vector<CurvePoint> curves;
   for (const StudyRuns& runs : points) {
-    const std::string line = runs.names.front() + ", " + runs.names.at(2) + " s";
-    const auto place = std::find(lines.begin(), lines.end(), line) - lines.begin();
-    if (place == std::ssize(lines)) {
-      lines.push_back(line);
-      panel.curves.push_back({agent_color(static_cast<AgentId>(place)), {}});
-    }
     const double x = std::stod(runs.names.at(1));
     if (x <= 0) continue;
     const Estimate ratio = against(runs, usual(ladder, points, runs));
-    Curve& curve = panel.curves.at(static_cast<std::size_t>(place));
-    curve.points.push_back({x, ratio.value});
-    panel.intervals.push_back({curve.color, x, ratio.low, ratio.value, ratio.high});
-    low = std::min(low, x);
-    high = std::max(high, x);
-    least = std::min(least, ratio.low / 1.1);
-    most = std::max(most, ratio.high * 1.1);
+    curves.emplace_back("", runs.names.front() + ", " + runs.names.at(2) + " s", "", x, ratio.low,
+                        ratio.value, ratio.high);
   }
-  panel.y = log_axis("ratio", least, most);
-  panel.x = log_axis(ladder.title, low / 1.3, high * 1.3);
-  std::vector<KeyEntry> key;
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    key.push_back({lines[i], panel.curves[i].color, "none", true});
-  const std::string name = std::string("law_") + ladder.study;
-  write_figure(images / (name + ".svg"), figure(name, ladder.title, key, {panel}));
+  write_curves(file, curves);
 }
 
 /// A field that is off or on.
@@ -276,7 +244,7 @@ void print_slopes(const fs::path& folder, const Group& group) {
   std::printf("\n");
 }
 
-void run(const fs::path& folder, const fs::path& images) {
+void run(const fs::path& folder, const fs::path& curves) {
   const auto study = [&](const std::string& name) {
     return read_study(folder / name / "study.csv");
   };
@@ -299,12 +267,12 @@ void run(const fs::path& folder, const fs::path& images) {
                       {"steps-48", {"", " s", " s a step", " modes along x", " along y"}}});
   print_laws(folder, {{"published", squared}});
   print_slopes(folder, {"published", squared});
-  draw_decay(folder, "long", images);
+  write_decay(folder, "long", curves / "law_decay.csv");
   print_escapes(study("escape-default"), study("escape-old"), study("escape-paper"));
   std::vector<Points> ladders;
   for (const Ladder& ladder : kLadders) ladders.push_back(study(ladder.study));
   print_ladders(ladders);
-  draw_ladder(kLadders[0], ladders[0], images);
+  write_ladder(kLadders[0], ladders[0], curves / "law_anticipation.csv");
   std::printf(
       "| field | start, T [s] | runs | off | on | on against off |\n|---|---|---|---|---|---|\n");
   for (const Choice& choice : kChoices) print_choice(choice, study(choice.study));
@@ -316,7 +284,7 @@ void run(const fs::path& folder, const fs::path& images) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: studies-law FOLDER_OF_STUDIES FOLDER_OF_IMAGES\n");
+    std::fprintf(stderr, "usage: studies-law FOLDER_OF_STUDIES FOLDER_OF_CURVES\n");
     return 2;
   }
   try {

@@ -6,12 +6,11 @@
 #include <limits>
 
 #include "lab/manifolds.h"
-#include "lab/studies/panels.h"
+#include "lab/studies/curves.h"
 #include "lab/studies/table.h"
 #include "lab/studies/theorems/escape.h"
 #include "lab/studies/theorems/invariance.h"
 #include "lab/studies/theorems/theorems.h"
-#include "report/figures.h"
 
 namespace ergocast::studies {
 namespace {
@@ -62,13 +61,10 @@ void print(const InvariantSet& set, const Table& table) {
               seconds_text(quantile(times_s, 0.5)).c_str(), 100 * share_by(times_s, kUntil_s));
 }
 
-Curve shares_over_time(const std::vector<double>& times_s, const std::string& color) {
-  Curve curve{color, {}, "none"};
-  for (int second = 0; second <= kUntil_s; ++second) {
-    const double t_s = second;
-    curve.points.push_back({t_s, share_by(times_s, t_s)});
-  }
-  return curve;
+void add_shares(const InvariantSet& set, const std::vector<double>& times_s,
+                std::vector<CurvePoint>& curves) {
+  for (int second = 0; second <= kUntil_s; ++second)
+    curves.emplace_back("", set.text, "measured", second, share_by(times_s, second));
 }
 
 }  // namespace
@@ -82,32 +78,23 @@ std::vector<Part> proposition1_parts(int seeds) {
   return parts;
 }
 
-void report_proposition1(const fs::path& folder, const fs::path& images) {
+void report_proposition1(const fs::path& folder, const fs::path& folder_of_curves) {
   std::printf(
       "### The classical law on the sets of Proposition 1\n\n"
       "| set | places | exactly 0 | median units | largest | largest share of ‖B‖ | first out [s] "
       "| median | out by 600 s |\n"
       "|---|---|---|---|---|---|---|---|---|\n");
-  Panel panel{"Agents that rounding alone has driven off",
-              range_axis("time", "s", 0, kUntil_s),
-              range_axis("share of places", "", 0, 1),
-              {},
-              {}};
-  std::vector<KeyEntry> key;
+  std::vector<CurvePoint> curves;
   for (const InvariantSet& set : invariant_sets()) {
     const Table table = read_table(folder / ("invariant-" + set.name + ".csv"));
     print(set, table);
     const bool drawn = set.symmetric_team && set.name != "origin" && set.name != "far-corner" &&
                        (set.name.ends_with("-x") || set.name.starts_with("diagonal") ||
                         set.name == "midline-pair");
-    if (!drawn) continue;
-    const std::string color = agent_color(static_cast<AgentId>(key.size()));
-    key.push_back({set.text, color});
-    panel.curves.push_back(shares_over_time(table.at("escape_s"), color));
+    if (drawn) add_shares(set, table.at("escape_s"), curves);
   }
   std::printf("\n");
-  write_figure(images / "theorem_p1_rounding.svg",
-               figure("theorem-p1-rounding", "Escape by rounding alone", key, {panel}));
+  write_curves(folder_of_curves / "theorem_p1_rounding.csv", curves);
 }
 
 }  // namespace ergocast::studies

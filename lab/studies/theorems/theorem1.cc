@@ -8,7 +8,7 @@
 #include "lab/studies/theorems/escape.h"
 #include "lab/studies/theorems/escape_points.h"
 #include "lab/studies/theorems/linearised.h"
-#include "lab/studies/theorems/theorem1_figures.h"
+#include "lab/studies/theorems/theorem1_curves.h"
 #include "lab/studies/theorems/theorems.h"
 
 namespace ergocast::studies {
@@ -126,10 +126,10 @@ std::vector<Part> theorem1_parts(int seeds) {
   return parts;
 }
 
-void report_theorem1(const std::filesystem::path& folder, const std::filesystem::path& images) {
+void report_theorem1(const std::filesystem::path& folder, const std::filesystem::path& curves) {
   const std::vector<Row> rows = read_rows(folder);
   for (const double exponent : kExponents) print_tables(rows, exponent);
-  draw_theorem1(rows, images);
+  write_theorem1_curves(rows, curves);
 }
 
 }  // namespace ergocast::studies

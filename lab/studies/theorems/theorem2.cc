@@ -3,11 +3,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "lab/studies/panels.h"
+#include "lab/studies/curves.h"
 #include "lab/studies/table.h"
 #include "lab/studies/theorems/bounds.h"
 #include "lab/studies/theorems/theorems.h"
-#include "report/figures.h"
 
 namespace ergocast::studies {
 namespace {
@@ -96,15 +95,15 @@ void print(const Case& c, const Table& table) {
               mean_m2 / bound_m2, 1.96 * table.at("standard_error_m2")[end] / bound_m2);
 }
 
-Curve curve_of(const Table& table, const std::string& color, Edges edges) {
-  Curve curve{color, {}, edges == Edges::kReflect ? "none" : "6 4"};
+/// The agent that is nearest to the bound, over the case's own duration.
+void add_curve(const Case& c, const Table& table, std::vector<CurvePoint>& curves) {
   const double agent = table.at("agent")[nearest(table)], end_s = table.at("t_s").back();
   for (std::size_t i = 0; i < table.at("t_s").size(); ++i) {
     if (table.at("agent")[i] != agent) continue;
-    curve.points.push_back(
-        {table.at("t_s")[i] / end_s, table.at("mean_m2")[i] / table.at("bound_m2")[i]});
+    curves.emplace_back("", c.text, c.edges == Edges::kReflect ? "edges reflect" : "no edges",
+                        table.at("t_s")[i] / end_s,
+                        table.at("mean_m2")[i] / table.at("bound_m2")[i]);
   }
-  return curve;
 }
 
 }  // namespace
@@ -126,25 +125,17 @@ std::vector<Part> theorem2_parts(int seeds) {
   return parts;
 }
 
-void report_theorem2(const fs::path& folder, const fs::path& images) {
+void report_theorem2(const fs::path& folder, const fs::path& folder_of_curves) {
   std::printf(
       "### Mean squares\n\n"
       "| case | runs | bound [m²] | largest share of it | mean at the end [m²] | share of the "
       "bound (95 %%) |\n"
       "|---|---|---|---|---|---|\n");
-  Panel panel{"Mean of ‖x − c‖² as a share of the bound",
-              range_axis("time / duration of the case", "", 0, 1),
-              range_axis("measured / bound", "", 0, 1.1),
-              {},
-              {}};
-  panel.curves.push_back({"#333333", {{0, 1}, {1, 1}}, "2 3"});
-  std::vector<KeyEntry> key = {{"bound", "#333333", "2 3"}};
+  std::vector<CurvePoint> curves;
   for (const Case& c : cases()) {
     const Table table = read_table(folder / (name_of(c) + ".csv"));
     print(c, table);
-    panel.curves.push_back(
-        curve_of(table, agent_color(static_cast<AgentId>(key.size() - 1)), c.edges));
-    key.push_back({c.text, panel.curves.back().color, panel.curves.back().dashes});
+    add_curve(c, table, curves);
   }
   std::printf(
       "\n### Fig. 2(a) without edges\n\n| start [m] | outside the domain at 150 s |\n|---|---|\n");
@@ -154,8 +145,7 @@ void report_theorem2(const fs::path& folder, const fs::path& images) {
                 100 * outside.at("share")[i]);
   }
   std::printf("\n");
-  write_figure(images / "theorem_2_mean_square.svg",
-               figure("theorem-2-mean-square", "Mean squares against their bound", key, {panel}));
+  write_curves(folder_of_curves / "theorem_2_mean_square.csv", curves);
 }
 
 }  // namespace ergocast::studies

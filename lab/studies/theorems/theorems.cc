@@ -46,12 +46,12 @@ void simulate(const std::string& name, const fs::path& folder, int seeds) {
   throw std::runtime_error("there is no part '" + name + "'");
 }
 
-void report(const fs::path& folder, const fs::path& images) {
-  report_theorem1(folder, images);
+void report(const fs::path& folder, const fs::path& curves) {
+  report_theorem1(folder, curves);
   report_fig2a(folder);
-  report_theorem2(folder, images);
+  report_theorem2(folder, curves);
   report_corollary1(folder);
-  report_proposition1(folder, images);
+  report_proposition1(folder, curves);
 }
 
 int run(int argc, char** argv) {
@@ -65,7 +65,7 @@ int run(int argc, char** argv) {
   } else {
     std::fprintf(
         stderr,
-        "usage: studies-theorems list | simulate PART FOLDER SEEDS | report FOLDER IMAGES\n");
+        "usage: studies-theorems list | simulate PART FOLDER SEEDS | report FOLDER CURVES\n");
     return 2;
   }
   return 0;

@@ -27,11 +27,12 @@ std::vector<Part> theorem2_parts(int seeds);
 std::vector<Part> corollary1_parts(int seeds);
 std::vector<Part> proposition1_parts(int seeds);
 
-/// Prints tables, and draws theorem_*.svg into `images`, of the parts in `folder`.
-void report_theorem1(const std::filesystem::path& folder, const std::filesystem::path& images);
+/// Prints the tables of the parts in `folder`, and writes theorem_*.csv, which draw.py draws, into
+/// `curves`.
+void report_theorem1(const std::filesystem::path& folder, const std::filesystem::path& curves);
 void report_fig2a(const std::filesystem::path& folder);
-void report_theorem2(const std::filesystem::path& folder, const std::filesystem::path& images);
+void report_theorem2(const std::filesystem::path& folder, const std::filesystem::path& curves);
 void report_corollary1(const std::filesystem::path& folder);
-void report_proposition1(const std::filesystem::path& folder, const std::filesystem::path& images);
+void report_proposition1(const std::filesystem::path& folder, const std::filesystem::path& curves);
 
 }  // namespace ergocast::studies

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables and figures of the network studies, from what lab/studies/network/run has simulated.
+// Tables of the network studies, and what their figures are drawn from, of what
+// lab/studies/network/run has simulated.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <map>
 
-#include "lab/studies/panels.h"
+#include "lab/studies/curves.h"
 #include "lab/studies/table.h"
-#include "report/figures.h"
 #include "report/statistics.h"
 
 namespace ergocast::studies {
@@ -24,12 +23,6 @@ struct Study {
   std::string name, x_title;
   std::vector<std::string> values;
   double unit;  ///< x is the value times this
-  bool log_x = false;
-};
-
-/// What agents know of each other from.
-struct Source {
-  std::string name, dashes;
 };
 
 /// Everything about one team at one value.
@@ -41,22 +34,21 @@ struct Point {
 
 struct Series {
   int agents;
-  Source source;
-  std::string color;
+  std::string source;  ///< what agents know of each other from
   std::vector<Point> points;
 };
 
 const Study kStudies[] = {
-    {"period", "broadcast period [s]", {"1", "4", "10", "16", "50"}, 0.5, true},
-    {"period30", "broadcast period [s], 30 % lost", {"1", "4", "10", "16", "50"}, 0.5, true},
-    {"period10", "broadcast period [s], 10 % lost on all buses", {"1", "4", "10", "50"}, 0.5, true},
+    {"period", "broadcast period [s]", {"1", "4", "10", "16", "50"}, 0.5},
+    {"period30", "broadcast period [s], 30 % lost", {"1", "4", "10", "16", "50"}, 0.5},
+    {"period10", "broadcast period [s], 10 % lost on all buses", {"1", "4", "10", "50"}, 0.5},
     {"loss", "broadcasts lost [%]", {"0", "0.01", "0.05", "0.1", "0.3", "0.6", "0.8"}, 100},
     {"everywhere", "messages lost on all buses [%]", {"0.01", "0.05", "0.1", "0.3"}, 100},
     {"delay", "mean delay [s]", {"0.2", "0.5", "1", "2", "5"}, 1},
     {"crashes", "agents killed in 100 s", {"0.002", "0.01", "0.05"}, 100},
 };
 constexpr int kTeams[] = {4, 16, 32, 64};
-const Source kSources[] = {{"places", "none"}, {"broadcasts", "5 4"}};
+constexpr const char* kSources[] = {"places", "broadcasts"};
 
 /// φ² at the end, by seed.
 using Metrics = std::map<double, double>;
@@ -92,15 +84,15 @@ Point point_of(const Table& table, double x, const Metrics& central) {
   return point;
 }
 
-Series series_of(const Study& study, int agents, const Source& source, const fs::path& folder) {
-  const auto place = std::find(kTeams, std::end(kTeams), agents) - kTeams;
-  Series series{agents, source, agent_color(static_cast<AgentId>(place)), {}};
+Series series_of(const Study& study, int agents, const std::string& source,
+                 const fs::path& folder) {
+  Series series{agents, source, {}};
   const std::string team = "-" + std::to_string(agents);
   const fs::path central_file = folder / ("central" + team) / "study.csv";
   if (!fs::exists(central_file)) return series;
   const Metrics central = metrics_of(read_study(central_file).front().columns);
   for (const std::string& value : study.values) {
-    const fs::path file = folder / (study.name + '-' + source.name + team + '-' + value + ".csv");
+    const fs::path file = folder / (study.name + '-' + source + team + '-' + value + ".csv");
     if (!fs::exists(file)) continue;
     series.points.push_back(point_of(read_table(file), std::stod(value) * study.unit, central));
   }
@@ -116,7 +108,7 @@ void print(const Study& study, const std::vector<Series>& all) {
   for (const Series& series : all) {
     for (const Point& p : series.points) {
       std::printf("| %d | %s | %g | %zu | %.0f | %.2e (%.2e to %.2e) | %.2f (%.2f to %.2f) |\n",
-                  series.agents, series.source.name.c_str(), p.x, p.seeds, p.contributions,
+                  series.agents, series.source.c_str(), p.x, p.seeds, p.contributions,
                   p.metric.value, p.metric.low, p.metric.high, p.ratio.value, p.ratio.low,
                   p.ratio.high);
     }
@@ -124,57 +116,30 @@ void print(const Study& study, const std::vector<Series>& all) {
   std::printf("\n");
 }
 
-/// Neighbours stand a little beside each other, so that the intervals of all can be seen.
-double beside(const Study& study, double x, double most, std::size_t place, std::size_t count) {
-  const double steps = static_cast<double>(place) - 0.5 * static_cast<double>(count - 1);
-  return study.log_x ? x * std::pow(1.025, steps) : x + 0.006 * steps * most;
-}
-
-/// One line a team and source, with its confidence intervals.
-std::string draw(const Study& study, const std::vector<Series>& all) {
-  double least = 1e300, most = 0, low = 0.9, high = 1.1;
+/// Ratios with their confidence intervals.
+std::vector<CurvePoint> curves_of(const std::vector<Series>& all) {
+  std::vector<CurvePoint> curves;
   for (const Series& series : all) {
     for (const Point& p : series.points) {
-      least = std::min(least, p.x);
-      most = std::max(most, p.x);
-      low = std::min(low, p.ratio.low / 1.1);
-      high = std::max(high, p.ratio.high * 1.1);
+      curves.emplace_back("", std::to_string(series.agents) + " agents", series.source, p.x,
+                          p.ratio.low, p.ratio.value, p.ratio.high);
     }
   }
-  Panel panel{"φ² at the end against central",
-              study.log_x ? log_axis(study.x_title, least / 1.3, most * 1.3)
-                          : range_axis(study.x_title, "", -0.03 * most, 1.03 * most),
-              log_axis("ratio", low, high),
-              {},
-              {}};
-  std::vector<KeyEntry> key;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Series& series = all[i];
-    Curve curve{series.color, {}, series.source.dashes};
-    for (const Point& p : series.points) {
-      const double x = beside(study, p.x, most, i, all.size());
-      curve.points.push_back({x, p.ratio.value});
-      panel.intervals.push_back({series.color, x, p.ratio.low, p.ratio.value, p.ratio.high});
-    }
-    panel.curves.push_back(curve);
-    key.push_back({std::to_string(series.agents) + " agents, " + series.source.name, series.color,
-                   series.source.dashes});
-  }
-  return figure(study.name, study.x_title, key, {panel});
+  return curves;
 }
 
-void run(const fs::path& folder, const fs::path& images) {
+void run(const fs::path& folder, const fs::path& curves) {
   for (const Study& study : kStudies) {
     std::vector<Series> all;
     for (const int agents : kTeams) {
-      for (const Source& source : kSources) {
+      for (const char* source : kSources) {
         Series series = series_of(study, agents, source, folder);
         if (!series.points.empty()) all.push_back(std::move(series));
       }
     }
     if (all.empty()) continue;
     print(study, all);
-    write_figure(images / ("network_" + study.name + ".svg"), draw(study, all));
+    write_curves(curves / ("network_" + study.name + ".csv"), curves_of(all));
   }
 }
 
@@ -183,7 +148,7 @@ void run(const fs::path& folder, const fs::path& images) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: studies-network FOLDER_OF_CSV_FILES FOLDER_OF_IMAGES\n");
+    std::fprintf(stderr, "usage: studies-network FOLDER_OF_CSV_FILES FOLDER_OF_CURVES\n");
     return 2;
   }
   try {

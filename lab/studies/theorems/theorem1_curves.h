@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figures of the study of Theorem 1.
+// What the figures of the study of Theorem 1 are drawn from.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace ergocast::studies {
 
-/// theorem_1_*.svg
-void draw_theorem1(const std::vector<Row>& rows, const std::filesystem::path& images);
+/// theorem_1_*.csv
+void write_theorem1_curves(const std::vector<Row>& rows, const std::filesystem::path& curves);
 
 }  // namespace ergocast::studies
