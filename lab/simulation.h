@@ -198,6 +198,7 @@ class Simulation {
   std::size_t next_fault_ = 0;
   std::vector<FaultEnd> fault_ends_;
   std::optional<Instant> paused_until_;  // an operator wants the mission to be paused
+  Instant next_operator_message_;        // until its wish is obeyed
   std::int64_t operator_messages_ = 0;   // messages of that operator
   double faulty_s_;                      // of progress_s(), until all is healed
   bool healed_ = false;

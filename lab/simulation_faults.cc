@@ -12,6 +12,9 @@ namespace {
 /// A random stream beside those of lab/faults.cc.
 constexpr std::uint32_t kClocks = 16;
 
+/// As `ergocast pause` repeats it.
+constexpr auto kOperatorPeriod = std::chrono::milliseconds(100);
+
 }  // namespace
 
 double Simulation::planned_s() const {
@@ -115,13 +118,19 @@ void Simulation::cut(const FaultEvent& event, bool join) {
   }
 }
 
-/// What an operator who wants the mission to be paused, or to go on, says until it is named.
+/// An operator who wants the mission to be paused, or to go on, sends this until a tick is named,
+/// ten times a second.
 void Simulation::send_to_coordinator() {
   const NodeId node = coordinator_node();
   if (operator_messages_ == 0 && !paused_until_) return;
   if (!up(node) || finished(node) || coordinator().looking() || mission_over()) return;
   const auto& holds = coordinator().holds();
-  if (is_open(holds) == paused_until_.has_value()) return;
+  if (is_open(holds) == paused_until_.has_value()) {
+    next_operator_message_ = now_;
+    return;
+  }
+  if (now_ < next_operator_message_) return;
+  next_operator_message_ = now_ + kOperatorPeriod;
   const Pause pause{
       {run_, kOperator, 1, ++operator_messages_, coordinator().tick()}, named_changes(holds), {}};
   deliver(node, pause, Delivery{Bus::kSwarm, kOperator, {}, nullptr});

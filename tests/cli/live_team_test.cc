@@ -78,6 +78,28 @@ TEST_F(LiveTeamFrames, BeginWithWhatTheStatusesHaveTold) {
       << text;
 }
 
+// A tick is named some time before it comes.
+TEST_F(LiveTeamFrames, ShowAPauseFromItsFirstTickToItsLast) {
+  test::announce(test::small_mission(2));
+  LiveTeam live_team(test::kRun, kListening, false);
+  std::int64_t revision = 0;
+  const auto incidents_at = [&](Tick tick, const std::vector<Hold>& holds) {
+    const Instant now = kListening + 100ms * tick;
+    MissionPart part = test::mission_part(++revision, MissionState::kRunning, test::roster_of(2));
+    part.holds = holds;
+    test::give(live_team, part, now);
+    AgentStatus status = test::status_of(0, test::next_sequence(), tick);
+    status.header.tick = tick;
+    test::give(live_team, status, now);
+    live_team.look(now);
+    return live_team.incidents_json();
+  };
+  EXPECT_TRUE(incidents_at(4, {{5, -1}}).empty());
+  EXPECT_EQ(incidents_at(5, {{5, -1}})[0]["kind"], "paused");
+  EXPECT_FALSE(incidents_at(19, {{5, 20}})[0].contains("until"));
+  EXPECT_EQ(incidents_at(20, {{5, 20}})[0]["until"], 2.0);
+}
+
 TEST_F(LiveTeamFrames, OfOtherRunsShowNothing) {
   LiveTeam other(kWatchedRun + 1, kListening, false);
   other.begin(test::small_mission(2), {});

@@ -90,6 +90,10 @@ TEST_F(WordsInABrowser, ALiveTeamPausesAndRests) {
   EXPECT_EQ(js(kStates), nlohmann::json(std::vector<std::string>(4, "paused")));
   EXPECT_TRUE(is_shown("pause"));
   EXPECT_EQ(js("return ergocast.S.run.incidents.filter(one => one.kind === 'paused').length"), 1);
+  // The mission's time stands still meanwhile.
+  EXPECT_TRUE(
+      js("const { run } = ergocast.S, [from, until] = run.holds[0], dt = run.mission.dt_s;"
+         "return Math.abs(run.counted((from + until) / 2 * dt) - from * dt) < 1e-6"));
   ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);

@@ -141,6 +141,11 @@ TEST(RestartedWorld, InRealTimePutsAllWhereOneStateSaysAndLetsThemStand) {
   EXPECT_EQ(place(state, 0), Eigen::Vector3d(304, 400, 0));
   EXPECT_EQ(place(state, 1), Eigen::Vector3d(344, 400, 0));
   EXPECT_EQ(place(state, 2), Eigen::Vector3d(404, 400, 0));
+  // The commands that it holds were for other places.
+  const auto later = states_after(world, at(302ms));
+  ASSERT_FALSE(later.empty());
+  EXPECT_GT(later.back().header.tick, state.header.tick);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(place(later.back(), i), place(state, i)) << i;
 }
 
 TEST(RestartedWorld, BelievesNoStateOnceItHasBegun) {
