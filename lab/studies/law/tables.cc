@@ -251,6 +251,7 @@ void run(const fs::path& folder, const fs::path& curves) {
   const std::vector<std::string> timed{"", " s"}, sized{"", " s", " agents"},
       stepped{"", " s", " s a step"}, squared{"", " agents"};
   print_laws(folder, {{"promised", timed},
+                      {"brief", timed},
                       {"short", timed},
                       {"later", timed},
                       {"long", timed},
