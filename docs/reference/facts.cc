@@ -32,7 +32,7 @@ void print(const std::vector<std::string>& parts) {
   std::cout << '\n';
 }
 
-// ---- Scenario -----------------------------------------------------------------------------------
+// ---- Scenario ----
 
 std::string limits_of(const Range& range) {
   return range.coordinate ? "at most " + shortest(range.high) + " from 0" : range.text();
@@ -52,7 +52,7 @@ void print_rules() {
   }
 }
 
-// ---- Messages -----------------------------------------------------------------------------------
+// ---- Messages ----
 
 /// Visits the fields of a message as Writer and Reader do, and notes what a receiver accepts.
 class Describer {

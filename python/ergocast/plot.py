@@ -40,7 +40,7 @@ Place = Union[str, "os.PathLike[str]"]
 Runs = Union[Run, Sequence[Run], Mapping[str, Union[Run, Sequence[Run]]]]
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a4fb5")
-"""Of agents and lines, in turn: distinct with any colour vision (Okabe and Ito's, without the palest)."""
+"""The colours of agents and lines, in turn: distinct with any colour vision (Okabe and Ito's, without the palest)."""
 
 STYLE: dict[str, Any] = {
     "font.size": 8, "legend.fontsize": 7, "legend.frameon": False,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds what the page of a run shows now; whoever changes it asks for a frame.
+// Holds what the page of a run shows now. Code that changes it asks for a frame.
 import { TAILS } from './map.js';
 import { projected } from './projection.js';
 

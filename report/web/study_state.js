@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds what the page of a study shows now; whoever changes it asks for a frame.
+// Holds what the page of a study shows now. Code that changes it asks for a frame.
 export const S = {
   study: null,
   filters: new Map(), // number of a dimension → its value

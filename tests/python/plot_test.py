@@ -190,7 +190,7 @@ class Studies(WithFolder):
         first = np.sort(rows[(rows["law.noise_ceiling"] == 1) & (rows["law.anticipation"] == 0)]["ergodic_metric"])
         line, _, (bars,) = ax.containers[0].lines
         self.assertEqual(line.get_ydata()[0], first[3])
-        # Of seven values, the interval of 95 % reaches from the first to the last.
+        # The interval of 95 % of seven values reaches from the first to the last.
         np.testing.assert_allclose(bars.get_segments()[0][:, 1], first[[0, 6]], rtol=1e-12)
         other = plot.study(out / "study.csv", x="law.anticipation", y="speed_mean_mps")
         self.assertEqual(other.get_ylabel(), "median speed_mean [m/s]")
