@@ -289,7 +289,7 @@ def _draw_tracks(ax: Any, run: Run, seen: _View) -> list[Any]:
         colour = COLOURS[agent % len(COLOURS)]
         keys += ax.plot(*track.T, color=colour, linewidth=width, gid=f"agent-{agent}", zorder=2,
                         label=f"agent {agent}", rasterized=len(run.trajectory) > _MOST_POINTS)
-        for place, marker in ((track[0], "x"), (track[-1], "o")):
+        for place, marker in ((track[-1], "o"), (track[0], "x")):  # a cross in a circle where they meet
             ax.plot(*place, marker=marker, color=colour, path_effects=halo, zorder=3, clip_on=False, **mark)
     if len(tracks) > len(COLOURS):
         keys = [Line2D([], [], color=COLOURS[0], label=f"{len(tracks)} agents")]
