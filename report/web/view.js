@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Maps the domain, or a part of it, onto the canvas.
+import { clamp } from './text.js';
 
-// Where the domain lies on the canvas: the whole, or a part of it.
 export class View {
   constructor() {
     Object.assign(this, { zoom: 1, x: 0, y: 0, width: 1, height: 1 });
