@@ -52,8 +52,6 @@ int draw_figures(const std::filesystem::path& run_dir) {
                                             "; as root: apt-get install python3-ergocast");
 }
 
-}  // namespace
-
 int report(const std::filesystem::path& run_dir, bool figures) {
   const auto mission = recorded_mission_or_complain(run_dir);
   if (!mission) return kExitBadInput;
