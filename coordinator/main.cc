@@ -173,9 +173,8 @@ int main(int argc, char** argv) {
   add_plan_option(app, plan)->excludes(scenario);
   Overrides overrides;
   add_override_options(app, overrides);
-  app.add_flag(
-      "--resume", resume,
-      "Take over the mission that the agents are flying, also from a living coordinator, or fail");
+  app.add_flag("--resume", resume,
+               "Take over the mission that is under way, also from a running coordinator, or fail");
   app.footer(
       "Without --run-id and --resume: takes over this scenario's mission if it is under way "
       "on the URL and nobody leads it, else starts a new one. Ends with code 4 if another "
