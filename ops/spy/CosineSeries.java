@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 package ergocast.spy;
 
-/** A density from its coefficients: the sum of mu_k f_k / h_k^2 over the modes there are. */
+/** A density from its coefficients: the sum of mu_k f_k / h_k^2 over all modes. */
 final class CosineSeries {
   private CosineSeries() {}
 
   /**
    * The density at the centres of cells x cells parts of the domain, as a multiple of the uniform
-   * density; [i][j] with i along x and j along y. Where too few modes make it negative, 0.
+   * density; [i][j] with i along x and j along y. 0 where too few modes make it negative.
    *
    * @param coefficients the means of f_mn, not divided by h, at m * modesY + n
    */

@@ -6,7 +6,7 @@ import java.util.Map;
 import java.util.TreeMap;
 import java.util.function.IntPredicate;
 
-/** The running sums of all agents received: of each block the one with most steps, as agents do. */
+/** The received running sums of all agents. Like an agent, it keeps the one with most steps. */
 final class Coverage {
   private static final double UNITS = 32767; // an average of 1 in 16 bits
   private static final int MAX_AUTHORS = 512;

@@ -111,7 +111,7 @@ final class MapView extends Picture {
     return new Axes.Scale(AXES[axis] + " [m]", low, low + plan.size[axis], false);
   }
 
-  /** Where an odd number of rings are around. */
+  /** Fills the places that an odd number of rings enclose. */
   private static void drawWalls(Graphics2D g, Axes axes, Plan plan) {
     Path2D walls = new Path2D.Double(Path2D.WIND_EVEN_ODD);
     for (double[] ring : plan.walls) {
@@ -127,7 +127,7 @@ final class MapView extends Picture {
     g.fill(walls);
   }
 
-  /** Open squares where agents are to be at the end. */
+  /** Draws stations, where agents must be at the end, as open squares. */
   private static void drawStations(Graphics2D g, Axes axes, Plan plan) {
     for (double[] places : plan.stations) {
       for (int i = 0; i + 1 < places.length; i += 2) {

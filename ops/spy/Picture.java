@@ -33,7 +33,7 @@ abstract class Picture extends JComponent {
         draw(g, team);
       } else {
         g.setColor(Colors.SOFT);
-        g.drawString("No mission heard yet.", 24, 40);
+        g.drawString("No mission received yet.", 24, 40);
       }
     }
     g.dispose();

@@ -20,7 +20,7 @@ final class Plan {
   static final long MAX_TICKS = 100000000;
   static final int MAX_PLACES = 1024; // corners of a ring, stations of a kind
   private static final int KINDS = 20, WALLS = 21;
-  static final int LOW_MODES = 64; // in the first block where the others are sent less often
+  static final int LOW_MODES = 64; // in the first block, if the others are sent less often
 
   final String name;
   final double[] origin = new double[3], size = new double[3]; // [m]; a plane has no height
@@ -32,11 +32,11 @@ final class Plan {
   final double[] cosineTarget; // the same in cosines, which can be drawn
   final List<double[]> walls = new ArrayList<>(); // rings: x and y of each corner in turn [m]
   final List<double[]> stations = new ArrayList<>(); // x and y of each kind's in turn [m]
-  private final boolean separated; // low modes from others: they travel by ascending |k|
-  private final int[] wire; // the modes in the order in which they travel
+  private final boolean separated; // whether low modes have a block of their own; all are sent by ascending |k|
+  private final int[] wire; // the modes in the order in which they are sent
 
   /**
-   * Reads Protobuf's wire format, with the numbers of team/plan.proto. A number that is not there
+   * Reads Protobuf's wire format, with the numbers of team/plan.proto. A missing number
    * is 0.
    *
    * @throws RuntimeException for bytes that are no plan
@@ -77,7 +77,7 @@ final class Plan {
     wire = inOrder();
   }
 
-  /** The modes whose numbers a block of this room has, in their order; none if there is no such. */
+  /** The modes of a block with room for `room` numbers, in their order; empty without such a block. */
   int[] modesOf(int block, int room) {
     int first = separated && block > 0 ? LOW_MODES : 0;
     long begin = first + (block - (first > 0 ? 1L : 0L)) * room;
@@ -94,7 +94,7 @@ final class Plan {
         .toArray();
   }
 
-  /** 0 for all where they travel in the order of the basis. */
+  /** |k|^2 of mode k, by which modes are sent; 0 for all if they are sent in the order of the basis. */
   private int squaredWaveNumber(int k) {
     int n = k % modes[1];
     int m = k / modes[1] % modes[0];
@@ -107,8 +107,8 @@ final class Plan {
   }
 
   /**
-   * The averages of a field with these coefficients along the axis that is not seen, as
-   * coefficients at m * modes[up] + n; m counts waves along the axis across.
+   * The coefficients of the field averaged along the axis that is not seen, at m * modes[up] + n;
+   * m counts waves along the axis across.
    */
   double[] seen(double[] coefficients, int across, int up) {
     double[] seen = new double[modes[across] * modes[up]];
@@ -123,7 +123,7 @@ final class Plan {
     return seen;
   }
 
-  /** x and y of each in turn. */
+  /** Positions: x and y of each in turn. */
   private static double[] places(ByteBuffer value) {
     require(value != null && value.remaining() % 16 == 0 && value.remaining() <= 16 * MAX_PLACES);
     double[] places = new double[value.remaining() / 8];

@@ -38,7 +38,7 @@ final class Team {
   Coverage coverage;
   long tick; // newest received
   String status = ""; // the coordinator's report
-  boolean replay; // sent by `ergocast replay`: nobody flies
+  boolean replay; // sent by `ergocast replay`: no mission runs
 
   private final LongSupplier clock; // [ns]
   private long run;
@@ -50,7 +50,7 @@ final class Team {
     this(System::nanoTime);
   }
 
-  /** With a clock of its own, by which a run becomes silent. */
+  /** Uses this clock to decide when a run is silent. */
   Team(LongSupplier clock) {
     this.clock = clock;
   }
@@ -106,7 +106,7 @@ final class Team {
         || message.plan.length > MAX_PART_BYTES) {
       return;
     }
-    // All revisions of a run have one plan; a large one does not come as a whole.
+    // All revisions of a run have one plan; a large plan comes in parts.
     if (parts.length != count) parts = Arrays.copyOf(parts, count);
     parts[message.part] = message.plan;
     if (Arrays.asList(parts).contains(null)) return;
@@ -181,7 +181,7 @@ final class Team {
         && header.tick - uncounted <= plan.lastTick;
   }
 
-  /** Mission time [s]: while the mission is paused it stands. */
+  /** Mission time [s], which stands still while the mission is paused. */
   double elapsed() {
     return (tick - uncounted) * plan.dt;
   }
@@ -206,7 +206,7 @@ final class Team {
     return run != 0;
   }
 
-  /** A plane's z is not looked at. */
+  /** Whether a position is in the domain; a plane has no limits for z. */
   private boolean isInside(double[] place) {
     boolean inside = true;
     for (int axis = 0; axis < (plan.inBox() ? 3 : 2); ++axis) {

@@ -25,7 +25,7 @@ final class Viewer extends AbstractAction {
   private final Dimension size;
 
   /**
-   * lcm-spy asks for the name alone, with neither desktop nor channel, and later for the action.
+   * lcm-spy first asks only for the name, without desktop and channel, and later for the action.
    */
   Viewer(String name, JDesktopPane desktop, ChannelData channel, Function<Team, JComponent> picture,
       Dimension size) {
@@ -48,7 +48,7 @@ final class Viewer extends AbstractAction {
     fill(frame);
     Timer refresh = new Timer(REFRESH_MS, tick -> {
       frame.setTitle(title(team));
-      frame.getContentPane().revalidate(); // the mission, and with it the shape, may have arrived
+      frame.getContentPane().revalidate(); // the mission may have arrived, which changes the shape
       frame.repaint();
       if (frame.isClosed() || !desktop.isShowing()) ((Timer) tick.getSource()).stop();
     });
