@@ -11,7 +11,7 @@
 namespace ergocast {
 namespace {
 
-/// Nine numbers have fewer bytes.
+/// More bytes than nine numbers have.
 constexpr std::size_t kLongestRow = 4096;
 
 }  // namespace
@@ -60,8 +60,8 @@ bool TableLines::next(std::string& line) {
   return false;
 }
 
-/// What is longer than any row, unless the file ends in it: after a power failure that may be zeros
-/// by the million.
+/// Skips a line that is too long for a row. It is no problem if the file ends in it: after a power
+/// failure, millions of zeros may be there.
 LineEnd TableLines::skip_line() {
   in_->ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   if (in_->eof()) return LineEnd::kFile;

@@ -24,8 +24,8 @@ namespace ergocast {
 namespace {
 
 constexpr std::size_t kMaxDatagramsPerTurn = 256;
-/// So many times the expected datagrams cannot be statuses and digests of the team: a bus is
-/// flooded. For the time kCrowded, messages then do not gather.
+/// A bus with more than kCrowd times the expected datagrams is flooded: statuses and digests of a
+/// team are fewer. For the time kCrowded, messages then do not gather.
 constexpr std::size_t kCrowd = 4;
 constexpr auto kCrowded = std::chrono::seconds(10);
 constexpr std::string_view kPrefix = "ERGOCAST_";

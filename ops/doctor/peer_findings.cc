@@ -62,7 +62,7 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
   if (!peer.to_it) {
     if (peer.judged()) return one_way(url, peer);
     finding.level = Level::kNote;
-    finding.found = "received too briefly to tell whether it receives this host";
+    finding.found = "heard too briefly to tell whether it receives this host";
     finding.why = "The tests on the two hosts hardly overlapped.";
     finding.remedy = here_again(url) + "   # on both, at about the same time";
     return finding;
