@@ -78,7 +78,7 @@ TEST(Subscriptions, AreThoseOfTheDocument) {
       for (std::size_t role = 0; role < kRoleCount; ++role) {
         if ((kSubscriptions[role][bus] >> type & 1) != 0) types.insert(kNames[role]);
       }
-      EXPECT_EQ(types.erase(""), 1U) << "the logger hears everything, also " << channel;
+      EXPECT_EQ(types.erase(""), 1U) << "the logger receives everything, also " << channel;
       EXPECT_EQ(sent.at(channel)[bus], types) << channel << " on bus " << bus;
     }
   }
