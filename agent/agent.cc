@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Joins the mission, takes in each message, answers each tick with a command, and broadcasts in
-// turn.
+// Joins the mission, takes in messages, and reports the agent's status. mission_run.cc has the
+// tick.
 #include "agent/agent.h"
 
 #include <algorithm>
@@ -17,9 +17,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kHelloPeriod = 250ms;
-/// At once when it hears of a newer roster, which it must name, but not more often.
+/// A newer roster makes the next HELLO due at once, because HELLO must name it. This is the
+/// shortest time between two.
 constexpr auto kHelloGap = 10ms;
-/// This often in mission time too, so that a fast lockstep run is not left alone.
+/// A status is also due after this mission time, so that a fast lockstep run has statuses too.
 constexpr double kStatusMissionPeriod_s = 1.0;
 /// How far ahead of us a teammate's coverage may be before it counts as forged.
 /// Limit (Time): lead of a contribution over the receiver, in mission time [s]. Beyond it: a
@@ -28,8 +29,8 @@ constexpr double kLead_s = 60;
 /// Limit (Time): lead of a contribution over the receiver [steps]. Beyond it: a contribution that
 /// is beyond both limits is refused with `range`.
 constexpr Tick kLeadTicks = 64;
-/// How long another process speaks under our id before we believe that it lives: the coordinator,
-/// who is not deceived by repeats of what a dead one said, would have admitted us by then.
+/// How long another process must send under our id before we conclude that it runs. Repeats of a
+/// stopped process do not deceive the coordinator: it would have admitted us by then.
 constexpr auto kDuplicateIdPatience = 5s;
 
 const Coefficients kNoCoverage;
@@ -72,7 +73,7 @@ Agent::Agent(AgentIdentity identity)
 }
 
 void Agent::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
-  // What is out of range is not heard at all.
+  // A message from out of range counts as never received.
   if (finished() || !radio_.receives(me_.id(), transmitter)) return;
   const auto arrival = me_.accept(message, bus, transmitter, now);
   if (!arrival) return;
@@ -115,7 +116,7 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
   if (!running_since && follower().state() == MissionState::kRunning) running_since = arrival.now;
 }
 
-/// A control step allocates nothing.
+/// Prepares here what depends on the roster, because a control step must not allocate.
 void Agent::note_roster() {
   InMission* const mission_run = in_mission();
   if (mission_run == nullptr) return;
@@ -124,7 +125,7 @@ void Agent::note_roster() {
   mission_run->held_roster = in_counted_ticks(follower().roster(), follower().holds());
 }
 
-/// Why it is no member at `tick` any more, if so.
+/// The reason if it is no longer a member at `tick`, else nothing.
 std::optional<std::string> Agent::evicted(Tick tick) const {
   const RosterEntry* own = own_entry();
   if (own == nullptr || own->active_until < 0 || own->active_until > tick) return std::nullopt;
@@ -151,13 +152,13 @@ void Agent::on(const AgentStatus& status, const Arrival& arrival) {
 }
 
 void Agent::on(const Stop& stop, const Arrival&) {
-  // Of a run that it does not know, it may be the end of a former one, said again. In order, the
-  // coordinator ends the mission for all of us.
+  // Before it knows its run, a STOP may be a repeat that ended a former run. A STOP without `now`
+  // is for the coordinator, which then ends the mission for all.
   if (me_.run() == 0 || !stop.now) return;
   finish(stop.failed, stop.reason, phase() == AgentPhase::kRunning && tick() >= 0);
 }
 
-// ---- what teammates and the world say ----
+// ---- messages of teammates and of the world ----
 
 std::int64_t Agent::max_steps(const InMission& mission_run, const RosterEntry& author,
                               Instant now) const {
@@ -165,7 +166,8 @@ std::int64_t Agent::max_steps(const InMission& mission_run, const RosterEntry& a
   const Tick tick = mission_run.step.tick;
   Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
   if (timing.pace == Pace::kRealtime && tick >= 0) {
-    // Others have gone on while we heard nothing of the world; twice, for clocks that differ.
+    // Teammates have continued while we received nothing from the world. Twice that time allows for
+    // clocks that differ.
     const Instant heard = std::max(mission_run.running_since.value_or(Instant{}),
                                    me_.liveness().last_sign_of_kind(kWorld).value_or(Instant{}));
     const double unheard_s = std::chrono::duration<double>(now - heard).count();
@@ -186,7 +188,7 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
   }
   ++status_.contributions_received;
   const std::int64_t limit = max_steps(*mission_run, *entry, arrival.now);
-  // We do not know yet how late it is.
+  // Before our first tick we do not know the mission's time, so a large count may still be right.
   if (mission_run->step.tick < 0 && theirs.steps > limit) return;
   switch (mission_run->table.merge(theirs, limit)) {
     case Merge::kRefusedRange:
@@ -228,7 +230,8 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (vehicle.id != me_.id()) continue;
-    // From before we were admitted, repeated for the logger: our predecessor drove then.
+    // The world repeats for the logger a state from before our admission. Our predecessor drove
+    // then.
     if (world.header.tick < mission_run->active_from && vehicle.answered_tick > step.answered)
       return;
     if (!mission_run->separation && !mission().domain.contains(vehicle.position_m)) {
@@ -270,7 +273,7 @@ void Agent::ask_for_admission(Instant now, Outbox& out) {
   me_.publish(Bus::kSwarm, hello, 0, out);
 }
 
-/// Also before it is admitted: it may be the only one left who knows the mission.
+/// It also repeats before its admission: it may be the only process left that knows the mission.
 void Agent::repeat_mission(Instant now, Outbox& out) {
   mission_repeat_.done(now);
   for (const MissionPart& part : follower().parts()) {
@@ -287,13 +290,13 @@ Instant Agent::next_wakeup() const {
                    mission_run->anti_entropy.next_answer()});
 }
 
-/// An id that neither has been given does not tell two joining processes apart. So only an admitted
-/// agent sends last words.
+/// Only an admitted agent sends final messages: two processes that still join may ask for one id,
+/// and receivers could not distinguish them.
 void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   if (finished()) return;
   Finished end{failed, std::move(reason), {}, {}};
   if (InMission* const mission_run = in_mission()) {
-    if (send_zero_velocity) {  // the last word to the vehicle, whose driver may know no STOP
+    if (send_zero_velocity) {  // the vehicle's last command: its driver may not know STOP
       mission_run->last_command.position_m = mission_run->step.x_m;
       mission_run->last_command.velocity_mps.setZero();
       me_.publish(Bus::kCommand, mission_run->last_command, mission_run->step.tick,
@@ -306,7 +309,7 @@ void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   state_ = std::move(end);
 }
 
-// ---- what it says of itself ----
+// ---- status ----
 
 AgentPhase Agent::phase() const {
   if (finished()) return AgentPhase::kFinished;
@@ -315,7 +318,7 @@ AgentPhase Agent::phase() const {
   return mission_run->running_since ? AgentPhase::kRunning : AgentPhase::kWaiting;
 }
 
-/// What it says of itself: phase(), and whether it goes home or rests.
+/// The phase that its status reports: phase(), refined by whether it returns home or rests.
 AgentPhase Agent::phase_in(const InMission& mission_run) const {
   const AgentPhase phase = this->phase();
   if (phase != AgentPhase::kRunning || !mission_run.way_home) return phase;
@@ -344,7 +347,7 @@ const Coefficients& Agent::foreseen_coverage() const {
   return mission_run() == nullptr ? kNoCoverage : mission_run()->foreseen;
 }
 
-/// Messages of members that are missing on the swarm bus.
+/// How many messages of members were lost on the swarm bus.
 std::int64_t Agent::lost() const {
   std::int64_t lost = 0;
   for (const RosterEntry& entry : follower().roster()) {
@@ -353,7 +356,7 @@ std::int64_t Agent::lost() const {
   return lost;
 }
 
-/// Ticks that count since the last news of the teammate that we know least of.
+/// Counted ticks since the oldest of the teammates' last updates.
 Tick Agent::oldest_update_age(const InMission& mission_run) const {
   Tick oldest = 0;
   for (const RosterEntry& entry : follower().roster()) {

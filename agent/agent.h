@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One agent: messages and time in, messages out. No socket, thread, clock, logger or file.
 //
-// Messages only update tables; the control step reads them. In lockstep a tick is answered once
-// every block due by it is held; in real time at once, with what is there. What teammates lack it
-// repeats to them (anti_entropy.h), and the mission itself on request
-// (team/mission_repeat.h). Its life until and after the mission is in agent.cc, the tick in
-// mission_run.cc.
+// Messages only update tables; the control step reads the tables. In lockstep the agent answers a
+// tick once it holds every block that is due by then. In real time it answers at once. It repeats
+// coverage that teammates lack (anti_entropy.h), and the mission on request
+// (team/mission_repeat.h). agent.cc has admission, messages and end; mission_run.cc has the tick.
 #pragma once
 
 #include <algorithm>
@@ -36,12 +35,12 @@
 namespace ergocast {
 
 struct AgentIdentity {
-  RunId run = 0;                       ///< 0: the run of the first mission heard
-  AgentId requested_id = kUnassigned;  ///< kUnassigned: whatever the coordinator gives
+  RunId run = 0;                       ///< 0: the run of the first mission received
+  AgentId requested_id = kUnassigned;  ///< kUnassigned: the coordinator chooses
   Incarnation incarnation = 0;         ///< random, not 0
   std::string host;
   std::string version;
-  std::string kind{};  ///< the name of the kind that it brings; empty: the one planned
+  std::string kind{};  ///< name of its kind; empty: the kind planned for its id
 };
 
 class Agent {
@@ -51,17 +50,17 @@ class Agent {
   explicit Agent(AgentIdentity identity);
 
   /// Takes in a message. Harmless when late, repeated, out of order or untrue.
-  /// @param bus  on which it came
-  /// @param transmitter  who it comes from: its sender, or an agent that repeats it
+  /// @param bus  on which it arrived
+  /// @param transmitter  its sender, or the agent that repeats it
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
-  /// Does whatever is due at `now` and appends what to publish, in order.
+  /// Does what is due at `now` and appends the messages to publish, in order.
   void advance(Instant now, Outbox& out);
 
-  /// Ends its part at once, as when its process is told to stop; advance() then says so.
+  /// Finishes at once, as when its process gets a signal; advance() then appends its final status.
   void leave(std::string reason) { finish(false, std::move(reason)); }
 
-  /// When advance() must be called at the latest, even if nothing arrives.
+  /// The latest time at which advance() must be called, even if nothing arrives.
   Instant next_wakeup() const;
 
   bool finished() const { return std::holds_alternative<Finished>(state_); }
@@ -76,7 +75,7 @@ class Agent {
   Author author() const { return me_.author(); }
   AgentPhase phase() const;
   Tick tick() const { return mission_run() ? mission_run()->step.tick : -1; }
-  /// Whether the mission was paused at tick(), as far as this agent knew when it began that.
+  /// Whether the mission was paused at tick(), as far as this agent knew when that tick began.
   bool held() const { return mission_run() != nullptr && mission_run()->step.held; }
   /// The number of tick() among those that count.
   Tick counted_tick() const { return mission_run() ? mission_run()->step.counted : -1; }
@@ -87,47 +86,46 @@ class Agent {
   }
   /// Null before it is admitted.
   const CoverageTable* coverage() const { return mission_run() ? &mission_run()->table : nullptr; }
-  /// c_k of the rows that it holds, added up when it is asked for: a law that looks ahead needs
-  /// ĉ_k.
+  /// c_k of the rows that it holds, computed at each call: a law that looks ahead needs only ĉ_k.
   const Coefficients& team_coverage() const;
-  /// What its last command answers to: ĉ_k if the law looks ahead, else c_k.
+  /// The coverage that its last command answered to: ĉ_k if the law looks ahead, else c_k.
   const Coefficients& foreseen_coverage() const;
   const MissionFollower& follower() const { return me_.follower(); }
-  /// What it knows of teammates' places, where agents tell them; null elsewhere.
+  /// Positions from teammates' beacons; null if the mission uses no beacons.
   const BeaconBook* beacons() const {
     return mission_run() && mission_run()->beacons ? &*mission_run()->beacons : nullptr;
   }
-  /// Of the roster that the world flies tick() by.
+  /// The revision of the roster that the world uses at tick().
   std::int64_t roster_revision() const {
     return mission_run() ? mission_run()->step.roster_revision : 0;
   }
   const RefusalCounts& refused() const { return me_.refused(); }
 
-  /// What the transport counted; shown in the status.
+  /// Counts of the transport, for the status.
   void count_refused(Refusal refusal) { me_.count_refused(refusal); }
   void note_rate_offender(AgentId agent) { status_.rate_offender = agent; }
   void set_kernel_drops(std::int64_t drops) { status_.kernel_drops = drops; }
-  /// How late or deaf its process was; the next status tells the worst since the last.
+  /// How late its process was; the next status has the worst value since the one before.
   void note_loop_lag(double lag_s) { status_.loop_lag_s = std::max(status_.loop_lag_s, lag_s); }
 
  private:
-  /// How it asks to be admitted, also by a coordinator that was restarted and does not know of it.
+  /// Its requests for admission. It also asks a restarted coordinator that does not know of it.
   struct Hellos {
     Instant next{}, last{};
-    std::int64_t revision = -1;  // that the last one named
+    std::int64_t revision = -1;  // named by the last HELLO
   };
   /// Until the roster names it.
   struct Joining {
-    std::optional<Instant> duplicate_id_since;  // a teammate already speaks under the id we ask for
+    std::optional<Instant> duplicate_id_since;  // another process sends under the requested id
   };
   /// A tick of the world.
   struct Step {
     Tick tick = -1, answered = -1;
-    Tick counted = -1;                 // its number among those that count
+    Tick counted = -1;                 // its number among the ticks that count
     bool held = false;                 // the mission is paused: it does not count
-    std::int64_t roster_revision = 0;  // of the world, at `tick`
-    Eigen::Vector3d x_m{0, 0, 0};      // in the domain
-    Eigen::Vector3d body_m{0, 0, 0};   // a robot may be beside it
+    std::int64_t roster_revision = 0;  // the world's, at `tick`
+    Eigen::Vector3d x_m{0, 0, 0};      // the point of the domain nearest to body_m
+    Eigen::Vector3d body_m{0, 0, 0};   // a robot may be outside of the domain
     Eigen::Vector3d body_mps{0, 0, 0};
     std::optional<BasisAt> basis_at;
     Instant begun{};
@@ -140,13 +138,13 @@ class Agent {
     std::int64_t answered_tick;
     Eigen::Vector3d position_m, velocity_mps;
   };
-  /// From its admission on. While the mission waits for its quorum, no tick comes.
+  /// Its state from admission on. No tick comes while the mission waits for its quorum.
   struct InMission {
     /// @param joined  its first tick, counted
     InMission(const Mission& mission, const RosterEntry& self, Tick joined);
 
-    Tick active_from;  // as the roster says
-    int kind;          // its own
+    Tick active_from;  // from the roster
+    int kind;
     Sensors sensors;
     CoverageTable table;
     Controller controller;
@@ -154,21 +152,21 @@ class Agent {
     AntiEntropy anti_entropy;
     StateParts state_parts;
     std::optional<SeparationFilter> separation;  // if commands are filtered
-    Bodies bodies;                               // then, of the newest tick
-    std::optional<BeaconBook> beacons;           // where only agents know their places
+    Bodies bodies;                               // of the newest tick, for the filter
+    std::optional<BeaconBook> beacons;           // if only agents know their positions
     std::optional<WallFollower> follower;        // where there are walls
     std::optional<WayHome> way_home;             // if it has a station
-    std::vector<RosterEntry> held_roster;        // as counted_roster() says, once there are holds
+    std::vector<RosterEntry> held_roster;        // for counted_roster(), once there are holds
     Coefficients foreseen;
-    mutable Coefficients team_coverage;   // of when it was asked for last
-    std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
-    AuthorMap<Tick> last_update;  // when a member's coverage last grew for us, in ticks that count
+    mutable Coefficients team_coverage;   // as of the last call of team_coverage()
+    std::vector<Contribution> published;  // own blocks as last broadcast; repeat() repeats them
+    AuthorMap<Tick> last_update;          // counted tick at which a member's coverage last grew
     std::optional<Instant> running_since;
     Instant stall_announced{};
     std::optional<WorldView> pending;
     Step step;
     Command last_command, command_before;     // header.tick −1: none yet
-    std::optional<Incarnation> asking_world;  // where we were: it has just started
+    std::optional<Incarnation> asking_world;  // a starting world that asks where we are
     Deadline next_status, next_digest;
   };
   struct Finished {
@@ -179,7 +177,7 @@ class Agent {
   };
 
   template <class M>
-  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const M&, const Arrival&) {}  // the other types need no action
   void on(const MissionPart& part, const Arrival& arrival);
   void on(const Contribution& theirs, const Arrival& arrival);
   void on(const Digest& theirs, const Arrival& arrival);
@@ -231,7 +229,7 @@ class Agent {
   Hellos hellos_;
   MissionRepeat mission_repeat_;
   RadioRange radio_;
-  AgentStatus status_;  // what it counts, and what the transport told
+  AgentStatus status_;  // its own counts, and those of the transport
   std::variant<Joining, InMission, Finished> state_;
 };
 

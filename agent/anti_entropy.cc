@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares each digest with the own table and schedules an answer after a random delay, which a
-// teammate's earlier answer cancels.
+// Compares each digest with the own table and schedules an answer after a random delay. A
+// teammate's earlier answer cancels it.
 #include "agent/anti_entropy.h"
 
 #include <algorithm>
@@ -13,24 +13,24 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// An answer waits a random share of this, so that one of many answers first.
+/// An answer waits a random share of this, so that one agent answers before the others.
 constexpr double kLongestDelay_s = 0.25;
 /// Limit (Team): row requests that an agent remembers from digests. Beyond it: the oldest are
 /// forgotten.
 constexpr std::size_t kMaxRequests = 8192;
 constexpr int kToleratedPeriods = 2;
 
-/// Whether who holds `steps` and `state_hash` of a row of ours is worth an answer.
+/// Whether a teammate that holds `steps` and `state_hash` of this row lacks enough for an answer.
 bool lacks_something(const CoverageTable& table, std::size_t row, bool will_speak,
                      std::int64_t steps, std::uint64_t state_hash) {
   if (will_speak && table.min_steps(row) <= steps) return false;  // nearly always
   const CoverageTable::RowSummary ours = table.summary_of(row);
   if (will_speak) return ours.steps - steps > kToleratedPeriods * ours.announced_period;
-  // Two may each hold a block that the other lacks, and both say the same number of steps.
+  // Two agents may report equal steps although each holds a block that the other lacks.
   return ours.steps > steps || (state_hash != ours.state_hash && ours.newest_steps > steps);
 }
 
-/// The sum over all former members of a hash of what is held of each.
+/// Sums, over all former members, a hash of what the table holds of each.
 std::uint64_t hash_of_settled(const CoverageTable& table, const std::vector<RosterEntry>& roster) {
   std::uint64_t sum = 0;
   for (const RosterEntry& entry : roster) {
@@ -41,8 +41,8 @@ std::uint64_t hash_of_settled(const CoverageTable& table, const std::vector<Rost
   return sum;
 }
 
-/// Up to `most` of `authors`, which ascend: those after `last`, then from the first one on. Whoever
-/// comes or goes in between delays no other's turn.
+/// Up to `most` of `authors`, which ascend: those after `last`, then from the first one on. An
+/// author that joins or leaves in between delays no other's turn.
 std::vector<Author> next_in_turn(const std::vector<Author>& authors, std::size_t most,
                                  Author& last) {
   std::vector<Author> next;
@@ -96,8 +96,8 @@ Digest AntiEntropy::digest(const CoverageTable& table, const std::vector<RosterE
   return digest;
 }
 
-/// Two complaints further apart are not in a row: a teammate that was cut off starts anew. A lost
-/// digest in between is no such break.
+/// Two requests count as consecutive within this time, which allows for one lost digest. A teammate
+/// that was cut off for longer starts anew.
 PacingClock::duration AntiEntropy::request_lifetime() const { return seconds(3 + 2 * round_s_); }
 
 void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
@@ -116,7 +116,7 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
     while (member < roster.size() && roster[member].author < author) ++member;
     while (row < table.row_count() && table.author(row) < author) ++row;
     if (member == roster.size() || row == table.row_count()) return;
-    // Our own coverage we broadcast as it grows, never in between: in lockstep, ticks depend on it.
+    // We broadcast our own coverage only when it is due: in lockstep, ticks depend on that.
     if (author == self_ || author == requester || roster[member].author != author) continue;
     if (table.author(row) != author) continue;
     const bool will_speak = roster[member].active_until < 0;

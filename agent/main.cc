@@ -15,7 +15,7 @@
 namespace ergocast {
 namespace {
 
-/// Says now and then what an agent waits for that cannot take part.
+/// Logs now and then why an agent cannot take part.
 class WaitingLog {
  public:
   void look(const Agent& agent, Instant now) {
@@ -31,7 +31,7 @@ class WaitingLog {
   Instant next_{};
 };
 
-/// Says once that somebody speaks in another encoding than the plan says.
+/// Logs once that coverage arrived in another encoding than the plan's.
 class EncodingLog {
  public:
   void look(const Agent& agent) {
@@ -47,18 +47,18 @@ class EncodingLog {
   bool reported_ = false;
 };
 
-/// Says once each that places of teammates were refused.
+/// Logs each reason for which teammates' beacons were refused, once.
 class BeaconLog {
  public:
   void look(const Agent& agent) {
     const BeaconBook* const beacons = agent.beacons();
     if (beacons == nullptr) return;
     if (beacons->late() > 0 && !std::exchange(late_reported_, true))
-      spdlog::info("beacons of teammates overtake each other; who is overtaken is not heard");
+      spdlog::info("beacons of teammates overtake each other; overtaken beacons are ignored");
     if (beacons->from_the_future() > 0 && !std::exchange(future_reported_, true))
       spdlog::warn(
           "a teammate's beacon answers to one that this agent has not sent yet, and is refused: "
-          "does another process speak for this agent?");
+          "does another process send beacons under this agent's id?");
   }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent does at a tick of the world: samples, broadcasts, answers; and helps its teammates.
+// What an agent does at a tick of the world: it samples, broadcasts, answers and helps its
+// teammates.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,11 +17,11 @@ using namespace std::chrono_literals;
 
 constexpr auto kDigestPeriod = 1s;
 constexpr double kDigestMissionPeriod_s = 1.0;
-/// An agent without a new tick for so long broadcasts what it has, and again after as long.
+/// An agent that gets no new tick broadcasts what it has, this often.
 constexpr auto kStallPeriod = 1s;
 
-/// Says what a block has gained on the one broadcast before. Said again in the same tick, it says
-/// the same.
+/// Writes into `block` what it has gained since the broadcast `before`. A block that is sent again
+/// within a tick keeps its gains.
 void note_gains(const Contribution& before, Contribution& block) {
   if (before.steps == block.steps) {
     block.gains = before.gains;
@@ -50,12 +51,12 @@ void Agent::advance_mission(InMission& mission_run, Instant now, Outbox& out) {
          "now: check this host's network");
 }
 
-/// Where the others are, as far as they are in range. A vehicle stands still once its answers have
-/// stopped for as long as the world holds an old one; in lockstep the world waits for them.
+/// Gives the forecast the positions of vehicles in range. In real time a vehicle stands still once
+/// its answers are older than the world holds a command; in lockstep the world waits for answers.
 void Agent::note_places(InMission& mission_run, const WorldState& world) {
   const Timing& timing = mission().timing;
   mission_run.state_parts.see(world);
-  // Nothing is covered there, and nobody goes on from there before the mission does.
+  // Nothing is covered at a held tick, and no vehicle moves on before the mission continues.
   if (me_.is_held(world.header.tick)) return;
   const Tick tick = world.header.tick;
   const auto hold =
@@ -68,15 +69,16 @@ void Agent::note_places(InMission& mission_run, const WorldState& world) {
   }
 }
 
-/// Lockstep: the mission that the world names decides whether a tick counts, and who takes part. A
-/// restarted world may have gone on before all knew it.
+/// Lockstep: an agent needs the revision that the world names, which decides whether the tick
+/// counts and which agents take part. A restarted world may have continued before all agents knew
+/// it.
 bool Agent::may_begin(const InMission& mission_run) const {
   if (!mission_run.pending) return false;
   return mission().timing.pace == Pace::kRealtime ||
          follower().revision() >= mission_run.pending->roster_revision;
 }
 
-/// False if the mission is over for us; `mission_run` is no more then.
+/// False if the mission is over for us; `mission_run` is then no longer valid.
 bool Agent::begin_tick(InMission& mission_run, Instant now, Outbox& out) {
   const Mission& mission = me_.mission();
   const WorldView view = *mission_run.pending;
@@ -103,7 +105,7 @@ bool Agent::begin_tick(InMission& mission_run, Instant now, Outbox& out) {
   step.x_m = mission.domain.nearest(view.position_m);
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
   if (mission_run.beacons) publish_place(mission_run, view, out);
-  // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
+  // A restarted world may be a tick behind the roster. Our predecessor has covered that tick.
   if (step.tick < mission_run.active_from || step.held) return true;
   if (!rests(mission, me_.id(), step.counted))
     mission_run.table.add_sample(me_.author(), *step.basis_at,
@@ -120,17 +122,17 @@ void Agent::publish_place(InMission& mission_run, const WorldView& view, Outbox&
   if (beacon) me_.publish(Bus::kSwarm, *beacon, mission_run.step.tick, out);
 }
 
-/// Whether the ticks have stopped coming: then what we have is said now and then without waiting
-/// for more. In lockstep no broadcast may come before the one that was announced. While the mission
-/// is paused there is nothing new to say, and who joined meanwhile has nothing to say at all.
+/// Whether ticks have stopped in real time, so that the agent broadcasts what it has. In lockstep
+/// no broadcast may come before the one that was announced. In a pause there is nothing new to
+/// send, and an agent that joined during it has no coverage at all.
 bool Agent::stalled(const InMission& mission_run, Instant now) const {
   return mission().timing.pace == Pace::kRealtime && !mission_run.step.held &&
          mission_run.step.tick >= mission_run.active_from &&
          now - std::max(mission_run.step.begun, mission_run.stall_announced) >= kStallPeriod;
 }
 
-/// The blocks that are due, or all. Who learns late that the mission was paused has counted too
-/// many ticks, and what it announced then is too far ahead.
+/// Broadcasts the blocks that are due, or all. An agent that learns late of a pause has counted too
+/// many ticks, so the tick that it announced is too late: it broadcasts at once.
 void Agent::broadcast(InMission& mission_run, bool all, Outbox& out) {
   const Tick tick = mission_run.step.counted;
   for (int b = 0; b < mission_run.table.block_count(); ++b) {
@@ -139,7 +141,7 @@ void Agent::broadcast(InMission& mission_run, bool all, Outbox& out) {
     if (!all && !counted_less && tick < published.next_broadcast_tick) continue;
     Contribution block = mission_run.table.block(me_.author(), b);
     if (block.encoding == ContributionEncoding::kFixed16) note_gains(published, block);
-    block.header.tick = tick;  // a repeat says it, too: forecasts count a block's age from it
+    block.header.tick = tick;  // repeats keep it: forecasts count a block's age from it
     block.next_broadcast_tick = next_broadcast(mission(), me_.id(), tick, b);
     me_.publish(Bus::kSwarm, block, tick, out);
     published = std::move(block);
@@ -149,7 +151,7 @@ void Agent::broadcast(InMission& mission_run, bool all, Outbox& out) {
 void Agent::repeat(InMission& mission_run, Outbox& out) {
   Step& step = mission_run.step;
   step.repeat_wanted = false;
-  // The blocks as they were broadcast: newer sums would make a tick depend on what was lost.
+  // Repeats the blocks as they were broadcast: newer sums would make a tick depend on losses.
   for (const Contribution& block : mission_run.published) {
     if (block.steps > 0) me_.publish(Bus::kSwarm, block, block.header.tick, out);
   }
@@ -160,7 +162,7 @@ void Agent::repeat(InMission& mission_run, Outbox& out) {
 bool Agent::may_answer(InMission& mission_run) const {
   Step& step = mission_run.step;
   step.waiting_for = kUnassigned;
-  // Who does not know where all bodies are does not move.
+  // An agent answers only once it knows the position of every body.
   if (mission_run.separation && !mission_run.beacons && !mission_run.bodies.complete(step.tick)) {
     step.waiting_for = kWorld;
     return false;
@@ -173,11 +175,11 @@ bool Agent::may_answer(InMission& mission_run) const {
     step.waiting_for = kWorld;
     return false;
   }
-  if (step.held) return true;  // nobody broadcasts
+  if (step.held) return true;  // no agent broadcasts in a pause
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(step.tick)) continue;
     if (!radio_.receives(me_.id(), entry.author.agent)) continue;
-    // Who was admitted to rest never broadcasts.
+    // An agent that rests since its admission never broadcasts.
     if (rests(mission(), entry.author.agent, me_.counted(entry.active_from))) continue;
     if (!mission_run.table.holds_due(entry.author, step.counted)) {
       step.waiting_for = entry.author.agent;
@@ -199,21 +201,21 @@ void Agent::answer(InMission& mission_run, Outbox& out) {
   me_.publish(Bus::kCommand, mission_run.last_command, step.tick, out);
 }
 
-/// By the roster that the tick may have waited for, and by nothing older: the admission of a
-/// forgotten agent may have died with its coordinator. Also while the mission is paused: forgetting
-/// goes by the world's ticks, and what the agent says of c_k then is what counts then.
+/// Forgets by the tick's own roster or a newer one: an older admission of a forgotten agent may
+/// have been lost with its coordinator. This also runs in a pause, because forgetting goes by the
+/// world's ticks, and the agent then reports the c_k that counts.
 void Agent::forget_silent(InMission& mission_run) const {
   const Step& step = mission_run.step;
   mission_run.table.remember_all();
   for (const RosterEntry& entry : follower().roster()) {
-    // What we cover ourselves counts: we live, whatever the coordinator has heard.
+    // Our own coverage always counts: we run, even if the coordinator receives nothing from us.
     if (entry.author == me_.author()) continue;
     if (entry.forgotten_at(step.tick, step.roster_revision)) mission_run.table.forget(entry.author);
   }
 }
 
-/// What the law says, or the way home; nothing while the mission is paused, so that the vehicle
-/// brakes, then stands or loiters.
+/// The velocity of the law, or of the way home. It is zero in a pause, so that the vehicle brakes,
+/// then stands or loiters.
 Eigen::Vector3d Agent::wanted(InMission& mission_run) {
   const Step& step = mission_run.step;
   if (step.held) return {0, 0, 0};
@@ -229,7 +231,7 @@ Eigen::Vector3d Agent::wanted(InMission& mission_run) {
   return mission_run.controller.command(me_.id(), step.counted, step.x_m, *step.basis_at);
 }
 
-/// The last step of a command.
+/// The last step of a command: makes the wanted velocity safe, and counts blocked ticks.
 Eigen::Vector3d Agent::kept_apart(InMission& mission_run, const Eigen::Vector3d& wanted_mps) {
   if (!mission_run.separation) return wanted_mps;
   const bool goes_home = mission_run.way_home && mission_run.way_home->begun();
@@ -248,7 +250,7 @@ Eigen::Vector3d Agent::kept_apart(InMission& mission_run, const Eigen::Vector3d&
 
 SafeVelocity Agent::safe_velocity(InMission& mission_run, const Eigen::Vector3d& aim_mps) {
   const Step& step = mission_run.step;
-  // A body may have appeared that we do not know of.
+  // A newer roster may have a body that we do not know of.
   if (mission_run.beacons && follower().revision() < step.roster_revision)
     return {.blocked = true, .blind = true};
   const auto others = mission_run.beacons
@@ -274,7 +276,7 @@ void Agent::answer_digests(InMission& mission_run, Instant now, Outbox& out) {
 }
 
 void Agent::report_position(InMission& mission_run, Outbox& out) {
-  // Only we still know where those stand whose agents have left.
+  // Only agents still know where the vehicles of departed agents stand.
   for (const WorldState& state : mission_run.bodies.states()) out.push_back({Bus::kCommand, state});
   for (Command command : {mission_run.command_before, mission_run.last_command}) {
     command.asked_by = *mission_run.asking_world;

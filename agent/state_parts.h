@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether all parts of a tick's WORLD_STATE have been heard, whatever their order.
+// Whether all parts of a tick's WORLD_STATE have arrived, in any order.
 #pragma once
 
 #include <bitset>
@@ -23,11 +23,11 @@ class StateParts {
     wanted_ = static_cast<std::size_t>(world.parts);
   }
 
-  /// Whether no part of `tick` is missing that may still come.
+  /// Whether all parts of `tick` have arrived, or a newer tick has.
   bool complete(Tick tick) const { return tick_ > tick || received_.count() >= wanted_; }
 
  private:
-  Tick tick_ = -1;  // the newest that was heard of
+  Tick tick_ = -1;  // the newest
   std::bitset<kMaxAgents / kMaxVehiclesPerState> received_;
   std::size_t wanted_ = 0;
 };

@@ -24,8 +24,8 @@ RosterEntry* Coordinator::active_entry(AgentId id) {
   return at == roster_.end() ? nullptr : &*at;
 }
 
-/// Whether a member that counts as alive has sent nothing since `since`. It may be dead, and its
-/// number free soon.
+/// Whether a member that counts as alive has sent nothing since `since`. It may have stopped, and
+/// its number may soon be free.
 bool Coordinator::may_have_stopped(Instant since, Instant now) const {
   return std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
     return alive(entry, now) && last_sign(entry.author) < since;
@@ -34,8 +34,8 @@ bool Coordinator::may_have_stopped(Instant since, Instant now) const {
 
 std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, const std::string& kind,
                                             Instant now) {
-  // A restarted process may succeed a member that still counts as alive, so it waits while a member
-  // is may_have_stopped.
+  // A restarted process may succeed a member that still counts as alive. So it waits while
+  // may_have_stopped() is true.
   if (newcomers_.asked.size() >= kMaxRosterEntries) {
     auto& asked = newcomers_.asked;
     asked.erase(std::min_element(asked.begin(), asked.end(),
@@ -59,7 +59,7 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, const std::str
   return std::nullopt;
 }
 
-/// It must hear the end of the mission, too.
+/// Notes a process that is no member: it must receive the end of the mission, too.
 void Coordinator::note_stranger(Incarnation incarnation, Instant now) {
   const bool known = std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
     return entry.author.incarnation == incarnation;
@@ -118,7 +118,7 @@ void Coordinator::admit(const Author& author, int kind, Instant now) {
       std::count_if(roster_.begin(), roster_.end(),
                     [&](const RosterEntry& entry) { return entry.author.agent == author.agent; });
   if (roster_.size() >= kMaxRosterEntries || incarnations >= kMaxIncarnationsPerAgent) return;
-  // The agents may be ahead of the last state received from a world that has died since.
+  // The world may have stopped since its last state. The agents may then be ahead of that state.
   const Tick newest = std::max(world_.tick, team_tick_);
   if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;
   const Tick from = state_ == MissionState::kRunning ? newest : 0;

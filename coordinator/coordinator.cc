@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 constexpr auto kMissionPeriod = 1s;
 constexpr auto kMissionGap = 100ms;
 constexpr auto kTeamStatusPeriod = 250ms;
-/// Older messages of an agent are out of date.
+/// A message of an agent that is older than this is out of date.
 constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 /// How long the end is repeated.
 constexpr auto kLinger = 1s;
@@ -54,8 +54,8 @@ void Coordinator::receive(const Message& message, Bus bus, AgentId transmitter, 
     const bool flying = status != nullptr &&
                         (status->phase == AgentPhase::kWaiting || answers_ticks(status->phase));
     if (looking() && flying) me_.set_run(status->header.run);
-    // While it searches, it knows no run. The coordinator of any run here is the one that it would
-    // disturb.
+    // While it searches, it knows no run. It receives only the status of a coordinator, of any run,
+    // because it would disturb that one.
     if (me_.run() == 0 && !std::holds_alternative<TeamStatus>(message)) return;
   }
   const auto arrival = me_.accept(message, bus, transmitter, now);
@@ -63,8 +63,8 @@ void Coordinator::receive(const Message& message, Bus bus, AgentId transmitter, 
   std::visit([&](const auto& m) { on(m, *arrival); }, message);
 }
 
-/// While it looks for the mission it does not know yet which ticks are old. The operator says it
-/// again.
+/// While it searches for the mission, it does not know yet which ticks are old. The operator
+/// repeats STOP.
 void Coordinator::on(const Stop& stop, const Arrival& arrival) {
   if (looking()) return;
   end(stop.failed, stop.reason, arrival.now);
@@ -110,7 +110,7 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   world_.tick = world.header.tick;
   world_.revision = world.roster_revision;
   const bool stands = stand_by_revision_ >= 0 && world_.revision >= stand_by_revision_;
-  // It goes on once it knows the tick named here. No agent answers the next one before it does.
+  // The world goes on once it knows the named tick. No agent answers the next tick before that.
   if (stands) name_tick(world_.tick + 2);
   world_.missed_deadlines = std::max(world_.missed_deadlines, world.missed_deadlines);
   for (int i = 0; i < world.vehicle_count; ++i) {
@@ -171,7 +171,8 @@ RosterEntry* Coordinator::straggler(Instant now) {
       if (silent == nullptr || heard < last_sign(silent->author)) silent = &entry;
       continue;
     }
-    // A member that waits for a teammate is not blamed. That teammate is, unless it waits itself.
+    // A member that waits for a teammate is no straggler. That teammate is one, unless it waits
+    // itself.
     const AgentId teammate = waits_for(entry);
     RosterEntry* named = teammate == kUnassigned ? nullptr : active_entry(teammate);
     if (named != nullptr && waits_for(*named) == kUnassigned) {
@@ -300,7 +301,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
     world_.tick_since = now;
     change();
   }
-  // First, so that a coordinator that yields to our mission knows that we are alive.
+  // This comes first, so that a coordinator that yields to our mission knows that we are alive.
   if (now >= schedule_.next_team_status) {
     publish_team_status(now, out);
     schedule_.next_team_status = now + kTeamStatusPeriod;
@@ -317,8 +318,8 @@ void Coordinator::lead(Instant now, Outbox& out) {
   ending_.finished = all_left || now - *ending_.since >= kLinger;
 }
 
-/// Whether world, logger and agents have said that they leave, and no other process asks to join.
-/// Each of them leaves once it has heard the end.
+/// Whether world, logger and agents have reported that they leave, and no other process asks to
+/// join. Each of them leaves once it has received the end.
 bool Coordinator::everybody_left(Instant now) const {
   const auto& strangers = newcomers_.heard;
   if (!world_.left || !ending_.logger_left || strangers.size() >= kMaxRosterEntries) return false;
@@ -362,7 +363,7 @@ std::vector<MissionPart> Coordinator::mission_parts() const {
     part.plan.assign(led_.plan.begin() + static_cast<std::ptrdiff_t>(first),
                      led_.plan.begin() + static_cast<std::ptrdiff_t>(last));
   }
-  // By admission: a newcomer changes one part alone.
+  // Entries stay in the order of admission, so that a newcomer changes only one part.
   for (const RosterEntry& entry : roster_) {
     whole[admissions_.at(entry.author) / kMaxRosterEntriesPerMessage].roster.push_back(entry);
   }

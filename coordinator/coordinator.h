@@ -2,9 +2,9 @@
 // Admits agents, distributes the mission, starts, monitors and ends it. It never steers.
 //
 // It repeats its whole state once a second, that of a large team in turn, so that none of its
-// messages needs an acknowledgement.
-// A restarted coordinator takes the mission over from the agents, which repeat it on request
-// (takeover.cc). Who may join is in admission.cc, how it pauses in pausing.cc.
+// messages needs an acknowledgement. A restarted coordinator takes the mission over from the
+// agents, which repeat it on request (takeover.cc). Admission is in admission.cc, pausing in
+// pausing.cc.
 #pragma once
 
 #include <map>
@@ -35,8 +35,8 @@ enum class Takeover {
 enum class MemberState { kAlive, kSilent, kGone };
 const char* to_string(MemberState member_state);
 
-/// How many ticks before a change takes effect the team hears of it: in lockstep nobody answers a
-/// tick before it knows what holds there.
+/// How many ticks before it takes effect a change is announced. Lockstep needs no notice: an agent
+/// answers a tick only once it knows whether that tick counts.
 Tick notice_ticks(const Timing& timing);
 
 struct CoordinatorIdentity {
@@ -61,14 +61,15 @@ class Coordinator {
   /// Ends the mission in order; `failed` makes it a failure with that reason.
   void end(bool failed, std::string reason, Instant now);
 
-  /// The mission is paused in these ticks from its beginning on, as a simulation repeats them.
+  /// Plans the pauses of the mission from its beginning on. A simulation repeats recorded pauses
+  /// so.
   /// @pre are_holds(holds), and it has not advanced
   void plan_holds(std::vector<Hold> holds) { holds_ = std::move(holds); }
   const std::vector<Hold>& holds() const { return holds_; }
-  /// Whether the newest tick that it has heard of is held.
+  /// Whether the newest tick that it knows is held.
   bool paused() const { return is_held(holds_, world_.tick); }
 
-  /// True once all others have said that they leave, or the end has been repeated for 1 s.
+  /// True once all others have reported that they leave, or the end has been repeated for 1 s.
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
   /// Null until it has a mission; a takeover needs a moment to find one.
@@ -94,7 +95,7 @@ class Coordinator {
     return newcomers_.unknown_kinds;
   }
   Tick tick() const { return world_.tick; }
-  /// Commands of the operator that it refused for their ticks.
+  /// The operator's commands that were refused because their ticks are old.
   std::int64_t late_commands() const { return me_.refused(Refusal::kLate); }
 
  private:
@@ -201,8 +202,8 @@ class Coordinator {
   RosterEntry* straggler(Instant now);
   void announce() { publish_anew(), revisions_.who_may_join = revisions_.current; }
   void publish_anew() { ++revisions_.current, schedule_.next_mission = Instant{}; }
-  /// Any change but an admission: newcomers must know the new revision, so that no recording is
-  /// admitted.
+  /// For any change but an admission. A newcomer must know the new revision, so that no recording
+  /// is admitted.
   void change() { announce(), revisions_.admits_from = revisions_.current; }
   void repeat_mission_soon();
   std::vector<MissionPart> mission_parts() const;

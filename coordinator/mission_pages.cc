@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the hashes with those sent last, and keeps whose turn it is.
+// Compares the hashes with those sent last, and remembers which part is next in turn.
 #include "coordinator/mission_pages.h"
 
 #include <algorithm>

@@ -17,14 +17,14 @@ void Coordinator::on(const Pause& pause, const Arrival& arrival) {
   stand_by_revision_ = revisions_.current;
 }
 
-/// One change at a time, of a mission that flies.
+/// Whether the mission runs, and no other change waits for its tick.
 bool Coordinator::may_change_holds() const {
   const bool full = holds_.size() == kMaxHolds && !is_open(holds_);
   return state_ == MissionState::kRunning && !ending_.since && stand_by_revision_ < 0 && !full;
 }
 
-/// From the newest tick that the world can be at. Without a word of the world there is none; who
-/// wants the change asks again.
+/// Counts the notice from the newest tick that the world can be at. While the world is silent, that
+/// tick is unknown and no tick is named; the operator asks again.
 void Coordinator::name_tick_with_notice(Instant now) {
   if (!world_.heard || me_.silent(kWorld, now)) return;
   const double since_s = std::chrono::duration<double>(now - world_.tick_since).count();
@@ -36,7 +36,7 @@ void Coordinator::name_tick_with_notice(Instant now) {
 void Coordinator::name_tick(Tick tick) {
   stand_by_revision_ = -1;
   if (is_open(holds_)) {
-    // Real time: it may be asked for before the hold has begun.
+    // Real time: the operator may resume before the hold has begun.
     holds_.back().until = std::max(tick, holds_.back().from + 1);
   } else {
     holds_.push_back({holds_.empty() ? tick : std::max(tick, holds_.back().until)});

@@ -16,8 +16,8 @@ constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 constexpr auto kQuestionPeriod = 250ms;
 /// After the first answer, waits for newer revisions from other agents.
 constexpr auto kSecondOpinions = 600ms;
-/// How long it asks for the newest revision that it has heard of. If nobody has it whole, nobody
-/// flies by it.
+/// How long it asks for the newest revision that any message named. If no agent has all its parts,
+/// no agent uses it.
 constexpr auto kNewestPatience = 3s;
 constexpr auto kTakeoverPatience = 30s;
 /// The predecessor may have sent some revisions that no agent has repeated to us.
@@ -110,7 +110,7 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
   me_.publish(Bus::kSwarm, Hello{}, -1, out);
 }
 
-/// The world and the agents may fly by a revision whose parts we lack. It may hold ticks that an
+/// The world and the agents may use a revision whose parts we lack. It may pause ticks that an
 /// older one does not.
 Instant Coordinator::end_of_search() const {
   const MissionFollower& known = me_.follower();
@@ -151,8 +151,7 @@ void Coordinator::take_over(Instant now) {
   roster_ = me_.follower().roster();
   state_ = me_.follower().state();
   ending_.reason = me_.follower().reason();
-  // The tick of the predecessor or the agents counts if the world has sent nothing meanwhile; the
-  // world may have died, too.
+  // The world may have stopped, too. Then the tick of the predecessor or of the agents counts.
   for (const MissionPart& part : me_.follower().parts())
     world_.tick = std::max(world_.tick, part.header.tick);
   holds_.assign(me_.follower().holds().begin(), me_.follower().holds().end());
@@ -163,7 +162,7 @@ void Coordinator::take_over(Instant now) {
   revisions_.current =
       std::max(me_.follower().revision() + kRevisionLead, (world_.tick + 1) * kRevisionLead);
   revisions_.who_may_join = revisions_.current;
-  // The world's next tick, flown by our revision, is the one at which it stands by for us.
+  // The world stands by for us at its next tick, the first under our revision.
   if (me_.follower().stand_by_revision() >= 0) stand_by_revision_ = revisions_.current;
   if (me_.follower().over()) ending_.since = now;
   world_.tick_since = now;

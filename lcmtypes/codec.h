@@ -19,7 +19,7 @@
 namespace ergocast {
 
 /// Writes `message` into `out`, whose capacity is reused. Strings are cut at their limits.
-/// @param channel  that it will be published on; only a keyed seal uses it
+/// @param channel  on which it will be published; only a keyed tag covers it
 /// @pre counts within the limits of team/messages.h.
 void encode(const Message& message, std::vector<std::byte>& out,
             const MessageAuthenticator& authenticator = {}, std::string_view channel = {});
@@ -27,7 +27,7 @@ void encode(const Message& message, std::vector<std::byte>& out,
 /// The message in `bytes`, or why it is refused. Never throws, whatever the bytes are.
 /// @param run  the only run accepted; 0 accepts any (for monitors and processes that have not
 ///             joined)
-/// @param channel  that it came by; only a keyed seal uses it
+/// @param channel  on which it arrived; only a keyed tag covers it
 /// @param known  signatures that need not be checked again; may be null
 std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run,
                                       const MessageAuthenticator& authenticator = {},

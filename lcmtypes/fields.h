@@ -102,7 +102,7 @@ struct Fields<LowSums> {
   static void list(auto& io, auto& m) { Fields<Contribution>::list(io, m, kLowModes); }
 };
 
-/// A contribution whose numbers travel in 16 bits.
+/// A contribution whose numbers are sent in 16 bits.
 struct Averages;
 
 template <>

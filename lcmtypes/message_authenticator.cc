@@ -54,7 +54,7 @@ Tag hash_of(const unsigned char* message, std::size_t size) {
   return tag;
 }
 
-/// The tag without a key. XXH3 takes longer over three parts than over a copy.
+/// The tag without a key. It hashes a copy, because XXH3 takes longer over three parts.
 Tag hash_of(std::span<const std::byte> bytes) {
   const MaskedBytes message(bytes, kTagBytes);
   return hash_of(message.data(), message.size());

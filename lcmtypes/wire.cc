@@ -38,7 +38,7 @@ std::string bounded(const std::string& text, int limit) {
   return cut;
 }
 
-/// A sum over that time that was read before is written as the same bits.
+/// A sum that was read with the same time is written as the same bits.
 void Writer::averages(const BlockSums& sums, double time_s, std::size_t count) {
   std::byte* const at = room(count * sizeof(std::int16_t));
   const double scale = time_s > 0 ? kUnits / time_s : 0;

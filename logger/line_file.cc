@@ -34,7 +34,7 @@ bool LineFile::Waiting::write() {
   error = errno;
   if (taken == whole) error = 0;
   std::clearerr(file.get());
-  // Nothing of an incomplete line stays in the file.
+  // Removes an incomplete line from the file.
   const std::size_t kept = taken == 0 ? 0 : text.rfind('\n', taken - 1) + 1;
   written_bytes += kept;
   std::error_code ignored;

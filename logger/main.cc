@@ -41,7 +41,7 @@ struct Past {
 };
 
 /// The readable rows of the record. An error if the mission of the record is unknown.
-/// @param plan  of the record, whatever its folder says; empty: that of the folder
+/// @param plan  of the record, in place of the folder's; empty: the folder's
 std::variant<Past, std::string> read_past(const fs::path& folder, std::vector<std::byte> plan) {
   Past past;
   past.plan = std::move(plan);
@@ -70,7 +70,7 @@ std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// After a write error, waits for so much free space before the next try.
+/// After a write error, waits until this much space is free before the next try.
 constexpr std::uintmax_t kRoomBytes = 1 << 20;
 
 /// A recorder with its files. While they cannot be written, the team continues without the
@@ -103,7 +103,7 @@ class RunLogger {
     if (is_original(bus, channel)) events_.write(channel, bytes);
   }
 
-  /// To be called every turn: times for the summary, and what is new of the mission.
+  /// To be called every turn: notes times for the summary, and writes what is new of the mission.
   void attend(Instant now) {
     const Tick rows = recorder_.facts().ticks - recorder_.facts().former_ticks;
     if (rows != seen_rows_) {
@@ -181,8 +181,8 @@ class RunLogger {
     }
   }
 
-  /// Writes the plan once it is known, and the holds as soon as they are: without a summary nobody
-  /// else can tell which ticks count.
+  /// Writes the plan once it is known, and each hold once it is known. Without a summary, no other
+  /// file shows which ticks count.
   std::optional<std::string> write_mission() {
     const MissionFollower& heard = recorder_.follower();
     if (!heard.mission()) return std::nullopt;
@@ -195,8 +195,9 @@ class RunLogger {
     return problem;
   }
 
-  /// Writes the plan as it was sent, and what a launcher may have written already: the scenario's
-  /// text, and the table of its modes, without which other computers may not read the record.
+  /// Writes the plan as it was sent. It also writes the scenario's text and the table of its modes,
+  /// unless a launcher has done so. Without the table, another computer may be unable to read the
+  /// record.
   std::optional<std::string> write_plan() {
     const std::vector<std::byte>& plan = recorder_.follower().plan();
     if (auto problem = write_file(record_.folder() / kPlanFile, text_of(plan))) return problem;
@@ -281,7 +282,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
   logger.flush(now(), true);
   if (logger.idle()) {
     logger.discard();
-    spdlog::info("no mission was heard; the record stays as it was");
+    spdlog::info("no mission was received; the record stays as it was");
     return kExitDone;
   }
   logger.write_summary(transport);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the list of a mission's fields as Protobuf's text format.
+// Writes the list of a mission's fields in Protobuf's text format.
 #include "logger/mission_text.h"
 
 #include "core/mission_fields.h"

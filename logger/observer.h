@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// φ² of the team for an outside observer, computed from the true positions of the vehicles. Where
-// kinds have footprints or qualities it is of what the team has seen, core/kinds.h.
+// φ² of the team for an outside observer, computed from the true positions of the vehicles. If
+// kinds have footprints or qualities, it is of what the team has seen (core/kinds.h).
 #pragma once
 
 #include "core/basis.h"

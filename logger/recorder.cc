@@ -19,12 +19,12 @@ constexpr auto kAckPeriod = 100ms;
 /// early.
 constexpr auto kImpatientAckPeriod = 20ms;
 constexpr Tick kAckEveryTicks = 16;
-/// Real time repeats no state: a missing one is given up after so many newer ones.
+/// In real time no state is repeated: a missing one is given up after so many newer ones.
 constexpr std::size_t kGiveUpAfterStates = 16;
-/// And a part of a state, that of one driver of many, after half as many.
+/// A missing part of a state, from one driver of many, is given up after so many newer states.
 constexpr std::size_t kDriverPatience = kGiveUpAfterStates / 2;
-/// Lockstep: states more than so many ticks ahead are forged, or no row can be written. In real
-/// time the record may be behind by any number of ticks.
+/// Lockstep: a state that is more than so many ticks ahead is forged, or no row can be written. In
+/// real time the record may be behind by any number of ticks.
 /// Limit (Record): states that wait to become rows. Beyond it: newer ones are dropped, which leaves
 /// a gap.
 constexpr Tick kLeadTicks = 1024;
@@ -64,7 +64,7 @@ void Recorder::go_on(Instant now) {
 
 void Recorder::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (ending_.finished) return;
-  // An agent tells a restarted world what its predecessor has said.
+  // On this bus an agent repeats a former world's state for a restarted world.
   if (bus == Bus::kCommand && std::holds_alternative<WorldState>(message)) return;
   const auto arrival = me_.accept(message, bus, transmitter, now);
   if (!arrival) return;
@@ -167,7 +167,7 @@ void Recorder::on(const WorldState& world, const Arrival& arrival) {
   facts_.clamped_commands = std::max(facts_.clamped_commands, world.clamped_commands);
   if (states_.size() >= kMaxStates && !states_.contains(tick)) return;
   State& state = states_[tick];
-  // A repeat adds nothing, and a restarted world may not know the velocities.
+  // A repeat adds nothing, and in a restarted world's repeat the velocities may be missing.
   if (state.complete()) return;
   const auto parts = static_cast<std::size_t>(world.parts);
   const bool other = state.world != world.header.incarnation || state.parts.size() != parts;
@@ -212,7 +212,7 @@ void Recorder::advance(Instant now, Outbox& out) {
   }
 }
 
-/// Whether nothing more can arrive that the record lacks.
+/// Whether no missing data can arrive any more, because all processes have left.
 bool Recorder::everybody_left(Instant now) const {
   if (!ending_.since || !follower().over() || !received_.world_left) return false;
   if (next_row_ < received_.newest) return false;
@@ -295,8 +295,8 @@ bool Recorder::holds(Tick tick) const {
   return state->second.complete() || (has_drivers() && overdue);
 }
 
-/// Whether several drivers may say a tick, each its own robot's part: then a row is also written
-/// without a robot whose driver is not heard.
+/// Whether several drivers may send a tick, each its own robot's part. Then a row is also written
+/// without a robot whose driver is silent.
 bool Recorder::has_drivers() const { return me_.knows_mission() && uses_beacons(mission()); }
 
 bool Recorder::write_next_row() {
@@ -305,7 +305,7 @@ bool Recorder::write_next_row() {
   const State &now = states_.at(next_row_), &next = states_.at(next_row_ + 1);
   uncounted_ = now.uncounted;
   row_counts_ = next.uncounted <= now.uncounted;
-  // A pause of which only the world has heard dies with its coordinator: its ticks count after all.
+  // A pause that only the world received is lost if its coordinator stops: its ticks then count.
   facts_.held_ticks = std::min(facts_.held_ticks, now.uncounted);
   write_trajectory(now, next);
   end_row();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The run record: trajectory.csv and metrics.csv from the world's states, as an outside observer.
 //
-// Where each robot has a driver of its own, each says one part of a state, and they are joined; of
-// a part that does not come in time the rows are missing.
+// If each robot has a driver of its own, each driver sends one part of a state, and the recorder
+// joins the parts. The rows of a part that does not arrive in time are missing.
 //
 // Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that
 // the world applied in between. Rows are written in order and acknowledged to the world, which in
@@ -10,10 +10,10 @@
 // receives all lost rows again. While its streams are bad, as on a full disk, no row is written and
 // none acknowledged.
 //
-// In lockstep a row is missing only if no process can repeat its states: those before the first
-// state that a resumed recorder received, before the first of a restarted world, of a time in which
-// the recorder could not write, or of a time in which the world had given up a disconnected
-// recorder.
+// In lockstep a row is missing only if no process can repeat its states. Such states are those
+// before the first one that a resumed recorder received, and those before the first one of a
+// restarted world. States of a time in which the recorder could not write can be missing, too, and
+// those of a time in which the world had given up a disconnected recorder.
 #pragma once
 
 #include <limits>
@@ -35,31 +35,30 @@ namespace ergocast {
 /// The results of the whole run.
 struct RunFacts {
   Tick ticks = 0;         ///< recorded
-  Tick held_ticks = 0;    ///< of these, in which the mission was paused and nothing counts
+  Tick held_ticks = 0;    ///< of these, ticks that do not count because of a pause
   Tick former_ticks = 0;  ///< of these, recorded before this recorder resumed
   double ergodic_metric_first = 0, ergodic_metric_last = 0;
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
   /// With basis.free_domain: φ² in cosines at the last row of the metrics; NaN: there is none.
   double cosine_metric_last = std::numeric_limits<double>::quiet_NaN();
-  /// The first tick of a row whose φ² is not a number: from there on the record says nothing of the
-  /// coverage.
+  /// The tick of the first row whose φ² is not a number: from there on the record has no coverage.
   std::optional<Tick> no_metric_from;
   Tick gaps = 0;        ///< ticks without rows before the last row
   bool halted = false;  ///< by an emergency stop: the last row stands still
-  /// Real time, as the world counts them; of several drivers the one with the most.
+  /// Real time, as the world counts them; with several drivers, the largest count.
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;
   std::int64_t clamped_commands = 0;  ///< by the speed limit, likewise
-  /// Where a distance is kept: the least of any two bodies at any recorded tick; none: the greatest
-  /// number [m].
+  /// Where a distance is kept: the least distance of any two bodies at any recorded tick; the
+  /// greatest number if there is none [m].
   double nearest_m = std::numeric_limits<double>::max();
-  /// Of each agent that has a station: the farthest that its vehicle was from there at any recorded
-  /// tick of its rest, core/station.h, and at the end of the mission [m].
+  /// For each agent with a station (core/station.h): the greatest distance of its vehicle from
+  /// there at any recorded tick of its rest and at the end of the mission [m].
   std::map<AgentId, double> from_home_m;
 };
 
-/// What the distance that bodies keep has cost, by the newest status of each incarnation.
+/// The cost of the distance that bodies keep, from the newest status of each incarnation.
 struct Blocks {
-  double share = 0;  ///< of all agents' answered ticks, those that a body or an edge has blocked
+  double share = 0;        ///< the blocked part of all agents' answered ticks
   Tick longest_ticks = 0;  ///< in a row
 };
 
@@ -73,10 +72,11 @@ class Recorder {
   /// discard the tables, pass a NullBuffer (logger/null_buffer.h).
   Recorder(RunId run, Incarnation incarnation, std::ostream& trajectory, std::ostream& metrics);
 
-  /// Continues the record of a former process, all its segments, or none. Its rows are added to the
-  /// observer's sums again in their order, with the present roster, so φ² continues bit for bit;
-  /// missing metrics rows that are due are written.
-  /// @param plan  that of the record: any other mission received is a plan_problem(); empty: any
+  /// Continues the record of a former process with all its segments; the record may be empty. Its
+  /// rows are added to the observer's sums again in their order, with the present roster. So φ²
+  /// continues bit for bit. Metrics rows that are due and missing are written.
+  /// @param plan  the record's: any other mission received is a plan_problem(); empty: any is
+  /// accepted
   /// @pre nothing has been received
   void resume(RunData past, std::vector<std::byte> plan = {});
 
@@ -91,16 +91,17 @@ class Recorder {
   Instant next_wakeup() const;
 
   /// True once the last tick is recorded or the mission is over, and nothing more can arrive: world
-  /// and agents have said that they leave, or 1 s has passed.
+  /// and agents have reported that they leave, or 1 s has passed.
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
   const MissionFollower& follower() const { return me_.follower(); }
   /// "done" (its last tick is recorded), "failed" (also if φ² is not a number) or "stopped" (an
-  /// operator ended it), and why.
+  /// operator ended it); reason() has the cause.
   const char* result() const;
   const std::string& reason() const { return ending_.reason; }
   const RunFacts& facts() const { return facts_; }
-  /// The newest of each incarnation that Liveness holds, but with the worst loop lag of all.
+  /// The newest status of each incarnation that Liveness holds, with the worst loop lag of all its
+  /// statuses.
   const std::map<Author, AgentStatus>& statuses() const { return statuses_; }
   Blocks blocks() const;
   Tick next_row() const { return next_row_; }
@@ -121,7 +122,7 @@ class Recorder {
     Incarnation world = 0;    // the last one received
     Tick newest = 0;          // of the states received
     Tick lost_before = 0;     // states of earlier ticks may be gone for good
-    bool world_left = false;  // it has said its last message
+    bool world_left = false;  // its last message was received
   };
   struct Acknowledged {
     Tick tick = -2;
@@ -191,7 +192,7 @@ class Recorder {
   std::map<Tick, State> states_;
   Tick next_row_ = 0;
   Tick uncounted_ = 0;      // ticks before it that do not count, …
-  bool row_counts_ = true;  // … and whether it does itself: as the world says
+  bool row_counts_ = true;  // … and whether the row itself counts, both from the world
   Instant progress_{};      // last row, or first message of a new world
   Received received_;
   Acknowledged acked_;
@@ -199,7 +200,7 @@ class Recorder {
   Former former_;
   Observer observer_;
   std::optional<Mission> in_cosines_;  // with basis.free_domain
-  Observer cosines_;                   // then begun
+  Observer cosines_;                   // observes in_cosines_, if there is one
   std::map<Author, AgentStatus> statuses_;
   RunFacts facts_;
   std::vector<Eigen::Vector3d> row_places_m_;  // of all bodies, where a distance is kept

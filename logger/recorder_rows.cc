@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rows themselves: what a tick adds to the two tables and to the facts.
+// Writes what a tick adds to the two tables and to the facts.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -45,7 +45,7 @@ void Recorder::write_trajectory(const State& now, const State& next) {
   trajectory_ << line;
 }
 
-/// Who flies under this number at the next row; null if nobody does.
+/// The member that drives this vehicle at the next row; null if none does.
 const RosterEntry* Recorder::member(AgentId id) const {
   const auto& roster = follower().roster();
   const auto at = std::find_if(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
@@ -54,7 +54,7 @@ const RosterEntry* Recorder::member(AgentId id) const {
   return at == roster.end() ? nullptr : &*at;
 }
 
-/// Where an agent is that has to be at home.
+/// Notes how far an agent that must be at home is from its station.
 void Recorder::note_home(AgentId id, const Eigen::Vector3d& x_m) {
   const auto home_m = station_of(mission(), id);
   if (!home_m) return;
@@ -84,7 +84,7 @@ void Recorder::write_due_metrics() {
   const auto period = std::max<Tick>(1, std::llround(kMetricsPeriod_s / mission.timing.dt_s));
   if (!observer_.has_seen_any() || !row_counts_) return;
   if (counted() % period != 0 && !ends_after_row()) return;
-  // No table has it, so a resumed record computes it from the rows.
+  // No table has this metric, so a resumed record computes it from the rows.
   if (in_cosines_) facts_.cosine_metric_last = cosines_.metric(*in_cosines_);
   if (next_row_ <= former_.metrics.tick) return;
   write_metrics(observer_.metric(mission));

@@ -40,7 +40,7 @@ struct Fields {
 constexpr double kLargest = 1e100;
 
 /// Reads fields.count numbers separated by commas, and nothing else. Returns the first column that
-/// is not one, fields.count if more follows, or nothing.
+/// is no number, fields.count if more text follows, or nothing if all is right.
 std::optional<std::size_t> first_bad_column(std::string_view line, Fields& fields) {
   const char* at = line.data();
   const char* const end = at + line.size();

@@ -42,7 +42,7 @@ struct MetricsRow {
 struct RunData {
   std::map<AgentId, Track> tracks;  ///< without empty ones
   std::vector<MetricsRow> metrics;
-  std::vector<Hold> holds;  ///< ticks that do not count, as holds.json or summary.json names them
+  std::vector<Hold> holds;  ///< ticks that do not count, from holds.json or summary.json
 
   bool empty() const { return tracks.empty(); }
   double end_s() const;  ///< time of the last row, 0 if there is none
@@ -51,16 +51,16 @@ struct RunData {
 /// The mission of the record's plan.binpb, or an error that names the file.
 std::variant<Mission, std::string> read_mission(const std::filesystem::path& run_dir);
 
-/// Reads trajectory.csv and metrics.csv with all their segments, and which ticks do not count, or
-/// reports the file and line of an error with the remedy. A file's last line without its line break
-/// comes from a killed process and is ignored.
+/// Reads trajectory.csv and metrics.csv with all their segments, and which ticks do not count.
+/// Otherwise returns the file and line of an error, with the remedy. A file's last line without its
+/// line break comes from a killed process and is ignored.
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir);
 
-/// The same for trajectory.csv alone.
+/// Reads only trajectory.csv in the same way.
 std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir);
 
-/// The same into `run`, with the rows of each file before its first bad line. Returns the first
-/// such line of all, or nothing if there is none.
+/// Reads the same into `run`, but of each file only the rows before its first bad line. Returns the
+/// problem of the first such line of all files, or nothing if there is none.
 std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_dir, RunData& run);
 
 /// Visits trajectory.csv's rows in their order: ascending by tick, then by agent.

@@ -20,7 +20,7 @@ inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr const char* kScenarioFile = "scenario.textproto";
 /// The compiled plan as it was sent: what `ergocast verify` simulates again.
 inline constexpr const char* kPlanFile = "plan.binpb";
-/// The ticks that do not count, while no summary tells of them.
+/// The ticks that do not count, until a summary has them.
 inline constexpr const char* kHoldsFile = "holds.json";
 
 /// File `segment` of a table: trajectory.csv, trajectory-001.csv, trajectory-002.csv …

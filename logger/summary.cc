@@ -20,11 +20,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Real time: the share of late commands that the summary mentions.
+/// Real time: the least share of late commands that the summary mentions.
 constexpr double kNotableShare = 0.01;
-/// Of a distance, what rounding may take.
+/// The relative tolerance of a distance, for rounding.
 constexpr double kRounding = 1e-9;
-/// The limits of a summary that is read again: several times what the largest roster makes.
+/// The limits of a summary that is read again: several times the size for the largest roster.
 /// Limit (Record): length of `summary.json` and `holds.json` [bytes]. Beyond it: `verify`, `report`
 /// and other commands refuse the record.
 constexpr std::size_t kMostSummaryBytes = std::size_t{16} << 20;
@@ -107,7 +107,8 @@ Json conventions(const Basis& basis) {
           {"lambda", (squared ? "(1 + |k|^2)^-" : "(1 + |k|)^-") + s}};
 }
 
-/// The highest limit, those that kinds have of their own, and how often one was exceeded.
+/// The highest speed limit, the limits that kinds have of their own, and how often one was
+/// exceeded.
 Json speed_limit(const Mission& mission, std::int64_t clamped_commands) {
   Json limits{{"mps", fastest_mps(mission)}, {"clamped_commands", clamped_commands}};
   for (const AgentKind& kind : mission.kinds) {
@@ -116,7 +117,7 @@ Json speed_limit(const Mission& mission, std::int64_t clamped_commands) {
   return limits;
 }
 
-/// What became of the distance, and how much it has cost.
+/// The least distance that occurred, and the cost of keeping a distance.
 Json separation(const Recorder& recorder, const Mission& mission) {
   const Blocks blocks = recorder.blocks();
   const double nearest_m = recorder.facts().nearest_m;
@@ -127,8 +128,9 @@ Json separation(const Recorder& recorder, const Mission& mission) {
           {"longest_block_s", static_cast<double>(blocks.longest_ticks) * mission.timing.dt_s}};
 }
 
-/// Which agents were home in time: at their stations from the tick on from which they rest, in
-/// every row and at the mission's end. Of a mission that ends before, nobody is judged.
+/// How many agents were home in time, and which were late. An agent is in time if it is at its
+/// station in every row since its rest began, and at the mission's end. Agents without such a row
+/// are not judged.
 Json stations(const Recorder& recorder, const Mission& mission) {
   Json late = Json::array();
   double farthest_m = 0;
@@ -189,7 +191,7 @@ std::variant<Json, std::string> read_json(const std::filesystem::path& file) {
   }
 }
 
-/// As holds_json() lists them; none if what it says cannot be.
+/// Reads a list of holds_json(); empty if its content is impossible.
 std::vector<Hold> holds_in(const Json& list) {
   std::vector<Hold> holds;
   if (!list.is_array()) return holds;

@@ -33,19 +33,19 @@ struct RunContext {
 /// The summary as far as the record determines it. Keys are documented in docs/run_directory.md.
 nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& context);
 
-/// What φ² is in, as the summary and others name it: "cosines", "modes of the free domain".
+/// The name of the modes of φ², for the summary and others: "cosines", "modes of the free domain".
 const char* name_of_basis(const Basis& basis);
 
-/// Ticks that do not count, as JSON: of each pause the first one, and the first one that counts
+/// Ticks that do not count, as JSON: for each pause its first tick, and the first tick that counts
 /// again or null.
 nlohmann::ordered_json holds_json(std::span<const Hold> holds);
 
-/// The ticks of a run directory that do not count: by holds.json, which its logger leaves until it
-/// writes a summary, else by `summary`. None if what they say cannot be.
+/// The ticks of a run directory that do not count: from holds.json, which exists until the logger
+/// writes a summary, else from `summary`. Empty if the content is impossible.
 std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir,
                                  const nlohmann::ordered_json& summary);
 
-/// The text of the file. Bytes that are not UTF-8, which the network may bring, are replaced.
+/// The text of the file. Bytes that are not UTF-8 are replaced, because the network may bring some.
 std::string to_text(const nlohmann::ordered_json& summary);
 
 /// The summary of a run directory: null if there is none, any JSON value if the file is JSON, else

@@ -11,7 +11,7 @@
 namespace ergocast {
 namespace {
 
-/// Nine numbers have fewer bytes.
+/// More bytes than nine numbers have.
 /// Limit (Record): length of a row of a recorded table [bytes]. Beyond it: `verify`, `report` and
 /// other commands refuse the record.
 constexpr std::size_t kLongestRow = 4096;
@@ -62,8 +62,8 @@ bool TableLines::next(std::string& line) {
   return false;
 }
 
-/// What is longer than any row, unless the file ends in it: after a power failure that may be zeros
-/// by the million.
+/// Skips a line that is too long for a row. It is no problem if the file ends in it: after a power
+/// failure, millions of zeros may be there.
 LineEnd TableLines::skip_line() {
   in_->ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   if (in_->eof()) return LineEnd::kFile;

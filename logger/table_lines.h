@@ -26,7 +26,8 @@ class TableLines {
   const std::string& header() const { return header_; }
   /// The place of next()'s last line: "run/trajectory.csv:17: ".
   std::string place() const;
-  /// Whether the segment that was read last ends with such a line. @pre next() returned false
+  /// Whether the segment that was read last ends with a line without its line break.
+  /// @pre next() returned false
   bool torn() const { return torn_; }
   /// The file that cannot be opened or has a foreign header, with the remedy.
   const std::optional<std::string>& problem() const { return problem_; }

@@ -13,8 +13,8 @@
 namespace ergocast {
 namespace {
 
-/// No datagram of ours takes more of a receive buffer, whatever the driver allocates for it; on the
-/// loopback it takes 2304.
+/// The most of a receive buffer that one of our datagrams takes. The driver decides how much; on
+/// the loopback it is 2304.
 constexpr std::size_t kMostBufferBytes = 4608;
 
 }  // namespace
@@ -35,7 +35,7 @@ std::variant<std::unique_ptr<BusReader>, std::string> BusReader::open(const LcmU
   const auto failed = [&url, bus](const std::string& why) { return url.of(bus) + ": " + why; };
   if (reader->fd() < 0) return failed(no_socket(errno));
   reader->set_receive_buffer(url);
-  // Before the socket has a port, so that nothing passes by.
+  // The filter is set before the socket has a port, so that nothing passes it.
   reader->filtered_ = admit_only(reader->fd(), types, {}, replays);
   if (const auto problem =
           listen_to_group(reader->socket_, url.group, url.base_port + static_cast<int>(bus))) {

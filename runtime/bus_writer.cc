@@ -15,7 +15,7 @@ BusWriter::BusWriter(const LcmUrl& url) : socket_(AF_INET, SOCK_DGRAM) {
     messages_[i].msg_hdr.msg_iov = &parts_[i];
     messages_[i].msg_hdr.msg_iovlen = 1;
   }
-  // The processes of one host hear each other, and each hears itself.
+  // The processes of one host receive each other's messages, and each receives its own.
   const unsigned char ttl = static_cast<unsigned char>(url.ttl), loop = 1;
   setsockopt(socket_.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
   setsockopt(socket_.fd(), IPPROTO_IP, IP_MULTICAST_LOOP, &loop, sizeof loop);
@@ -40,7 +40,7 @@ void BusWriter::flush() {
   for (std::size_t sent = 0; sent < kept_;) {
     const int count =
         sendmmsg(socket_.fd(), &messages_[sent], static_cast<unsigned>(kept_ - sent), 0);
-    sent += count > 0 ? static_cast<std::size_t>(count) : 1;  // past the one that was refused
+    sent += count > 0 ? static_cast<std::size_t>(count) : 1;  // skips a refused message
   }
   kept_ = 0;
 }

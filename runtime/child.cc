@@ -18,7 +18,7 @@
 namespace ergocast {
 namespace {
 
-/// The code that a shell returns, too; our programs do not use it.
+/// A shell returns this code in the same case; our programs do not use it.
 constexpr int kCannotExecute = 127;
 
 constexpr int kFirst = STDERR_FILENO + 1;  // behind the standard streams
@@ -27,7 +27,7 @@ constexpr int kFirst = STDERR_FILENO + 1;  // behind the standard streams
 /// the log, even if the parent has none left.
 void keep_only(int* descriptors, int count) {
   for (int i = 0; i < count; ++i) {
-    // Not to be overwritten before its turn.
+    // Moves it out of the way, so that it is not overwritten before its turn.
     if (descriptors[i] < kFirst + count) {
       descriptors[i] = fcntl(descriptors[i], F_DUPFD, kFirst + count);
     }

@@ -50,8 +50,8 @@ class Child {
   std::optional<int> status_;  // as waitpid() gives it
 };
 
-/// How long to wait before a process is started again that has ended or could not be started so
-/// many times before: 0.5, 1, 2, 4, 4 … s.
+/// How long to wait before a process is started again, after so many ends or failed starts: 0.5, 1,
+/// 2, 4, 4 … s.
 std::chrono::nanoseconds restart_delay(int failures);
 
 /// The last lines of a text file, to explain why a process ended.

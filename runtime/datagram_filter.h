@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A kernel filter that passes on only what a process listens to, so that other messages neither
+// A kernel filter that passes on only what a process subscribes to, so that other messages neither
 // wake the process nor take space in its receive buffer.
 #pragma once
 
@@ -17,15 +17,15 @@ struct Repeated {
   std::int64_t newest = 0;
 };
 
-/// Of the repeats, a random one in so many datagrams passes.
+/// One in so many repeats passes, at random.
 /// Limit (Network): further repeats for each one that the kernel passes. Beyond it: they are
 /// dropped and counted as `rate`.
 inline constexpr std::uint32_t kShareThatPasses = 32;
 
 /// From now on the kernel passes on to this socket only unfragmented LCM messages on the channels
-/// of `types` (with any number of up to three digits where there is one channel for each agent),
-/// and no longer than ours. Needs no privileges. False if the kernel cannot do it: the old filter
-/// then stays. The kernel counts what it drops in the counter for want of buffer space, too.
+/// of `types`, and no longer than ours. A channel of an agent may have any number of up to three
+/// digits. Needs no privileges. False if the kernel cannot do it: the old filter then stays. The
+/// kernel counts what the filter drops together with what it drops for want of buffer space.
 /// @param replays  those of `ergocast replay` (lcmtypes/channels.h) as well
 /// @param flooded  messages of these incarnations up to their newest sequences are dropped, except
 ///                 for a share. Incarnations are compared by 32 of their bits.

@@ -16,8 +16,8 @@
 
 namespace ergocast {
 
-/// What an event of LCM's log format begins with: this word, its number and time stamp [µs] in 64
-/// bits, the lengths of channel and message in 32; all big-endian.
+/// An event of LCM's log format begins with this word, its number and time stamp [µs] in 64 bits,
+/// and the lengths of channel and message in 32; all big-endian.
 inline constexpr std::uint32_t kEventSync = 0xEDA1DA01;
 inline constexpr std::size_t kEventHeaderBytes = 28;
 
@@ -33,22 +33,22 @@ struct EventLogLimits {
   std::int64_t segment_bytes =
       kEventSegmentBytes;  ///< at this size a segment ends and the next begins
   std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest are removed first
-  bool compressed = false;  ///< finished segments become events-….lcm.zst, also those of before
+  bool compressed = false;  ///< finished segments become events-….lcm.zst, also older ones
 };
 
-/// Writes events-000.lcm, events-001.lcm, … in one folder, after the highest existing number: the
-/// log of a killed process may end within a message.
+/// Writes events-000.lcm, events-001.lcm, … in one folder, after the highest existing number. It
+/// never continues a file, because the log of a killed process may end within a message.
 class EventLog {
  public:
   explicit EventLog(std::filesystem::path folder, EventLogLimits limits = {});
   EventLog(const EventLog&) = delete;
   EventLog& operator=(const EventLog&) = delete;
-  /// Compresses what is to be and is not yet.
+  /// Compresses the finished segments that are not compressed yet, if the limits ask for it.
   ~EventLog();
 
   /// Appends a message, at the wall clock's time; discards it while the log cannot be written.
   void write(std::string_view channel, std::span<const std::byte> bytes);
-  /// The same at a time of the caller's [µs since 1970].
+  /// Appends a message at the caller's time [µs since 1970].
   void write(std::string_view channel, std::span<const std::byte> bytes, std::int64_t time_us);
 
   /// Passes all data to the operating system. Returns the write error since the last call, if any:
@@ -74,7 +74,7 @@ class EventLog {
   int first_segment_ = 0, segment_ = 0, removed_ = 0;
   std::int64_t number_ = 0;  // of the next event of the segment
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_{nullptr, &std::fclose};
-  std::optional<SegmentCompressor> compressor_;  // if they are to be compressed
+  std::optional<SegmentCompressor> compressor_;  // if segments are to be compressed
   std::optional<std::string> error_;
   bool error_reported_ = false;  // the caller has received the error
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks the word and the lengths of each event before it reads what they announce.
+// Checks the first word and the lengths of each event before it reads the event.
 #include "runtime/event_log_reader.h"
 
 #include <array>
@@ -72,7 +72,7 @@ std::string EventLogReader::place() const {
          std::to_string(begin_);
 }
 
-/// On to the next one, unless compressed bytes are damaged.
+/// Goes to the next segment, unless compressed bytes are damaged.
 const LoggedEvent* EventLogReader::end_segment() {
   if (file_->damaged()) return refuse("damaged");
   file_.reset();

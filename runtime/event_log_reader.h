@@ -22,15 +22,15 @@ struct LoggedEvent {
 
 class EventLogReader {
  public:
-  /// Finds the segments, compressed ones, too. An error if there is none, or a removed one is
-  /// missing in between.
+  /// Finds the segments, also compressed ones. An error if there is none, or if one is missing in
+  /// between.
   static std::variant<EventLogReader, std::string> open(const std::filesystem::path& folder);
 
   /// The next event, valid until the next call; null at the end and after a problem. An incomplete
   /// event at a segment's end comes from a killed logger and is left out.
   const LoggedEvent* next();
 
-  /// What ended the reading before the end: file, byte and remedy.
+  /// The problem that ended the reading early: file, byte and remedy.
   const std::optional<std::string>& problem() const { return problem_; }
   /// "FILE, byte N": where the last event begins.
   std::string place() const;

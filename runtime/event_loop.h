@@ -22,8 +22,8 @@
 
 namespace ergocast {
 
-/// The buses of `core`, which then receives what it subscribes to; null, after a line in the log,
-/// if LCM cannot be used.
+/// Opens the buses for `core`, which then receives what it subscribes to. Null, after a line in the
+/// log, if LCM cannot be used.
 /// @param more  handlers besides that of messages
 template <class Core>
 std::unique_ptr<Transport> connect(Core& core, const NodeOptions& node,
@@ -42,8 +42,8 @@ std::unique_ptr<Transport> connect(Core& core, const NodeOptions& node,
   return std::get<0>(std::move(opened));
 }
 
-/// Runs `core` until it has finished. A core has kRole, receive(), run by the transport's handler,
-/// advance(now, out), next_wakeup() and finished().
+/// Runs `core` until it has finished. A core has kRole, receive(), advance(now, out), next_wakeup()
+/// and finished(). The transport's handler calls receive().
 /// @param on_signal  called for SIGINT or SIGTERM; it makes the core finish
 /// @param each_turn  called in every turn, for the work that only this process has
 /// @param lag        measures every turn

@@ -9,15 +9,15 @@
 
 namespace ergocast {
 
-/// To wake a process costs more than a message. In real time nobody waits for a single contribution
-/// or command: the next tick needs it, and the world's state of that tick wakes everybody.
+/// To wake a process costs more than to read a message. In real time no process waits for a single
+/// contribution or command: the next tick needs it, and the world's state of that tick wakes all.
 struct Gathering {
   std::chrono::nanoseconds at_most{0};  ///< 0: each message wakes its receivers
   std::size_t datagrams = 0;            ///< that may come together on one bus
 };
 
-/// Half a tick, at most 50 ms: the answers to requests wait as well. 0 in lockstep, where everybody
-/// waits for everybody, and where less than 1 ms would be gained.
+/// Half a tick, at most 50 ms, because answers to requests wait as well. 0 in lockstep, where each
+/// process waits for others, and where less than 1 ms would be gained.
 /// @param members  entries of the roster, former members included
 Gathering gathering_of(const Mission& mission, std::size_t members);
 

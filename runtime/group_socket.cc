@@ -16,9 +16,10 @@ std::optional<std::string> listen_to_group(const Socket& socket, const std::stri
   const int yes = 1, no = 0;
   const sockaddr_in address = address_of(group, port);
   const ip_mreq membership{address.sin_addr, {htonl(INADDR_ANY)}};
-  // LCM sets this option alone; with another one, the kernel would not let them share the port.
+  // LCM sets only this option. With another one, the kernel would not let us share LCM's port.
   setsockopt(socket.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  // Otherwise the socket would also receive what another one's membership brings to this host.
+  // Without this, the socket would also receive what another socket's membership brings to this
+  // host.
   setsockopt(socket.fd(), IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no);
   if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return failed("cannot open the port");

@@ -74,7 +74,7 @@ std::optional<std::string> why_not_private(const struct stat& info,
   }
   // Root can read all files, but the owner of a file could still replace it.
   if (info.st_uid != geteuid() && info.st_uid != 0 && geteuid() != 0) {
-    return name + ": belongs to another user; chown it to who runs this program";
+    return name + ": belongs to another user; chown it to the user that runs this program";
   }
   return std::nullopt;
 }

@@ -55,7 +55,7 @@ bool port_is_free(int port) {
   return probe.fd() >= 0 && bind(probe.fd(), as_sockaddr(any), sizeof any) == 0;
 }
 
-/// The name exists once in each network namespace and vanishes with its process.
+/// Reserves a name that exists once in each network namespace and ends with its process.
 int lock_ports(int base_port) {
   const int lock = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (lock < 0) return -1;
@@ -135,7 +135,7 @@ std::optional<std::string> why_unreachable(const LcmUrl& url) {
   if (setsockopt(socket.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0) {
     return failed("cannot join the group");
   }
-  // To our own port, with a TTL of 0, so that no other host receives it.
+  // The probe goes to our own port, with a TTL of 0, so that no other host receives it.
   const unsigned char ttl = 0;
   setsockopt(socket.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
   sockaddr_in target = group;

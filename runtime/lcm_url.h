@@ -16,8 +16,9 @@ namespace ergocast {
 inline constexpr int kFirstBasePort = 24000;
 inline constexpr int kLastBasePort = 26997;
 
-/// Asked for each receiving socket unless the URL says another size; the machine may allow less. It
-/// holds what arrives while a process waits for a processor, for example the beginning of a flood.
+/// The buffer size requested for each receiving socket, unless the URL has another; the machine may
+/// allow less. The buffer holds what arrives while a process waits for a processor, for example the
+/// beginning of a flood.
 /// Limit (Network): receive buffer that a process asks for on each bus; the kernel may grant less
 /// [bytes]. Beyond it: the newest message is lost and counted.
 inline constexpr int kReceiveBufferBytes = 4 << 20;

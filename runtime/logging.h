@@ -10,14 +10,14 @@ namespace ergocast {
 /// The values of --log-level, from everything to errors only.
 inline const std::vector<std::string> kLogLevels{"trace", "debug", "info", "warn", "error"};
 
-/// One line per event on the standard error stream: time, level, process, text. On the journal's
-/// stream, a syslog priority replaces time and level, on every line of a text that has several. A
-/// line repeated within 5 s is counted and not written again.
+/// Writes one line per event on the standard error stream: time, level, process, text. On the
+/// journal's stream, a syslog priority replaces time and level on each line of the text. A line
+/// repeated within 5 s is counted and not written again.
 /// @param level  one of kLogLevels
 void set_up_logging(const std::string& process_name, const std::string& level);
 
-/// Whether `fd` is the stream that systemd names in `journal_stream` ("device:inode"), its
-/// $JOURNAL_STREAM; null: there is none.
+/// Whether `fd` is the stream that systemd names in $JOURNAL_STREAM.
+/// @param journal_stream  that variable's value, "device:inode"; null: not set
 bool is_journal(const char* journal_stream, int fd);
 
 /// `text` in the journal's format: "<N>process: line", for each of its lines that is not empty.

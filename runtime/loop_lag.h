@@ -20,7 +20,7 @@ class LoopLag {
   /// The loop has done its work. Since it woke up, it received nothing new.
   void done(Instant now) { worst_ = std::max(worst_, now - woke_); }
 
-  /// The worst of either since the last call [s].
+  /// The longest delay or working time since the last call [s].
   double take_s() {
     return std::chrono::duration<double>(std::exchange(worst_, PacingClock::duration(0))).count();
   }

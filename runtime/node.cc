@@ -45,13 +45,13 @@ void read_run_id(const std::string& text, RunId& run) {
   }
 }
 
-/// An empty variable would count as unset, and the team would fly without a key.
+/// Refuses an empty variable: it would count as unset, and the team would run without a key.
 void refuse_empty_key_variable(const CLI::Option& option) {
   const char* file = std::getenv(kKeyVariable);
   if (file == nullptr || *file != '\0' || option.count() > 0) return;
   throw CLI::ValidationError(kKeyVariable,
                              "is set, and empty; name the key file in it, or unset it to "
-                             "fly without a key");
+                             "run without a key");
 }
 
 /// "did you mean NAME?", or how to list all names.
@@ -90,7 +90,7 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
   return "";
 }
 
-/// The bytes of a plan that this program can fly, or why the file has none.
+/// The bytes of a plan that this program can run, or why the file has none.
 std::variant<std::vector<std::byte>, std::string> read_plan(const std::string& file) {
   const auto text = read_whole(file, kMaxPlanBytes);
   if (const auto* problem = std::get_if<FileProblem>(&text)) return problem->what;
@@ -118,7 +118,7 @@ void add_key_option(CLI::App& app, MessageAuthenticator& authenticator, std::str
              [&authenticator, file](const std::string& name) {
                if (name.empty()) {
                  throw CLI::ValidationError("--key-file",
-                                            "no name; leave it out to fly without a key");
+                                            "no name; leave it out to run without a key");
                }
                const auto key = read_key_file(name);
                if (const auto* problem = std::get_if<std::string>(&key)) {

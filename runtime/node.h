@@ -50,15 +50,16 @@ void add_bus_options(CLI::App& app, BusOptions& options);
 /// The options of the programs that take part in a mission.
 struct NodeOptions : BusOptions {
   std::string log_level = "info";
-  std::string modes_problem;  ///< why --modes gave no table; empty: nothing is wrong
+  std::string modes_problem;  ///< why --modes gave no table; empty: no problem
 };
 
-/// Adds --log-level (default: $ERGOCAST_LOG_LEVEL, or info), --modes, which keeps the table in this
-/// process, and --version to those. A file that is no table is no error: the table is computed.
+/// Adds the bus options, --log-level (default: $ERGOCAST_LOG_LEVEL, or info), --version and
+/// --modes, which keeps the table in this process. A file that is no table is no error: the table
+/// is computed.
 void add_node_options(CLI::App& app, NodeOptions& options);
 
-/// --plan: the compiled plan of a mission, as plan.binpb of its record holds it. Checked; `plan`
-/// gets its bytes.
+/// --plan: the compiled plan of a mission, as in plan.binpb of its record. `plan` gets the checked
+/// bytes.
 CLI::Option* add_plan_option(CLI::App& app, std::vector<std::byte>& plan);
 
 /// --event-log-limit, for programs that write an event log. @param mib  its default

@@ -15,12 +15,13 @@ namespace {
 /// Limit (Network): messages of one sender [times what the mission asks for]. Beyond it: they are
 /// refused with `rate`.
 constexpr double kMargin = 8;
-/// How often the world repeats a tick at most; all agents then repeat their messages. In real time
-/// the world repeats none, but the network may.
+/// How often the world repeats a tick at most. All agents then repeat their messages. In real time
+/// the world repeats no tick, but the network may.
 constexpr double kLockstepRepeatsPerSecond = 50, kRealtimeRepeatsPerSecond = 5;
 /// Statuses, digests and answers to a world, in addition to those of mission time.
 constexpr double kOthersPerSecond = 40;
-/// The messages of one agent that may wait for a delayed process: the kernel's buffers hold fewer.
+/// The most messages of one agent that may wait for a delayed process; the kernel's buffers hold
+/// fewer.
 constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
 }  // namespace

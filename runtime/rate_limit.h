@@ -10,15 +10,15 @@
 
 namespace ergocast {
 
-/// The rate budget of one agent on all buses together: so many messages a second and so many a
-/// tick. `most` limits the sum, which is large enough for the backlog of a delayed process.
+/// The rate budget of one agent on all buses together: messages a second, and messages a tick.
+/// `most` limits the unused budget; it is large enough for the backlog of a delayed process.
 struct RateBudget {
   double per_second = 0, per_tick = 0, most = 0;
 };
 
-/// Eight times the most that the mission needs of an agent: its blocks whenever they are due and
-/// whenever a tick is repeated, its commands, relayed blocks, digests and statuses. Ticks count
-/// separately, because lockstep has as many a second as the machine can do.
+/// Eight times the most that the mission needs of an agent: its blocks when they are due and when a
+/// tick is repeated, its commands, relayed blocks, digests and statuses. Ticks count separately,
+/// because lockstep has as many a second as the machine can compute.
 /// @param members  entries of the roster, former members included
 RateBudget rate_budget_of(const Mission& mission, std::size_t members);
 

@@ -13,7 +13,7 @@ bool RepeatGuard::count(const Header& from, bool is_new, Instant now) {
   const bool was_flooded = !flooded_.empty();
   const bool lapsed = now - window_began_ >= kWindow * (was_flooded ? kCalmWindows : 1);
   if (repeats_ < kMostRepeats && !lapsed) return false;
-  // While the kernel drops repeats, each that passes stands for many.
+  // While the kernel drops repeats, each repeat that passes stands for many.
   const bool goes_on =
       was_flooded && repeats_ * static_cast<int>(kShareThatPasses) >= kMostRepeats * kCalmWindows;
   const bool flooded = repeats_ >= kMostRepeats || goes_on;

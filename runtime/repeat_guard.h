@@ -24,13 +24,13 @@ namespace ergocast {
 /// The guard of one bus.
 class RepeatGuard {
  public:
-  /// So many repeats in a window are a flood; a team repeats fewer.
+  /// The number of repeats in a window that counts as a flood; a team repeats fewer.
   /// Limit (Network): repeats of old messages on a bus in 0.1 s. Beyond it: the kernel passes only
   /// a share of them and drops the others.
   static constexpr int kMostRepeats = 200;
   static constexpr std::chrono::nanoseconds kWindow = std::chrono::milliseconds(100);
-  /// A flood ends after so many windows with few repeats together: a delayed process receives
-  /// little at first.
+  /// A flood ends if so many windows together have few repeats. One window is not enough, because a
+  /// delayed process receives little at first.
   static constexpr int kCalmWindows = 10;
   /// More than the incarnations that a team has at a time.
   static constexpr std::size_t kMaxIncarnations = 144;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the bytes into a memfd and seals it, so that whoever maps it never meets a shorter file.
+// Writes the bytes into a memfd and seals it, so that the file never gets shorter under a process
+// that maps it.
 #include "runtime/sealed_file.h"
 
 #include <fcntl.h>
@@ -25,7 +26,8 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// A new file behind the standard streams, whose numbers a child fills anew; −1: there is none.
+/// A new file with a descriptor above those of the standard streams, because a child reopens these;
+/// −1: there is none.
 int new_file(const std::string& name) {
   const int descriptor = memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING);
   if (descriptor < 0 || descriptor > STDERR_FILENO) return descriptor;

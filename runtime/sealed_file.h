@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file in memory that nobody can change any more, not even this process: what a launcher hands to
-// the processes that it starts. No change of a file on the disk reaches them then.
+// A file in memory that no process can change any more, not even this one. A launcher hands such
+// files to the processes that it starts, so that no change of a file on the disk reaches them.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace ergocast {
 
-/// Copies share one file, which lasts as long as one of them or any process that has opened it.
+/// Copies share one file. It exists as long as one of them, or a process that has opened it.
 class SealedFile {
  public:
   /// An error if the system has no memory or no descriptor for it. Only its owner may read it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Streams a file through libzstd in blocks, into a file that gets its name when it is complete.
+// Streams a file through libzstd in blocks. The result gets its final name when it is complete.
 #include "runtime/segment_compressor.h"
 
 #include <unistd.h>
@@ -12,10 +12,10 @@ namespace ergocast {
 namespace {
 
 constexpr std::size_t kBlockBytes = 1 << 18;
-/// Sums change in all their digits, so a higher level costs more and gains nothing.
+/// Sums change in all their digits, so a higher level costs more without a gain.
 constexpr int kLevel = 1;
 
-/// Writes all of it to the disk, so that it outlives a power failure.
+/// Writes the whole file to the disk, so that it survives a power failure.
 bool keep(std::FILE* file) { return std::fflush(file) == 0 && fsync(fileno(file)) == 0; }
 
 }  // namespace
@@ -30,7 +30,7 @@ SegmentCompressor::SegmentCompressor()
   ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_checksumFlag, 1);
 }
 
-/// What is not complete goes: the segment itself is still there.
+/// Removes an incomplete copy: the segment itself is still there.
 SegmentCompressor::~SegmentCompressor() {
   if (from_) end(false);
 }
@@ -57,7 +57,7 @@ bool SegmentCompressor::begin() {
   return from_ && to_;
 }
 
-/// Compresses the first `bytes` of in_; `last`: and ends the stream.
+/// Compresses the first `bytes` of in_; with `last` it also ends the stream.
 bool SegmentCompressor::pass_on(std::size_t bytes, bool last) {
   ZSTD_inBuffer in{in_.data(), bytes, 0};
   const ZSTD_EndDirective how = last ? ZSTD_e_end : ZSTD_e_continue;
@@ -72,7 +72,7 @@ bool SegmentCompressor::pass_on(std::size_t bytes, bool last) {
 
 void SegmentCompressor::end(bool done) {
   from_.reset();
-  // The segment itself goes only when its copy is safe.
+  // The segment itself is removed only when its copy is on the disk.
   const bool kept = done && to_ && keep(to_.get());
   to_.reset();
   std::error_code error, ignored;

@@ -14,18 +14,18 @@ struct ZSTD_CCtx_s;
 
 namespace ergocast {
 
-/// FILE.zst, as `zstd` writes it, takes the place of FILE once it is complete: `zstd -d` makes the
-/// same bytes of it again.
+/// FILE.zst, in the format of `zstd`, replaces FILE once it is complete. `zstd -d` restores the
+/// same bytes.
 class SegmentCompressor {
  public:
   SegmentCompressor();
   ~SegmentCompressor();
 
-  /// Will compress `file`, to which nothing more is written.
+  /// Adds a file to be compressed. @pre nothing more is written to it
   void add(std::filesystem::path file) { waiting_.push_back(std::move(file)); }
 
-  /// Compresses so many bytes more, to the last whole block. A file that cannot be read, or whose
-  /// copy cannot be written, is left as it is.
+  /// Compresses up to `bytes` more, in whole blocks. A file that cannot be read, or whose copy
+  /// cannot be written, is left as it is.
   void work(std::int64_t bytes);
 
   bool idle() const { return waiting_.empty(); }
@@ -38,11 +38,11 @@ class SegmentCompressor {
   void end(bool done);
   std::filesystem::path part() const { return waiting_.front().string() + ".zst.part"; }
 
-  std::deque<std::filesystem::path> waiting_;  // the first is under way if from_ is open
+  std::deque<std::filesystem::path> waiting_;  // if from_ is open, it is the first
   File from_, to_;
   std::unique_ptr<ZSTD_CCtx_s, void (*)(ZSTD_CCtx_s*)> context_;
   std::vector<char> in_, out_;
-  std::int64_t allowed_ = 0;  // bytes, less than a block
+  std::int64_t allowed_ = 0;  // bytes left over from the last work(), less than a block
 };
 
 }  // namespace ergocast

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a file as it is, or streams it through libzstd.
+// Reads a plain file, or streams a compressed one through libzstd.
 #include "runtime/segment_file.h"
 
 #include <zstd.h>

@@ -17,14 +17,14 @@ namespace ergocast {
 
 class SegmentFile {
  public:
-  /// A name that ends with .zst is that of a compressed segment.
+  /// Opens a segment. A name that ends with .zst means a compressed one.
   static std::variant<SegmentFile, FileProblem> open(const std::filesystem::path& file);
 
   /// False if the segment ends before so many bytes.
   bool read(void* to, std::size_t bytes);
-  /// Whether it ended because what follows is no whole compressed segment.
+  /// Whether it ended early because the compressed bytes are damaged or incomplete.
   bool damaged() const { return damaged_; }
-  /// How many bytes were read, of the segment before its compression.
+  /// How many uncompressed bytes were read.
   std::uint64_t position() const { return position_; }
 
  private:

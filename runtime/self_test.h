@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether this process can hear what it sends on a bus.
+// Whether this process receives what it sends on a bus.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,9 @@
 
 namespace ergocast {
 
-/// Sends a datagram to the bus, which does not leave this host and which LCM's programs discard by
-/// its first bytes.
-/// @return nothing as soon as it comes back; otherwise the cause with its remedy, after at most 10
-/// s
+/// Sends a datagram to the bus. It does not leave this host, and LCM's programs discard it by its
+/// first bytes.
+/// @return nothing as soon as it comes back; else, after at most 10 s, the cause with its remedy
 std::optional<std::string> why_deaf(const LcmUrl& url, Bus bus);
 
 }  // namespace ergocast

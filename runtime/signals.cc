@@ -25,7 +25,7 @@ StopSignals::StopSignals() {
   const sigset_t set = stop_set();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   signal(SIGPIPE, SIG_IGN);
-  signal(SIGCHLD, SIG_DFL);  // if the parent ignored it, no child could be waited for
+  signal(SIGCHLD, SIG_DFL);  // if it stayed ignored, waiting for a child would fail
   fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
 }
 

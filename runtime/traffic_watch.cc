@@ -79,8 +79,8 @@ bool TrafficWatch::look(Instant now, std::int64_t late_commands) {
   }
   if (repeated != logged_repeats_) {
     spdlog::warn(
-        "somebody repeats what the team has said, far more often than it would, and the rest "
-        "is refused: look for who records on this network");
+        "somebody repeats messages of the team far more often than the team would, and the rest "
+        "is refused: look for a recorder on this network");
   }
   logged_over_rate_ = transport_.over_rate();
   logged_repeats_ = repeated;
@@ -102,7 +102,7 @@ void TrafficWatch::warn_of_late_commands(std::int64_t count, Instant now) {
   spdlog::warn(
       "late={}: a command to stop, pause or resume names a tick that has passed long ago, and is "
       "ignored: it was delayed, or somebody repeats a recording of it; an operator who still wants "
-      "it says it again",
+      "it must send it again",
       count);
 }
 

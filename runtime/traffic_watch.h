@@ -11,12 +11,12 @@ namespace ergocast {
 
 class TrafficWatch {
  public:
-  /// Logs at once what the transport lacks.
+  /// Logs at once if the kernel has no filters.
   explicit TrafficWatch(Transport& transport);
 
   /// To be called every turn. Checks once a second; logs changes at most every 10 s.
-  /// @param late_commands  how many of the operator's commands were refused for their ticks
-  /// @return whether this turn checked: the time for other work of once a second
+  /// @param late_commands  how many of the operator's commands were refused for their old ticks
+  /// @return whether this turn checked; the caller then does its own work of once a second
   bool look(Instant now, std::int64_t late_commands = 0);
   std::int64_t kernel_drops() const { return kernel_drops_; }
 

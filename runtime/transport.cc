@@ -26,8 +26,8 @@ namespace {
 /// Limit (Network): datagrams of a bus that a process reads in a turn. Beyond it: the next turn
 /// reads on.
 constexpr std::size_t kMaxDatagramsPerTurn = 256;
-/// So many times the expected datagrams are no statuses and digests of the team: somebody floods a
-/// bus, and for so long nothing gathers.
+/// A bus with more than kCrowd times the expected datagrams is flooded: statuses and digests of a
+/// team are fewer. For the time kCrowded, messages then do not gather.
 constexpr std::size_t kCrowd = 4;
 constexpr auto kCrowded = std::chrono::seconds(10);
 constexpr std::string_view kPrefix = "ERGOCAST_";
@@ -136,7 +136,7 @@ std::int64_t BusTransport::kernel_drops() {
   return drops;
 }
 
-/// While repeats are dropped, all that the kernel drops counts as refused for that reason.
+/// While repeats are dropped, everything that the kernel's filter drops counts as a refused repeat.
 void BusTransport::count_cut(Line& line) noexcept {
   for (auto repeats = line.reader->take_rejected(); repeats > 0; --repeats) refuse(Refusal::kRate);
 }
@@ -146,7 +146,7 @@ void BusTransport::cut_repeats(Line& line) {
   if (line.is_cut) {
     count_cut(line);
   } else {
-    line.reader->take_rejected();  // not yet for that reason
+    line.reader->take_rejected();  // these were no repeats
   }
   line.reader->drop_repeats(line.guard.flooded());
   if (line.is_cut) count_cut(line);
@@ -176,8 +176,8 @@ void BusTransport::take(Line& line, const LcmDatagram& datagram, bool is_replay)
   handlers_.on_message(message, bus, *transmitter);
 }
 
-/// Where the kernel has no filters, anything arrives: what is not LCM's or not listened to is
-/// nobody's mistake.
+/// Without filters in the kernel, any datagram arrives. One that is not LCM's, or not subscribed
+/// to, is ignored and not counted as refused.
 void BusTransport::take(Line& line, std::span<const std::byte> bytes) noexcept {
   try {
     auto datagram = parse_datagram(bytes);
@@ -187,7 +187,7 @@ void BusTransport::take(Line& line, std::span<const std::byte> bytes) noexcept {
     if (original) datagram->channel = *original;
     if (is_channel_of(line.subscriptions, datagram->channel))
       take(line, *datagram, original.has_value());
-  } catch (...) {  // for want of memory
+  } catch (...) {  // out of memory
     refuse(Refusal::kLimit);
   }
 }

@@ -33,7 +33,7 @@ class Transport {
     std::function<void(const Message&, Bus, AgentId transmitter)> on_message = {};
     std::function<void(Refusal)> on_refused = {};
     std::function<void(Bus, std::string_view channel, std::span<const std::byte>)> on_accepted = {};
-    /// Messages of `ergocast replay`, which nobody else receives.
+    /// Messages of `ergocast replay`; other handlers do not get them.
     std::function<void(const Message&, Bus, AgentId transmitter)> on_replayed = {};
   };
 
@@ -53,14 +53,15 @@ class Transport {
   /// Sets the rate budget of agents and the world's tick; without a call nothing is limited.
   virtual void limit_agents(const RateBudget& rate_budget, Tick tick) = 0;
 
-  /// From now on, for so long after a message, only the world's bus wakes the caller; whatever
-  /// wakes it, all buses are read. Without effect on a bus whose receive buffer is too small for so
-  /// many datagrams, and for 10 s after a bus has brought four times as many.
+  /// From now on, for gathering.at_most after a message, only the world's bus wakes the caller.
+  /// Each time it wakes, all buses are read. A bus whose receive buffer is too small for
+  /// gathering.datagrams still wakes it. Nothing gathers for 10 s after a bus brought four times as
+  /// many.
   virtual void let_gather(const Gathering& gathering) = 0;
 
   /// Waits until a message arrives, `deadline` has come or `wake_fd` (−1: none) is readable, at
-  /// most kLongestWait, and passes on what has arrived. The number of datagrams is limited, so that
-  /// a flood cannot keep the caller from its work. No datagram makes it throw.
+  /// most kLongestWait. Then it passes on what has arrived. The number of datagrams is limited, so
+  /// that a flood cannot keep the caller from its work. No datagram makes it throw.
   /// @return when it stopped waiting
   virtual Instant deliver_until(Instant deadline, int wake_fd) = 0;
 
@@ -76,7 +77,7 @@ class Transport {
 
   /// Whether only messages with the team's key are accepted.
   virtual bool keyed() const = 0;
-  /// Whether the kernel drops what this process does not listen to.
+  /// Whether the kernel drops what this process does not subscribe to.
   virtual bool filtered() const = 0;
 
   /// The last agent that exceeded its rate budget, so that messages were refused; kUnassigned:

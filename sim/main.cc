@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast-sim: the simulated world as a process. On robots, their driver takes its place.
+// ergocast-sim: the simulated world as a process. A driver of robots takes its place.
 #include "runtime/logging.h"
 #include "runtime/node.h"
 #include "sim/world_process.h"

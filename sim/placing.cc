@@ -7,8 +7,8 @@
 
 namespace ergocast {
 
-/// Whether it has been told of a state in which all bodies were. Who has answered a tick knows its
-/// whole state, and says it before the answer.
+/// Whether it has received a state with all bodies that is new enough to begin from. An agent that
+/// has answered a tick knows the whole state of that tick, and sends it before the answer.
 bool World::knows_bodies() const {
   Tick newest = -1;
   for (const auto& [id, slot] : vehicles_) {
@@ -17,9 +17,10 @@ bool World::knows_bodies() const {
   return !begins_by_state() || question_.before.newest() >= newest;
 }
 
-/// Puts all bodies where they were in one state, so that they keep their distance, and that to
-/// walls; vehicles whose agents have left are in no other message. In lockstep they go on by the
-/// answers to that tick. In real time all stand: held commands were for other places.
+/// Puts all bodies where they were in one state, so that they keep their distance from each other
+/// and from walls. Vehicles whose agents have left are in no other message. In lockstep the
+/// vehicles continue with the answers to that tick. In real time all stand: old commands were for
+/// other positions.
 void World::settle() {
   const bool realtime = mission().timing.pace == Pace::kRealtime;
   for (auto& [id, slot] : vehicles_) {
@@ -49,8 +50,8 @@ void World::settle() {
   }
 }
 
-/// Where a new body appears: at its start if that is far enough from all others, else where the
-/// seed finds room. At the beginning nobody moves yet.
+/// The position of a new body: its start if that is far enough from all others, else one with room
+/// that the seed chooses. At the beginning no body moves yet, so less distance is enough.
 Eigen::Vector3d World::place_for(AgentId id) const {
   const Mission& mission = me_.mission();
   if (!keeps_distance()) return start_of(mission, id);
@@ -68,7 +69,7 @@ Eigen::Vector3d World::place_for(AgentId id) const {
   return planned && free ? start_of(mission, id) : start_beside(mission, id, others, distance_m);
 }
 
-/// Puts a slot where it was at tick_, by its agent's last two commands.
+/// Computes where a slot was at tick_ from its agent's last two commands.
 void World::recall(AgentId id, VehicleSlot& slot) {
   if (slot.answered() < 0) return;
   const bool realtime = mission().timing.pace == Pace::kRealtime;
@@ -85,7 +86,7 @@ void World::recall(AgentId id, VehicleSlot& slot) {
   }
 }
 
-/// As filter_commands() in lockstep.
+/// Filters one command by walls and own limits, as filter_commands() does in lockstep.
 void World::keep_from_walls(AgentId id, VehicleSlot& slot, Tick tick) {
   const double limit_mps = motion_of(mission(), id).speed_limit_mps;
   const Mover self{id, tick, slot.x_m, limit_mps, slot.applied_mps};
@@ -97,9 +98,9 @@ void World::on(const WorldState& before, const Arrival&) {
   if (before.header.tick <= me_.end_tick()) question_.before.see(before);
 }
 
-/// All vehicles by where all of them are, so that their order does not count. In lockstep only by
-/// edges and their own limits, which points do not need: agents know the rest. Who is not driven
-/// stands, or brakes.
+/// Filters all commands by the positions at the beginning of the step, so that the vehicles' order
+/// does not matter. In lockstep agents know the other bodies, so only edges and the vehicles' own
+/// limits count; points need neither. A vehicle without a command stands, or brakes.
 void World::filter_commands() {
   const bool guards = world_guards(mission());
   bodies_.clear();
@@ -117,7 +118,7 @@ void World::filter_commands() {
 
 // ---- a physics in the place of core/vehicle.h ----
 
-/// Once a mission is known. False: there is none for it.
+/// Makes the physics once a mission is known. False if that fails.
 bool World::make_physics() {
   if (!physics_maker_ || physics_) return true;
   auto made = physics_maker_(mission());
@@ -135,8 +136,8 @@ void World::place_bodies() {
   for (const auto& [id, slot] : vehicles_) physics_->place(id, slot.x_m, slot.applied_mps);
 }
 
-/// By the physics. Agents refuse a place outside of the domain, unless they keep a distance: then
-/// they need the true one.
+/// Moves the bodies by the physics. Agents refuse a position outside of the domain. Those that keep
+/// a distance accept it, because they need the true position.
 void World::move_bodies() {
   moved_.clear();
   for (const auto& [id, slot] : vehicles_) moved_.push_back({id, slot.next_mps});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the logger has of the world's states, and what it may still ask for.
+// Which of the world's states the logger has, and which it may still need.
 //
 // In lockstep the world runs a bounded number of ticks ahead of the record, and repeats the states
 // that the logger lacks. A logger that makes no progress for too long is given up.
@@ -19,11 +19,12 @@ class RecordWindow {
   /// From now on the logger may be waited for.
   void start(Instant now) { progress_ = now; }
 
-  /// A fresh word of a logger. A restarted one may have less than its predecessor had.
+  /// Takes in a logger's acknowledgement. A restarted logger may have less than its predecessor
+  /// had.
   void acknowledge(const RecordAck& ack, Instant now);
 
-  /// Whether `tick` may be said: the record is close behind, or its logger is given up, as one is
-  /// that was not and that has made no progress for longer than `patience`.
+  /// Whether the world may publish `tick`: the record is close behind, or the logger is given up.
+  /// It is given up here if it has made no progress for longer than `patience`.
   bool is_close(Tick tick, Instant now, PacingClock::duration patience);
   /// Whether the logger has every row before `tick`.
   bool complete(Tick tick) const { return recorded_ && *recorded_ + 1 >= tick; }
@@ -31,14 +32,14 @@ class RecordWindow {
   /// When the record last grew.
   Instant progress() const { return progress_; }
 
-  /// Keeps a tick's states, all parts, for the logger; the oldest go.
+  /// Keeps all parts of a tick's state for the logger, and drops the oldest.
   void remember(std::vector<WorldState> states);
   bool empty() const { return history_.empty(); }
   /// The states last remembered. @pre !empty()
   std::vector<WorldState>& newest() { return history_.back(); }
   const std::vector<WorldState>& newest() const { return history_.back(); }
 
-  /// Calls `repeat` with the states before `tick` that the logger lacks, a bounded number of them.
+  /// Calls `repeat` with states before `tick` that the logger lacks: a bounded number of them.
   template <class F>
   void for_each_lacking(Tick tick, const F& repeat) const {
     if (!recorded_) return;
@@ -49,7 +50,7 @@ class RecordWindow {
   }
 
  private:
-  /// A row needs two states: its tick's, and the next one's, which carries the applied velocity.
+  /// A row needs two states: its tick's, and the next one, which carries the applied velocity.
   static constexpr Tick kHelpTicks = 16;
 
   std::optional<Tick> recorded_;  // what the logger has acknowledged

@@ -17,19 +17,19 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// An unanswered tick is repeated after this, then after twice as long each time: a loss is mended
-/// at once, and a team that is merely slow is not buried in repeats.
+/// An unanswered tick is repeated after this time, then after twice as long each time. So a loss is
+/// repaired soon, and a slow team does not receive too many repeats.
 constexpr std::chrono::nanoseconds kRepeatPeriod = 20ms;
 constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
-/// A world that begins asks the agents where they are, this often; and in real time it begins
-/// without those that have not answered for so long.
+/// A world that begins asks the agents for their positions, this often. In real time it begins
+/// without the agents that have not answered within kQuestionPatience.
 constexpr auto kQuestionPeriod = 100ms;
 constexpr auto kMissionPatience = 1500ms;
 constexpr auto kQuestionPatience = 2s;
 /// How long the world repeats the end after the last progress of the record.
 constexpr auto kLinger = 2s;
-/// Lockstep: the ticks of a paused mission take time, at most so much, because nobody waits for
-/// them.
+/// Lockstep: the longest time that a tick of a paused mission takes. It takes time because no
+/// process waits for it.
 constexpr double kLongestHeldTick_s = 0.1;
 
 }  // namespace
@@ -48,7 +48,7 @@ void World::on(const MissionPart&, const Arrival& arrival) {
   if (emergency_stopped_ || !arrival.mission_changed) return;
   if (follower().plan_problem()) return finish(*follower().plan_problem());
   if (!make_physics()) return;
-  // At its own end the world stays until the record, too, has the last states.
+  // At the mission's last tick the world waits until the record has the last states, too.
   if (follower().over() && (!over_since_ || record_.complete(tick_)))
     return finish(follower().reason());
   if (started_) take_roster();
@@ -78,7 +78,8 @@ void World::start(Instant now) {
   take_roster();
 }
 
-/// The coordinator says it each second; with none left, the agents do if they are asked.
+/// The coordinator sends the mission each second. Without a coordinator, the agents send it if
+/// asked.
 void World::ask_for_mission(Instant now, Outbox& out) {
   if (me_.knows_mission() || me_.run() == 0) return;
   if (question_.next != Instant{} && now >= question_.next) ask(-1, kUnassigned, out);
@@ -92,7 +93,7 @@ void World::ask(Tick known, AgentId whom, Outbox& out) {
 }
 
 void World::ask_team(Instant now, Outbox& out) {
-  // Without any answer no agent could answer a tick either, and we would begin at the wrong one.
+  // If no agent answers this, none would answer a tick either, and we would begin at a wrong tick.
   const bool heard = std::any_of(vehicles_.begin(), vehicles_.end(),
                                  [](const auto& one) { return one.second.command.has_value(); });
   if (!heard) question_.since = now;
@@ -130,12 +131,12 @@ void World::begin(Instant now) {
   schedule_.next_tick = now;
   schedule_.repeat_period = kRepeatPeriod;
   for (const auto& [id, slot] : vehicles_) tick_ = std::max(tick_, slot.answered());
-  // Even if only newcomers have answered: not before what the roster says has happened.
+  // Perhaps only newcomers have answered. Every tick that the roster names has passed.
   for (const RosterEntry& entry : follower().roster()) {
     tick_ = std::max({tick_, entry.active_from, entry.active_until});
   }
   if (begins_by_state()) tick_ = std::max(tick_, question_.before.newest());
-  tick_ = std::min(tick_, me_.end_tick());  // whatever the roster says
+  tick_ = std::min(tick_, me_.end_tick());  // even if the roster names a later one
   begun_at_ = tick_;
   if (filters_again(mission()) || any_but_points(mission())) filter_.emplace(mission(), 0);
   if (begins_by_state()) {
@@ -180,16 +181,17 @@ void World::place(AgentId id, VehicleSlot& slot, const Eigen::Vector3d& x_m) con
 void World::on(const Command& command, const Arrival&) {
   const auto at = vehicles_.find(command.header.sender);
   if (at == vehicles_.end() || at->second.author.incarnation != command.header.incarnation) return;
-  // Recorded commands, and answers to a world before us, do not say where the team is now.
+  // Recorded commands, and answers to a world before us, do not show where the team is now.
   if (question_.since && command.asked_by != me_.incarnation()) return;
   VehicleSlot& slot = at->second;
   const Mission& mission = me_.mission();
   const Eigen::Vector3d step_m = command.velocity_mps * mission.timing.dt_s;
-  // A step that overflows is no velocity. No agent answers a tick that was not sent.
+  // A step that overflows is refused. So is the answer to a tick that was not sent.
   const Tick newest = question_.since ? me_.end_tick() : tick_;
-  // A command of no tick yet is the answer of an agent that knows no position.
+  // A command without a tick is the answer of an agent that knows no position yet.
   const bool somewhere = question_.since && command.header.tick >= 0;
-  // Where a distance is kept, another message says the places; a body may have been pushed out.
+  // Where a distance is kept, another message has the positions, and a body may have been pushed
+  // out.
   const bool outside =
       somewhere && !keeps_distance() && !mission.domain.contains(command.position_m);
   if (!step_m.allFinite() || command.header.tick > newest || outside) {
@@ -201,12 +203,12 @@ void World::on(const Command& command, const Arrival&) {
   };
   const bool again = slot.command && command.header.tick == slot.answered();
   if (again && slot.answered() < 0) {
-    // One of the two may come before the answer to tick 0. Only both say that there is none.
+    // One of the two may arrive before the answer to tick 0. Only both show that there is none.
     const auto apart = std::abs(command.header.sequence - slot.command->header.sequence);
     if (apart == 1) slot.command_before = slot.command;
     slot.command = command;
   } else if (again && command.velocity_mps.isZero(0)) {
-    slot.command->velocity_mps.setZero();  // the one second thought that an agent may have
+    slot.command->velocity_mps.setZero();  // the only correction that an agent may send
   } else if (newer_than(slot.command)) {
     slot.command_before = std::exchange(slot.command, command);
   } else if (command.header.tick < slot.answered() && newer_than(slot.command_before)) {
@@ -225,22 +227,22 @@ bool World::everyone_answered() const {
   return driven;
 }
 
-/// Lockstep: whether the coordinator is to name a tick before the next one. It names one that all
-/// agents will know before it comes.
+/// Lockstep: whether the coordinator must name a tick before the next tick. So all agents know the
+/// named tick before it comes.
 bool World::stands_by() const {
   const std::int64_t since = follower().stand_by_revision();
   return since >= 0 && mission().timing.pace == Pace::kLockstep && !record_.empty() &&
          record_.newest().front().roster_revision >= since;
 }
 
-/// Whether all is there for the next step of a paused mission but the time.
+/// Whether the next step of a paused mission waits only for the clock.
 bool World::waits_for_time(Instant now) const {
   return now < schedule_.held_until && everyone_answered() && !stands_by();
 }
 
 bool World::record_is_close(Instant now) {
   if (!mission().wait_for_logger) return true;
-  // Half of it, so that the coordinator does not lose patience with the team first.
+  // Half of the time-out, so that the coordinator does not give up the team first.
   return record_.is_close(tick_, now, seconds(mission().timing.lockstep_timeout_s / 2));
 }
 
@@ -287,7 +289,7 @@ void World::advance_realtime(Instant now, Outbox& out) {
   const Timing& timing = mission().timing;
   const auto period = seconds(timing.dt_s / timing.realtime_factor);
   if (!schedule_.published) {
-    if (!record_is_close(now)) {  // only before the first tick: the logger's first word
+    if (!record_is_close(now)) {  // before the first tick: no logger has reported yet
       schedule_.next_tick = now + kRepeatPeriod;
       return;
     }
@@ -314,7 +316,7 @@ void World::advance_realtime(Instant now, Outbox& out) {
 void World::send_zero_velocity(Instant now, Outbox& out) {
   if (!schedule_.published) remember_and_publish(now, out);  // where the last step led
   for (auto& [id, slot] : vehicles_) slot.applied_mps = slot.next_mps = {0, 0, 0};
-  if (physics_) move_bodies();  // what has mass rolls on
+  if (physics_) move_bodies();  // bodies with mass roll on
   ++tick_;
   over_since_ = now;
   remember_and_publish(now, out);
@@ -400,8 +402,8 @@ void World::repeat(Instant now, Outbox& out) {
   schedule_.repeat_period = std::min(2 * schedule_.repeat_period, kLongestRepeatPeriod);
   schedule_.next_publish = now + schedule_.repeat_period;
   if (schedule_.published) {
-    // The same state, but who has answered, and who has joined, is news. Not so the roster that the
-    // tick is flown by: that must be one for all agents, whichever repeat they hear.
+    // The repeat has the same state, with the newest answers and newcomers. The roster revision of
+    // the tick stays: it must be the same for all agents, whichever repeat they receive.
     const std::int64_t revision_in_use = record_.newest().front().roster_revision;
     record_.newest() = snapshot();
     for (WorldState& part : record_.newest()) part.roster_revision = revision_in_use;

@@ -3,9 +3,10 @@
 //
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
 //   v_n is the command, cut to the vehicle's speed limit. Where bodies keep a distance, a world in
-//   real time then filters all commands together, core/separation.h: held and late ones do not know
-//   where the others have gone. Where there are walls, a world always does, and they stop ξ.
-//   A physics may move the bodies instead, physics.h: x_{n+1} is then what comes of the commands.
+//   real time then filters all commands together (core/separation.h), because old and late commands
+//   do not account for where the others have gone. Where there are walls, a world always filters,
+//   and the walls stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
+//   result.
 //
 // In lockstep a tick is repeated until every member of the roster has answered it, and the world
 // runs a bounded number of ticks ahead of the record. In real time it follows the clock.
@@ -38,15 +39,15 @@ class World {
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
-  /// Ends at once, as when its process is told to stop. A STOP with `now` does not end it at once:
+  /// Ends at once, as when its process gets a signal. A STOP with `now` does not end it at once:
   /// it sends a state in which all vehicles stand still, until that is recorded or 2 s have passed.
   void stop(std::string reason) { finish(std::move(reason)); }
-  /// The same, and it counts as failed(): it cannot take part, for a reason outside of it.
+  /// Ends at once and counts as failed(): it cannot take part, for a reason outside of it.
   void fail(std::string reason) {
     refused_ = true;
     finish(std::move(reason));
   }
-  /// From now on it moves nothing before `earliest`, and only asks the team.
+  /// Until `earliest` it moves nothing, and only asks the team.
   void begin_not_before(Instant earliest) { earliest_begin_ = earliest; }
 
   bool finished() const { return finished_; }
@@ -57,8 +58,8 @@ class World {
   const std::string& reason() const { return reason_; }
   const MissionFollower& follower() const { return me_.follower(); }
   Tick tick() const { return tick_; }
-  /// The newest tick that an agent has answered; −1 if they have answered none yet; nothing while
-  /// no agent has told it.
+  /// The newest tick that an agent has answered. −1 if agents have answered none yet; nothing while
+  /// no agent has reported to it.
   std::optional<Tick> newest_answer() const;
   /// The tick from which it goes on, once it moves; above 0 if another world began the mission.
   std::optional<Tick> begun_at() const { return begun_at_; }
@@ -70,9 +71,9 @@ class World {
   std::int64_t clamped_commands() const { return counted_.clamped_commands; }
   /// Messages that came through the wire's checks and had no effect because they cannot be true.
   std::int64_t refused() const { return me_.refused(Refusal::kRange); }
-  /// Commands of the operator that it refused for their ticks.
+  /// The operator's commands that were refused because their ticks are old.
   std::int64_t late_commands() const { return me_.refused(Refusal::kLate); }
-  /// Of the physics, if there is one.
+  /// The summary of the physics; empty without one.
   std::string physics_summary() const { return physics_ ? physics_->summary() : ""; }
   /// True once a silent logger has been given up.
   bool logger_lost() const { return record_.lost(); }
@@ -81,10 +82,10 @@ class World {
   struct VehicleSlot {
     Author author;
     Eigen::Vector3d x_m{0, 0, 0};
-    Eigen::Vector3d applied_mps{0, 0, 0};  // in the step that led here; of no point at its end
+    Eigen::Vector3d applied_mps{0, 0, 0};  // in the step that led here; with inertia, at its end
     Eigen::Vector3d next_mps{0, 0, 0};     // in the step that follows
     std::optional<Command> command, command_before;
-    bool placed = true;  // false: x_m says nothing yet
+    bool placed = true;  // false: x_m is not known yet
     Tick answered() const { return command ? command->header.tick : -1; }
   };
 
@@ -92,22 +93,22 @@ class World {
   struct Question {
     std::optional<Instant> since;  // while it asks
     Instant next{};
-    Bodies before;  // what a world before us said last
+    Bodies before;  // of the last state of a world before us
   };
-  /// When something is to be said or done next.
+  /// When to publish or step next.
   struct Schedule {
     Instant next_publish{};
     std::chrono::nanoseconds repeat_period{};
     Instant next_tick{};
     Instant held_until{};    // lockstep: a held tick lasts so long
-    bool published = false;  // tick_
+    bool published = false;  // whether tick_ was
   };
   struct Counted {
     std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   };
 
   template <class M>
-  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const M&, const Arrival&) {}  // the other types need no action
   void on(const Command& command, const Arrival& arrival);
   void on(const WorldState& before, const Arrival& arrival);
   void on(const MissionPart& part, const Arrival& arrival);
@@ -127,8 +128,8 @@ class World {
   Eigen::Vector3d place_for(AgentId id) const;
   void place(AgentId id, VehicleSlot& slot, const Eigen::Vector3d& x_m) const;
   bool keeps_distance() const { return mission().separation.distance_m > 0; }
-  /// Whether it begins by a state of all bodies: what they were commanded does not say how they
-  /// fly.
+  /// Whether it begins from a state of all bodies, because their commands alone do not determine
+  /// their motion.
   bool begins_by_state() const { return keeps_distance() || !mission().walls.empty(); }
   void drive(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   void move(AgentId id, VehicleSlot& slot, Tick tick) const;
@@ -165,15 +166,15 @@ class World {
   Instant earliest_begin_{};
   Schedule schedule_;
   std::optional<Instant> over_since_;             // no vehicle moves any more
-  std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
+  std::optional<std::string> emergency_stopped_;  // the reason of a STOP with `now`
   RecordWindow record_;
   Counted counted_;
-  std::optional<SeparationFilter> filter_;  // of commands: it guards, walls, or some no points
+  std::optional<SeparationFilter> filter_;  // if it guards, has walls, or a body is no point
   std::vector<Neighbour> bodies_;           // of the tick, for the guard
   PhysicsMaker physics_maker_;
   std::unique_ptr<Physics> physics_;  // null: core/vehicle.h
   std::vector<PhysicalBody> moved_;
-  bool no_physics_ = false;  // that could move the bodies of this mission
+  bool no_physics_ = false;  // the maker has none for this mission
   bool refused_ = false;     // by fail()
 };
 

@@ -45,7 +45,8 @@ class OtherWorldWatch {
   }
 
  private:
-  /// Before it begins; and as long after that, for one that began at the same time.
+  /// How long it listens before it begins, and again afterwards, because another world may begin at
+  /// the same time.
   static constexpr auto kListening = 500ms;
 
   void listen() {
@@ -58,8 +59,8 @@ class OtherWorldWatch {
     if (!done_) listener_ = std::get<0>(std::move(opened));
   }
 
-  /// A tick beyond what the team had answered is no recording, and nothing that a world before us
-  /// has sent. Of two that began together, the one with the greater identity gives way.
+  /// A tick beyond the team's answers comes from a running world: neither a recording nor a world
+  /// before us has such a tick. If two began together, the one with the greater identity gives way.
   void meet(const WorldState& state) {
     const Header& other = state.header;
     if (other.incarnation == world_.incarnation() || state.last || world_.finished()) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small map by (agent, incarnation) in two arrays: it is asked for every message, and grows with
-// the roster only.
+// A small map by (agent, incarnation) in two arrays. It is searched for every message, and it grows
+// only with the roster.
 #pragma once
 
 #include <algorithm>

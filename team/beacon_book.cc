@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Matches echoes with the own beacons that they name, and says how old a place is at most.
+// Matches echoes with the own beacons that they name, and bounds the age of each position.
 #include "team/beacon_book.h"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace ergocast {
 namespace {
 
-/// While nobody is near, beacons are so far apart at most, and so small a part of the lease: three
-/// may be lost in a row.
+/// While no body is near, beacons are at most this time apart, and at most this part of the lease.
+/// So three in a row may be lost.
 constexpr double kRarePeriod_s = 1;
 constexpr Tick kRarePeriodsPerLease = 8;
 
@@ -28,7 +28,8 @@ BeaconBook::BeaconBook(const Mission& mission, const Author& self, std::int64_t 
           std::max<Tick>(1, std::min(lease_ticks_ / kRarePeriodsPerLease,
                                      static_cast<Tick>(kRarePeriod_s / mission.timing.dt_s)))),
       tick_ns_(seconds(mission.timing.dt_s / mission.timing.realtime_factor).count()),
-      // Both move on while rare beacons come and go, and a few ticks until they come each tick.
+      // Both bodies move during a few periods of rare beacons, and then until beacons come each
+      // tick.
       near_m_(mission.separation.distance_m + fastest_mps(mission) * mission.timing.dt_s *
                                                   static_cast<double>(4 * rare_ticks_ + 8)),
       mission_(mission),
@@ -53,8 +54,8 @@ void BeaconBook::note_roster(const std::vector<RosterEntry>& roster) {
   for (std::size_t id = 0; id < bodies_.size(); ++id) {
     Body& body = bodies_[id];
     if (body.member == members[id]) continue;
-    // The place stays known: the former incarnation's body has the lease for its limit, and the new
-    // one does not move it before it is echoed.
+    // The position stays known. The lease limits how far the former incarnation moved the body, and
+    // the new one does not move it before we echo it.
     body.member = members[id];
     body.heard = 0;
     body.echoed = {};
@@ -74,9 +75,9 @@ Tick BeaconBook::elapsed_ticks(const Moment& from, const Moment& now) const {
   return std::max<Tick>(now.tick - from.tick, ns <= 0 ? 0 : (ns - 1) / tick_ns_ + 1);
 }
 
-/// Which of the own beacons has this number; −1: one that is too old to matter. Nothing: none was
-/// sent. An echo is never older than the lease when it is said, so half of all numbers tell the two
-/// apart.
+/// Which of the own beacons has this number; −1: one that is too old to matter; nothing: none was
+/// sent. An echo is never older than the lease when it is sent. So the half of all numbers behind
+/// the newest one are old beacons, and the other half were not sent yet.
 std::optional<std::int64_t> BeaconBook::count_of(std::uint16_t echo) {
   const int behind = (number_of(count_ + kNumbers - 1) - echo + kNumbers) % kNumbers;  // the newest
   if (behind > kNumbers / 2 || behind >= count_) return std::nullopt;
@@ -95,7 +96,7 @@ void BeaconBook::receive(const Beacon& beacon, bool fresh, const Moment& now) {
     return;
   }
   Body& body = bodies_[id];
-  // Before it knew our incarnation, it heard another one.
+  // Before it knew our incarnation, it echoed another one.
   const bool knows_us = beacon.roster_revision >= admitted_revision_;
   const std::uint16_t echo = knows_us && self_.agent < beacon.echo_count
                                  ? beacon.echoes[static_cast<std::size_t>(self_.agent)]
@@ -111,8 +112,8 @@ void BeaconBook::receive(const Beacon& beacon, bool fresh, const Moment& now) {
   }
   body.heard = beacon.number;
   body.heard_at = now;
-  // A place of unknown age says nothing, unless we have been there when its agent came: then it has
-  // not moved since, because we have not echoed it.
+  // A position of unknown age cannot be used, unless an older one is known: the agent came after
+  // us, and its body has not moved since, because we have not echoed it.
   if (!body.known && body.echoed.count < 0) return;
   body.known = true;
   body.position_m = beacon.position_m;

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where teammates are, by what their agents say: places, and ages of places without a common clock.
+// Positions of teammates from their beacons, with the ages of the positions, without a common
+// clock.
 //
-// Each agent numbers its beacons. A beacon has the place of its sender's body, and as an echo for
-// each teammate the number of that one's newest beacon that was heard before the place was
-// measured. So whoever finds its own beacon k in a beacon knows: the place is younger than k.
+// Each agent numbers its beacons. A beacon has the position of its sender's body, and one echo for
+// each teammate: the number of the teammate's newest beacon that arrived before the position was
+// measured. An agent that finds its own beacon k in a beacon knows that the position is younger
+// than k.
 //
 //   age_ij = now_i − the moment at which i sent the newest own beacon that j has echoed
 //
-// The place that a beacon says is measured by another process, the driver. A command is the proof:
-// a state that answers command n was measured after n was sent, and n was sent after its echoes
-// were heard. So echoes wait for the state that answers the command which followed them.
+// Another process, the driver, measures the position in a beacon. A command proves the order: a
+// state that answers command n was measured after n was sent, and n was sent after its echoes
+// arrived. So echoes wait for the state that answers the command which followed them.
 //
-// The lease: a body moves only while every other member has echoed a beacon of it whose place is
-// younger than L = separation.lease_s. So whoever knows a place knows that the body is within
-// V_j (L + T + hold) of it for ever, however long nothing is heard, and counts no age beyond L + T,
-// T the response_s of vehicles that follow late. This also holds for bodies whose agents have left:
-// nobody echoes them, so they stand.
+// The lease: a body moves only while every other member has echoed a beacon of it whose position is
+// younger than L = separation.lease_s. So a body stays within V_j (L + T + hold) of each position
+// that another agent knows, however long no beacon arrives. T is the response_s of vehicles that
+// follow late. No age counts beyond L + T. This also holds for bodies whose agents have left: no
+// agent echoes them, so they stand.
 //
 // Times are in ticks, rounded up: the ticks of the own driver or the time by the own clock,
 // whichever is more. So it does not matter which of the two stood still.
@@ -49,42 +51,43 @@ class BeaconBook {
   /// @pre uses_beacons(mission)
   BeaconBook(const Mission& mission, const Author& self, std::int64_t revision);
 
-  /// Who takes part. Another incarnation under a number has heard nothing of us.
+  /// Takes in which agents take part. A new incarnation under a number has received nothing from
+  /// us.
   void note_roster(const std::vector<RosterEntry>& roster);
 
-  // ---- what teammates say ----
-  /// Takes in a beacon. One of nobody in the roster has no effect. One that came after a later one,
-  /// or that echoes a number which was never sent, has none either, and is counted.
-  /// @param fresh  no later message of its sender came before
+  // ---- beacons of teammates ----
+  /// Takes in a beacon. A beacon of no member has no effect. A beacon that arrived after a later
+  /// one, or that echoes a number which was never sent, has no effect and is counted.
+  /// @param fresh  no later message of its sender arrived before
   void receive(const Beacon& beacon, bool fresh, const Moment& now);
-  /// Beacons that came after a later one of their sender.
+  /// Beacons that arrived after a later one of their sender.
   std::int64_t late() const { return late_; }
-  /// Beacons that echo what was not sent yet.
+  /// Beacons that echo a number which was not sent yet.
   std::int64_t from_the_future() const { return from_the_future_; }
 
-  // ---- what we say ----
+  // ---- own beacons ----
   /// Called before a command for `now.tick` is sent.
   void commands(const Moment& now);
-  /// Takes the newest place of the own body.
+  /// Takes in the newest position of the own body.
   /// @param answered  the newest tick whose command had arrived before it was measured
-  /// @param revision  of the roster that who measured it knew
+  /// @param revision  of the roster that the driver knew
   void measured(Tick answered, std::int64_t revision, const Eigen::Vector3d& position_m,
                 const Eigen::Vector3d& velocity_mps);
-  /// The next beacon, if one is due: each tick, more rarely while nobody is near; nothing before a
-  /// command has been answered.
+  /// The next beacon, if one is due. Beacons are due each tick, more rarely while no body is near,
+  /// and not before a command has been answered.
   /// @param revision  of the roster that is known
   std::optional<Beacon> next(std::int64_t revision, const Moment& now);
 
   // ---- what the filter needs ----
-  /// All other bodies, in ascending order of their numbers. Where one is not known, or its agent
-  /// is not known to hear us, `known` is false: we must stand.
+  /// All other bodies, in ascending order of their numbers. `known` is false if a body's position
+  /// is not known, or its agent has not echoed us within the lease: we must then stand.
   std::span<const Neighbour> bodies(const Eigen::Vector3d& own_position_m, const Moment& now);
 
  private:
   static constexpr int kNumbers = 65535;  // of beacons, from 1 on; 0 is none
 
   using Numbers = std::array<std::uint16_t, kMaxEchoesPerMessage>;
-  /// The numbers heard until a command was sent.
+  /// The numbers received until a command was sent.
   struct Echoes {
     Moment until{};
     Numbers numbers{};
@@ -92,13 +95,13 @@ class BeaconBook {
   /// An own beacon.
   struct Sent {
     std::int64_t count = -1;    // of all beacons; −1: none
-    Moment sent{}, measured{};  // the latter at the earliest
+    Moment sent{}, measured{};  // its position was measured at this moment or later
   };
   struct Body {
     bool exists = false, known = false;
-    Incarnation member = 0;  // that drives it now; 0: none
+    Incarnation member = 0;  // of the agent that drives it now; 0: none
     Eigen::Vector3d position_m{0, 0, 0}, velocity_mps{0, 0, 0};
-    std::uint16_t heard = 0;  // its newest number
+    std::uint16_t heard = 0;  // number of its newest beacon
     Moment heard_at{};
     Sent echoed{};  // the newest own beacon that it has echoed
   };
@@ -116,7 +119,7 @@ class BeaconBook {
   std::int64_t tick_ns_;
   double near_m_;
   bool anybody_near_ = true;
-  std::vector<Body> bodies_;            // by number, up to the greatest that was heard of
+  std::vector<Body> bodies_;            // by agent, up to the greatest in the roster
   std::vector<double> max_speeds_mps_;  // likewise
   Mission mission_;
   std::vector<Sent> sent_;  // a ring

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where all vehicles are at a tick, from all parts of its WORLD_STATE, in whatever order they come.
+// The positions of all vehicles at a tick, from all parts of its WORLD_STATE in any order.
 #pragma once
 
 #include <algorithm>
@@ -31,14 +31,14 @@ class Bodies {
     if (std::find(received_.begin(), received_.end(), false) == received_.end()) whole_ = parts_;
   }
 
-  /// Whether all parts of exactly this tick have been heard, and no newer ones.
+  /// Whether all parts of exactly this tick have arrived, and no newer ones.
   bool complete(Tick tick) const { return tick == tick_ && newest() == tick; }
-  /// The newest tick of which all parts have been heard; −1: none.
+  /// The newest tick of which all parts have arrived; −1: none.
   Tick newest() const { return whole_.empty() ? -1 : whole_.front().header.tick; }
-  /// Its parts, in order.
+  /// The parts of newest(), in order.
   const std::vector<WorldState>& states() const { return whole_; }
 
-  /// Its vehicles in ascending order of their numbers, each with its speed limit in `mission`.
+  /// The vehicles at newest(), ascending by number, each with its speed limit in `mission`.
   std::span<const Neighbour> neighbours(const Mission& mission) {
     neighbours_.clear();
     for (const WorldState& state : whole_) {

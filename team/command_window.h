@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of an operator's commands are recent enough to be obeyed: by their ticks, without a common
-// clock.
+// Decides by its tick, without a common clock, whether an operator's command is recent enough.
 //
-// The signature of STOP or PAUSE is valid for ever. So an outsider who recorded a command that
-// nobody obeyed could send it again later, and choose the moment. A command therefore names the
-// newest tick that its sender knew. A receiver refuses it if it knew of a later tick some time ago,
-// by its own clock. The alternative, a time of day in the command, would need hosts with equal
-// clocks.
+// The signature of STOP or PAUSE never expires. So an outsider could record a command that no
+// process obeyed, and send it again at a chosen moment. A command therefore names the newest tick
+// that its sender knew. A receiver refuses it if it already knew a later tick some time ago, by its
+// own clock. The alternative, a time of day in the command, would need hosts with equal clocks.
 #pragma once
 
 #include <algorithm>
@@ -25,8 +23,8 @@ class CommandWindow {
   /// be refused with `late`; after twice this time it always is.
   static constexpr std::chrono::seconds kLength{5};
 
-  /// The receiver knows at `now` that the mission has reached `tick`. Before it takes part it may
-  /// know old ticks alone, and so a command must name the newest of them or a later one.
+  /// The receiver knows at `now` that the mission has reached `tick`. Before it takes part, it may
+  /// know only old ticks. Then a command must name the newest of these or a later one.
   /// @param takes_part  whether it has sent a tick of its own
   void note(Tick tick, bool takes_part, Instant now) {
     newest_ = std::max(newest_, tick);
@@ -45,7 +43,7 @@ class CommandWindow {
 
  private:
   Tick newest_ = -1;
-  Tick oldest_ = -1;              // that is admitted
+  Tick oldest_ = -1;              // the oldest that is admitted
   Tick next_oldest_ = -1;         // the newest at since_
   std::optional<Instant> since_;  // the window began to move
 };

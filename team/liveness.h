@@ -2,8 +2,8 @@
 // Decides which processes are alive: the last fresh message of each incarnation, and one rule of
 // silence.
 //
-// An attacker can record messages and replay them; a key does not prevent this. A replay is not a
-// sign of life and gets no answer.
+// An attacker can record messages and replay them; a key does not prevent this. A replay is no sign
+// of life and gets no answer.
 #pragma once
 
 #include <algorithm>
@@ -45,8 +45,8 @@ PacingClock::duration silence_of(AgentId sender,
 inline constexpr double kFarewellPatience_s = 30;
 
 /// Whether a running mission must be over: nothing was received from its world and coordinator for
-/// `silence`, and `newest` was the count of its newest tick. A process that was disconnected when
-/// the mission ended stops by itself. The others have exited and cannot tell it.
+/// `silence`, and `newest` was the count of its newest tick. So a process that was disconnected
+/// when the mission ended stops by itself: the others have exited and send nothing.
 bool must_be_over(const Timing& timing, Tick newest, PacingClock::duration silence);
 
 class Liveness {

@@ -36,7 +36,7 @@ inline constexpr int kMaxReasonLength = 150;
 /// The period of an agent's status in wall time.
 inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::milliseconds(500);
 
-/// Why bytes that arrived had no effect.
+/// Why a received datagram had no effect.
 enum class Refusal {
   kSize,      ///< shorter or longer than its type and counts say
   kType,      ///< an unknown type, or one that its channel does not carry
@@ -58,15 +58,15 @@ using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
 using Signature = std::array<std::byte, 64>;
 
 /// A process announces itself. An agent requests admission; the roster will name its incarnation.
-/// A coordinator or a world that has just started asks the agents what they know; header.tick is
-/// −1 if it does not know the mission.
+/// A coordinator or a world that has just started asks the agents for what they know. header.tick
+/// is then −1 if it does not know the mission.
 struct Hello {
   Header header;
-  AgentId requested_id = kUnassigned;  ///< kUnassigned: any free one; of a world: whom it waits for
+  AgentId requested_id = kUnassigned;  ///< kUnassigned: any; of a world: the agent it waits for
   std::string host;
   std::string version;
-  /// The newest revision of MISSION of which the agent has heard any part; −1: none. A HELLO with
-  /// an older revision than the newest admits no agent, because it may be a recording.
+  /// The newest revision of MISSION of which the agent has received any part; −1: none. A HELLO
+  /// with an older revision than the newest admits no agent, because it may be a recording.
   std::int64_t revision = -1;
   std::string kind{};  ///< the name of the kind that an agent brings; empty: as planned
 };
@@ -75,7 +75,7 @@ enum class MissionState { kWaiting, kRunning, kEnded, kFailed };
 const char* to_string(MissionState state);
 
 /// One numbered part of the mission. All parts of one revision together are the whole. Parts of
-/// older revisions can take the place of those that are missing, if content_hash says so.
+/// older revisions can replace missing ones if the content_hash of the result is right.
 struct MissionPart {
   Header header;
   std::int64_t revision = 0;  ///< of roster and state together
@@ -85,8 +85,8 @@ struct MissionPart {
   std::vector<RosterEntry> roster;  ///< this part's share, in the order of admission
   std::vector<std::byte> plan;      ///< this part's share of the compiled plan
   std::vector<Hold> holds;          ///< this part's share, in ascending order
-  /// Lockstep: the world does not go beyond the first tick that it flies by this revision or a
-  /// later one, until the coordinator has named a tick. −1: it goes on.
+  /// Lockstep: the world stays at the first tick under this revision or a later one, until the
+  /// coordinator has named a tick. −1: it goes on.
   std::int64_t stand_by_revision = -1;
   std::string reason;     ///< why it ended or failed
   Signature signature{};  ///< the coordinator's, which teammates repeat
@@ -98,9 +98,9 @@ struct DigestEntry {
   std::uint64_t state_hash = 0;  ///< a hash of the steps of all blocks held
 };
 
-/// The coverage that an agent holds: one entry for each (agent, incarnation) of the roster, or of a
-/// larger roster those that its sender lacks and the next in turn. An agent that holds more answers
-/// with contributions.
+/// The coverage that an agent holds: one entry for each (agent, incarnation) of the roster. If the
+/// roster is too large, it has the entries that the sender seems to lack and the next ones in turn.
+/// An agent that holds more answers with contributions.
 struct Digest {
   Header header;
   std::uint64_t settled_hash = 0;  ///< of what is held of all former members
@@ -108,7 +108,7 @@ struct Digest {
   std::array<DigestEntry, kMaxDigestEntriesPerMessage> entries;
 };
 
-/// The last two are of one that has a station, core/station.h: it goes home, it rests.
+/// An agent with a station (core/station.h) may also be kReturning, on its way home, or kResting.
 enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished, kReturning, kResting };
 const char* to_string(AgentPhase phase);
 /// Whether it answers ticks.
@@ -121,7 +121,7 @@ struct AgentStatus {
   AgentPhase phase = AgentPhase::kJoining;
   double ergodic_metric = 0;          ///< φ² of its known coverage, once answered_tick ≥ 0
   double max_staleness_s = 0;         ///< age of the oldest teammate's contribution
-  AgentId waiting_for = kUnassigned;  ///< whose block the tick waits for; kWorld: no state comes
+  AgentId waiting_for = kUnassigned;  ///< whose block the tick waits for; kWorld: its state
   std::int64_t answered_tick = -1;    ///< last tick that got a command
   std::int64_t contributions_received = 0, contributions_lost = 0, messages_sent = 0,
                messages_received = 0;
@@ -131,8 +131,8 @@ struct AgentStatus {
   AgentId rate_offender = kUnassigned;  ///< the last agent whose messages were refused as kRate
   std::int64_t kernel_drops = 0;
   double loop_lag_s = 0;  ///< the longest delay or busy time of its process since its last status
-  /// Where a distance is kept: who it is too close to, for how many ticks without a break;
-  /// kUnassigned: nobody, or an edge of the domain. In all, and at most in a row.
+  /// Where a distance is kept: the agent that now blocks it (kUnassigned: none, or an edge of the
+  /// domain), for how many ticks now, in how many ticks altogether, and the most ticks in a row.
   AgentId blocked_by = kUnassigned;
   std::int64_t blocked_now_ticks = 0, blocked_ticks = 0, longest_block_ticks = 0;
   std::string host;
@@ -151,7 +151,7 @@ struct TeamStatus {
 };
 
 /// Ends a run for good. Without `now` only the coordinator obeys, and ends the mission in order;
-/// with `now` every process that receives it obeys. Nobody obeys one whose tick is old.
+/// with `now` every receiver obeys. A STOP with an old tick is refused.
 struct Stop {
   Header header;        ///< header.tick: the newest that the operator knows; 0 if none
   bool failed = false;  ///< whether the mission failed, or was only ended
@@ -160,12 +160,12 @@ struct Stop {
   Signature signature{};
 };
 
-/// Pauses a mission, or lets a paused one go on. Only the coordinator obeys, once: a recording of
-/// it names a change that was made, or an old tick.
+/// Pauses a mission, or resumes it. Only the coordinator obeys, and only once: a recording names a
+/// change that was already made, or an old tick.
 struct Pause {
   Header header;  ///< header.tick: the newest that the operator knows
-  /// So many beginnings and ends of holds are named (named_changes(), core/hold.h): the next is
-  /// wanted. An even number pauses, an odd one resumes.
+  /// How many beginnings and ends of holds are already named (named_changes(), core/hold.h). An
+  /// even number pauses, an odd one resumes.
   std::int32_t changes = 0;
   Signature signature{};
 };
@@ -192,7 +192,7 @@ struct WorldState {
   std::array<Vehicle, kMaxVehiclesPerState> vehicles;
 };
 
-/// A restarted world learns tick and position from it.
+/// An agent's velocity for a tick. A restarted world learns tick and position from it.
 struct Command {
   Header header;                        ///< header.tick is the tick it answers; −1: none yet
   Eigen::Vector3d position_m{0, 0, 0};  ///< from which it was computed
@@ -200,17 +200,17 @@ struct Command {
   Incarnation asked_by = 0;  ///< the world that asked; 0: it answers a tick
 };
 
-/// Where a body is, and what its agent had heard of its teammates before that was measured: an
-/// agent whose beacon k comes back as an echo knows that the place is younger than k. See
-/// team/beacon_book.h.
+/// The position of a body, and the teammates' beacons that its agent had received before the
+/// measurement. An agent whose beacon k comes back as an echo knows that the position is younger
+/// than k. See team/beacon_book.h.
 struct Beacon {
   Header header;
-  std::int64_t roster_revision = 0;  ///< that the sender knows: its echoes are of these members
+  std::int64_t roster_revision = 0;  ///< known to the sender: its echoes are of these members
   Eigen::Vector3d position_m{0, 0, 0};
   Eigen::Vector3d velocity_mps{0, 0, 0};
   std::uint16_t number = 1;  ///< grows by one with each beacon; 1 follows 65535
   std::int32_t echo_count = 0;
-  /// By the agent's number, the number of its newest beacon that was heard in time; 0: none.
+  /// By agent: the number of its newest beacon that was received in time; 0: none.
   std::array<std::uint16_t, kMaxEchoesPerMessage> echoes{};
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Collects the parts of a few revisions side by side, and commits a revision once it has all its
-// parts, or knows those that have not changed.
+// Collects the parts of a few revisions side by side. It commits a revision once all its parts have
+// arrived, or older parts that have not changed stand in for the missing ones.
 #include "team/mission_follower.h"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ bool MissionFollower::receive(const MissionPart& part) {
     pages.assign(static_cast<std::size_t>(part.parts), std::nullopt);
   }
   pages[static_cast<std::size_t>(part.part)] = Page{part, hash_of(part)};
-  // It may be what a newer revision lacks.
+  // A newer revision may lack this part.
   for (auto at = collected_.rbegin(); at != collected_.rend() && at->first >= part.revision; ++at) {
     const auto any = std::find_if(at->second.begin(), at->second.end(),
                                   [](const auto& page) { return page.has_value(); });
@@ -67,7 +67,7 @@ bool MissionFollower::receive(const MissionPart& part) {
   return false;
 }
 
-/// The newest that was received of a part up to a revision; null: none.
+/// The newest received page of a part, from a revision up to `revision`; null: none.
 const MissionFollower::Page* MissionFollower::newest_of(std::size_t part,
                                                         std::int64_t revision) const {
   for (auto at = collected_.upper_bound(revision); at != collected_.begin();) {
@@ -97,7 +97,7 @@ std::optional<std::vector<MissionPart>> MissionFollower::completed(
   return parts;
 }
 
-/// Its parts may be those that a later revision lacks.
+/// Drops the oldest revision, but keeps its parts: a later revision may lack them.
 void MissionFollower::forget_oldest() {
   const auto oldest = collected_.begin();
   if (known_.size() < oldest->second.size()) known_.resize(oldest->second.size());

@@ -25,14 +25,13 @@ class MissionFollower {
   /// From now on accepts only this plan: a foreign plan is a plan_problem().
   /// @pre no part has been received
   void expect_plan(std::vector<std::byte> plan) { expected_plan_ = std::move(plan); }
-  /// From now on the mission has the table of its modes, too, if it needs one; which takes a second
-  /// or more once, where nobody has handed it over. Without it, that is a plan_problem().
+  /// From now on the mission also gets the table of its modes, if it needs one. This takes a second
+  /// or more once, unless the table was handed over. A missing table is a plan_problem().
   void need_table() { needs_table_ = true; }
 
   /// Takes in one part, in any order. True if it completed a newer revision: all its parts have
-  /// been received, or the newest received of those that are missing have its content_hash. A run
-  /// has one plan: a revision with another plan, or with holds that are none, only counts in
-  /// foreign_plans().
+  /// arrived, or older parts in place of the missing ones give its content_hash. A run has one
+  /// plan: a revision with another plan or with impossible holds only counts in foreign_plans().
   bool receive(const MissionPart& part);
 
   /// The mission, once a whole plan has arrived and decoded.
@@ -41,7 +40,7 @@ class MissionFollower {
   /// plan.
   const std::optional<std::string>& plan_problem() const { return plan_problem_; }
   /// Complete revisions that were ignored because their plan is not this run's, or their holds are
-  /// none.
+  /// impossible.
   std::int64_t foreign_plans() const { return foreign_plans_; }
 
   std::int64_t revision() const { return revision_; }
@@ -52,7 +51,7 @@ class MissionFollower {
   MissionState state() const { return state_; }
   bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
   const std::string& reason() const { return reason_; }
-  /// Ticks that do not count, as are_holds() says.
+  /// Ticks that do not count. are_holds() is true for them.
   std::span<const Hold> holds() const { return holds_; }
   /// See MissionPart.
   std::int64_t stand_by_revision() const { return stand_by_revision_; }

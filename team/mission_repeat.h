@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When a process that knows the mission repeats it on request: after a random moment, unless
-// another one is faster, and not too often. Agents do so, and `ergocast run`, which outlives them.
+// Decides when a process that knows the mission repeats it on request: after a random delay, unless
+// another process is faster, and not too often. Agents do this, and `ergocast run`, which outlasts
+// them.
 #pragma once
 
 #include <chrono>
@@ -23,14 +24,14 @@ class MissionRepeat {
   explicit MissionRepeat(std::uint64_t seed) : seed_(seed) {}
 
   /// A process requests the mission.
-  /// @param draw  other than at all other times
+  /// @param draw  different at each call; the delay depends on it
   void asked(Instant now, std::int64_t draw) { plan(now, kAnswerGap, draw); }
 
   /// A process has sent a part of `revision`, where we hold `ours`.
   void overheard(std::int64_t revision, std::int64_t ours, Instant now, std::int64_t draw) {
-    // Another one was faster. That is believed twice only: it may be a recording of one part.
+    // Another process was faster. This counts only twice: the part may be a recording.
     if (revision >= ours && due_ && ++left_to_others_ <= 2) due_.reset();
-    // One who has not heard of what came later, or a recording.
+    // The sender does not know a later revision, or the part is a recording.
     if (revision < ours) plan(now, kCorrectionGap, draw);
   }
 
@@ -45,9 +46,9 @@ class MissionRepeat {
   }
 
  private:
-  /// Of the delay before an answer.
+  /// The longest delay before an answer.
   static constexpr auto kLongestDelay = std::chrono::milliseconds(50);
-  /// Between two answers, and between two corrections of what is out of date.
+  /// The shortest time between two answers, and between two corrections of an old revision.
   static constexpr auto kAnswerGap = std::chrono::milliseconds(100);
   static constexpr auto kCorrectionGap = std::chrono::milliseconds(500);
 

@@ -34,8 +34,8 @@ std::optional<Arrival> Participant::accept(const Message& message, Bus bus, Agen
   return arrival;
 }
 
-/// By the ticks that we have said, because an operator who listens knows them; until then by those
-/// of MISSION, which are signed.
+/// Whether a command of the operator names an old tick. It is compared with the ticks that we have
+/// sent, which a listening operator knows. Before we send any, the signed ticks of MISSION count.
 bool Participant::too_late(const Message& message, Instant now) {
   window_.note(std::max(own_tick_, mission_tick_), own_tick_ >= 0, now);
   const bool is_command =

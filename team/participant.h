@@ -26,7 +26,7 @@ namespace ergocast {
 
 /// The identity under which a process sends.
 struct Identity {
-  RunId run = 0;                ///< 0: the run of the first MISSION heard
+  RunId run = 0;                ///< 0: the run of the first MISSION received
   AgentId id = kUnassigned;     ///< an agent's number, or kCoordinator, kWorld …
   Incarnation incarnation = 0;  ///< random; 0 only if it never sends
 };
@@ -36,23 +36,23 @@ struct Arrival {
   const Header& from;
   AgentId transmitter;  ///< the sender, or the agent that repeats the message
   Instant now;
-  bool fresh = false;  ///< it came from its sender, and no later one came before; see Liveness
+  bool fresh = false;  ///< from its sender itself, and no later one arrived before; see Liveness
   bool mission_changed = false;  ///< it completed a newer revision of mission and roster
 };
 
 class Participant {
  public:
   Participant(Role role, const Identity& self) : role_(role), self_(self) {
-    // Who computes f.
+    // Agents and loggers compute f.
     if (role == Role::kAgent || role == Role::kLogger) follower_.need_table();
   }
 
   /// The checks that all processes share. Returns nothing if our role has no subscription to the
-  /// message on `bus`, if the message is our own, if it is of another run, which counts as
-  /// Refusal::kRun, or if it is a command of the operator that names an old tick, which counts as
-  /// Refusal::kLate. While our run is 0, all runs pass, and the first MISSION sets it. An accepted
-  /// message updates liveness and, if it is a MISSION, the follower; a foreign plan counts as
-  /// Refusal::kRange.
+  /// message on `bus`, or if the message is our own. It also returns nothing for a message of
+  /// another run, which counts as Refusal::kRun, and for a command of the operator that names an
+  /// old tick, which counts as Refusal::kLate. While our run is 0, all runs pass, and the first
+  /// MISSION sets it. An accepted message updates liveness and, if it is a MISSION, the follower. A
+  /// foreign plan counts as Refusal::kRange.
   std::optional<Arrival> accept(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   // ---- the mission, as far as it is known ----
@@ -69,7 +69,7 @@ class Participant {
   Tick counted(Tick tick) const { return counted_ticks(follower_.holds(), tick); }
   /// Whether `tick` is after the last one that counts. @pre knows_mission()
   bool is_over(Tick tick) const { return counted(tick) >= timing().tick_count; }
-  /// The first such tick, as far as it is known. @pre knows_mission()
+  /// The first tick for which is_over(), as far as it is known. @pre knows_mission()
   Tick end_tick() const { return tick_after(follower_.holds(), timing().tick_count); }
   /// The sender's roster entry if it is a present or former member under its own number; else null.
   const RosterEntry* member(const Header& from) const;
@@ -87,9 +87,9 @@ class Participant {
   /// silent: for the world these are coordinator and agents, for others coordinator and world.
   /// @param newest  the newest known tick
   bool cut_off(Tick newest, Instant now) const;
-  /// Whether nobody in `roster` will speak again: each incarnation has said that it has finished,
-  /// or is a former member that is silent.
-  /// @param finished  whether an incarnation's last status says so
+  /// Whether no member or former member will send again: each incarnation in `roster` has reported
+  /// that it has finished, or is a silent former member.
+  /// @param finished  whether an incarnation's last status reports that
   template <class F>
   bool team_has_left(const std::vector<RosterEntry>& roster, const F& finished, Instant now) const {
     return std::all_of(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
@@ -108,7 +108,7 @@ class Participant {
   void set_incarnation(Incarnation incarnation) { self_.incarnation = incarnation; }
   Author author() const { return {self_.id, self_.incarnation}; }
 
-  /// We know that the mission has reached `tick`. What we publish says so, too.
+  /// We know that the mission has reached `tick`. publish() calls this, too.
   void note_tick(Tick tick) { own_tick_ = std::max(own_tick_, tick); }
 
   /// Appends `message` under our header and with the next sequence of `bus`.
@@ -143,7 +143,7 @@ class Participant {
   MissionFollower follower_;
   Instant mission_heard_{};  // from any transmitter
   Liveness liveness_;
-  Tick own_tick_ = -1;      // the newest that we have said
+  Tick own_tick_ = -1;      // the newest that we have sent
   Tick mission_tick_ = -1;  // the newest that a MISSION named
   CommandWindow window_;
   std::array<std::int64_t, kBusCount> sequences_{};

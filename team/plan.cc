@@ -28,7 +28,7 @@ std::string unreadable_plan() {
          kRemedy;
 }
 
-/// The error for a plan that falsely claims this version.
+/// The error for a plan that names this version but breaks its rules.
 std::string broken_plan() {
   return std::string("the mission's plan says that it is of version " ERGOCAST_VERSION
                      ", but breaks that version's rules: it is damaged or another build's") +
@@ -74,7 +74,7 @@ class PlanWriter {
   void places_if_any(int xy, int z, const std::vector<Eigen::Vector3d>& places_m) {
     if (!places_m.empty()) places(xy, z, places_m);
   }
-  /// Heights are in no plan if all are 0.
+  /// A plan has no heights if all are 0.
   void places(int xy, int z, const std::vector<Eigen::Vector3d>& places_m) {
     std::string bytes, heights;
     for (const Eigen::Vector3d& x_m : places_m) {
@@ -88,7 +88,7 @@ class PlanWriter {
     if (value != usual || usual == 0) this->value(field, value);
   }
   PlanWriter open(int) const { return {}; }
-  /// Each a block under the same number.
+  /// Writes each kind as a block under the same number.
   void blocks(int field, const std::vector<AgentKind>& kinds, const auto& write) {
     for (const AgentKind& kind : kinds) {
       PlanWriter block;
@@ -107,7 +107,7 @@ class PlanWriter {
       fields_[field] += tag(field, kBlock) + varint(bytes.size()) + bytes;
     }
   }
-  /// A block that says nothing is not the same as none.
+  /// An empty block differs from an absent one.
   void optional(int field, const std::optional<VehicleLimits>& part, const auto& write) {
     if (!part) return;
     PlanWriter block;
@@ -141,8 +141,8 @@ class PlanWriter {
   std::map<int, std::string> fields_;
 };
 
-/// Takes whatever the bytes say, 0 for what they do not: decode_plan() compares the encoding of
-/// what was read with them.
+/// Accepts any bytes; a missing field is 0. decode_plan() encodes what was read again, and compares
+/// that with the bytes.
 class PlanReader {
  public:
   explicit PlanReader(std::string_view bytes) {

@@ -21,8 +21,8 @@ std::vector<std::byte> encode_plan(const Mission& mission);
 /// their mission.
 std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept;
 
-/// The same with the table of its modes, if it needs one, by provide_table() of modes/provide.h; an
-/// error where this program has none of that hash.
+/// Decodes a plan and adds the table of its modes, if it needs one, by provide_table() of
+/// modes/provide.h. An error if this program has no table with that hash.
 std::variant<Mission, std::string> decode_plan_with_table(std::span<const std::byte> plan) noexcept;
 
 /// 32 hex digits that identify a plan: XXH3-128 of its bytes.

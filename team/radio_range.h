@@ -10,7 +10,7 @@
 namespace ergocast {
 
 /// Positions from the newest world state, and the range rule: b receives what a transmits while
-/// ‖x_a − x_b‖ ≤ range. All agents receive a process without a known position.
+/// ‖x_a − x_b‖ ≤ range. A process without a known position reaches all agents.
 class RadioRange {
  public:
   /// @param range_m  0: unlimited

@@ -16,7 +16,7 @@ enum class Role {
   kAgent,
   kCoordinator,
   kWorld,
-  kDriver,  ///< robots in the world's place
+  kDriver,  ///< drives robots in place of the world
   kLogger,
   kLauncher,  ///< `ergocast run`
   kMonitor,   ///< `ergocast status`, `ergocast stop`, `ergocast pause`
@@ -66,8 +66,8 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   subscribes(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) subscribes(Role::kLogger, bus, kEveryType);
   subscribes(Role::kLauncher,    Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
-  // A replayed event log has the messages of all buses on the first, because LCM's player knows one
-  // URL.
+  // A replayed event log has the messages of all buses on the first bus, because LCM's player uses
+  // only one URL.
   subscribes(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);
   subscribes(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState, RecordAck>);
   subscribes(Role::kMonitor,     Bus::kCommand, kTypes<RecordAck>);

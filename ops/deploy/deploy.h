@@ -18,7 +18,7 @@ struct DeployHost {
   std::string name;     ///< from the hosts file; a safe file name
   std::string address;  ///< "user@computer" for ssh; the name, if the file gives none
   bool coordinator = false, logger = false, sim = false;
-  bool driver = false;      ///< a program of the user takes the world's place
+  bool driver = false;      ///< a program of the user replaces the world
   std::vector<int> agents;  ///< ascending
 };
 
@@ -42,10 +42,10 @@ struct DeployMission {
   /// Options of the coordinator that change the scenario, as the words of a command.
   std::vector<std::string> overrides;
   LcmUrl url;
-  /// Whole path of the mission key, as `ergocast keygen` was given it; empty: none.
+  /// Whole path of the mission key, as in `ergocast keygen`; empty: none.
   std::filesystem::path keys;
-  /// Name of the file with the mission's table of modes, which lies beside the written files;
-  /// empty: none, and each host computes the table that the mission needs, if any.
+  /// Name of the file with the mission's table of modes, which is beside the written files. Empty:
+  /// none, and each host computes the table if the mission needs one.
   std::string modes;
 };
 

@@ -70,12 +70,12 @@ refuse_if_running() {
   fi
 }
 
-# It may end by itself meanwhile.
+# The process may end by itself meanwhile.
 end() {
   if runs "$1" "$2"; then ssh -n "$1" "kill \$(cat $folder/latest/$2.pid)" || true; fi
 }
 
-# Who does not answer may be running.
+# A process on a host that does not answer may be running.
 note_if_running() {
   local code=0
   runs "$1" "$2" || code=$?
@@ -111,7 +111,7 @@ case ${1:-} in
     each_process show
     ;;
   stop)
-    # The coordinator ends the mission for all; whoever does not hear of it is told next.
+    # The coordinator ends the mission for all. Processes that do not receive this are ended next.
     end "$coordinator" coordinator
     if ! wait_for_all 10; then
       each_process end
@@ -133,7 +133,7 @@ case ${1:-} in
 esac
 )sh";
 
-/// @param key  the file on that host; the processes' folder is one below
+/// @param key  the file on that host, one folder above the processes' folder
 std::string process_line(const DeployHost& host, const DeployProcess& process,
                          const DeployMission& mission, const char* key = "mission.key") {
   std::string line = "  \"$1\" " + shell_word(host.address) + ' ' + process.name;

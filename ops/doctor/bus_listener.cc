@@ -76,13 +76,13 @@ void Overheard::take(const Message& message) {
 std::optional<Finding> Overheard::key_finding() const {
   if (unkeyed_ > 0) {
     return Finding{"swarm bus", Level::kWarning, "a team without a mission key",
-                   "Whoever has a key refuses all that it says.",
+                   "Processes with a key refuse all its messages.",
                    "--key-file FILE   # for every process, or for none"};
   }
   if (other_key_ > 0 && authenticator_.keyed()) {
     return Finding{"swarm bus", Level::kWarning, "messages that this key does not open",
-                   "They are damaged, or their senders have another key and refuse all that this "
-                   "host says.",
+                   "They are damaged, or their senders have another key and refuse all messages "
+                   "of this host.",
                    "head -n 3 FILE | sha256sum   # of --key-file, on every host: what both files "
                    "of a key share"};
   }
@@ -96,7 +96,7 @@ std::optional<Finding> Overheard::key_finding() const {
 Finding authentication_finding(bool keyed) {
   if (keyed) return {"mission key", Level::kOk, "messages are checked with it", "", ""};
   return {"mission key", Level::kNote, "none: unauthenticated",
-          "Whoever reaches these ports can speak for the team. Read docs/security.md.",
+          "Any program that reaches these ports can send as the team. Read docs/security.md.",
           "ergocast keygen"};
 }
 
@@ -107,9 +107,10 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
   if (!runs_.empty()) {
     std::vector<std::string> texts;
     for (const auto& [id, run] : runs_) texts.push_back(described(id, run));
-    return {"swarm bus", Level::kNote, doctor::joined(texts, "; "),
-            "A team is at work here and this host hears it. A second run needs ports of its own.",
-            ""};
+    return {
+        "swarm bus", Level::kNote, doctor::joined(texts, "; "),
+        "A team is at work here and this host receives it. A second run needs ports of its own.",
+        ""};
   }
   if (const auto keys = key_finding()) return *keys;
   if (foreign_messages_ > 0) {

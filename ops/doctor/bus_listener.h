@@ -49,7 +49,7 @@ class Overheard {
   std::set<std::string> foreign_channels_;
 };
 
-/// Listens for `duration`. `error` tells why nothing can be received, if so.
+/// Listens for `duration`. If nothing can be received, `error` gets the reason.
 Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& authenticator,
                           std::chrono::milliseconds duration, std::string& error);
 

@@ -11,7 +11,7 @@ namespace ergocast::doctor {
 struct Examination {
   Findings findings;
   bool lcm_usable = false;
-  /// Why no probes may be sent to the swarm's port: another program uses it; empty: it is free.
+  /// Why no probes may be sent to the swarm's port, which another program uses; empty: it is free.
   std::string port_taken;
 };
 

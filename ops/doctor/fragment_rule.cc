@@ -81,7 +81,7 @@ bool drops_fragments(const json& rule, int port) {
   return fragments && drops && here;
 }
 
-/// Whether one of the chains drops fragments to `port` before any other rule of it can accept them.
+/// Whether one of the chains drops fragments to `port` before any other rule in it can accept them.
 bool is_covered(const json& ruleset, std::set<Chain> chains, int port) {
   for (const json& entry : ruleset.at("nftables")) {
     if (!entry.contains("rule")) continue;
@@ -105,7 +105,8 @@ int covered_ports(const json& ruleset, const LcmUrl& url) {
   return covered;
 }
 
-/// The shipped file covers LCM's default ports and those that runs choose for themselves.
+/// The command that loads the rule. The shipped file covers LCM's default ports and those that runs
+/// choose for themselves.
 std::string command_that_loads(const LcmUrl& url, const std::filesystem::path& rules) {
   const bool named = url.base_port == LcmUrl{}.base_port ||
                      (url.base_port >= kFirstBasePort && url.base_port <= kLastBasePort);

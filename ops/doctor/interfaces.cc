@@ -38,7 +38,7 @@ Interface look_at(int socket, const ifaddrs& link) {
   Interface found;
   found.name = link.ifa_name;
   found.up = (link.ifa_flags & IFF_UP) != 0;
-  // IFF_RUNNING would not do: the kernel updates it only once a second.
+  // IFF_RUNNING would be late: the kernel updates it only once a second.
   found.carrier = (link.ifa_flags & IFF_LOWER_UP) != 0;
   found.loopback = (link.ifa_flags & IFF_LOOPBACK) != 0;
   found.multicast = (link.ifa_flags & IFF_MULTICAST) != 0;
@@ -54,8 +54,8 @@ std::vector<Interface> interfaces() {
   std::vector<Interface> found;
   if (socket.fd() < 0 || getifaddrs(&list) != 0) return found;
   const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owned(list, freeifaddrs);
-  // The list has first an entry for every interface, with its hardware address or, for a tunnel,
-  // none; then an entry for every address.
+  // The list begins with an entry for every interface, which has its hardware address; a tunnel has
+  // none. Then it has an entry for every address.
   for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
     const int family = one->ifa_addr == nullptr ? AF_PACKET : one->ifa_addr->sa_family;
     if (family == AF_PACKET) found.push_back(look_at(socket.fd(), *one));

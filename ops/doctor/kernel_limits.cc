@@ -12,7 +12,7 @@
 namespace ergocast::doctor {
 namespace {
 
-/// For fragments of datagrams of other programs.
+/// The size to set for fragments, which only datagrams of other programs have.
 constexpr int kFragmentBytes = 4194304;
 /// The space of one of our datagrams of 900 to 1250 bytes in a receive buffer: the default of
 /// 212992 bytes holds 92 (Linux 6, x86-64).
@@ -109,15 +109,15 @@ Finding bridges_finding(const std::filesystem::path& sys, const std::vector<std:
       forgetful.push_back(name);
     }
   }
-  if (forgetful.empty()) return {"bridges", Level::kOk, "none that forgets who listens", "", ""};
+  if (forgetful.empty()) return {"bridges", Level::kOk, "none that forgets its listeners", "", ""};
   std::vector<std::string> commands;
   for (const std::string& name : forgetful) {
     commands.push_back("ip link set " + name + " type bridge mcast_querier 1");
   }
   return {
       "bridges", Level::kNote, joined(forgetful) + ": snooping without a querier",
-      "Such a bridge passes multicast on to all while it hears no querier at all. Switches that "
-      "also snoop do not: with no querier on the network they forget who listens, and a team "
+      "Such a bridge passes multicast on to all while it receives no querier at all. Switches that "
+      "also snoop do not: with no querier on the network they forget the listeners, and a team "
       "falls silent some 4 minutes after its start. Only for bridges that a team uses:",
       joined(commands, "\n")};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Describes the peers that this host received, and those that it did not.
+// Describes the peers that this host received, and those that only other hosts received.
 #include <algorithm>
 
 #include "ops/doctor/peer_exchange.h"
@@ -8,7 +8,7 @@
 namespace ergocast::doctor {
 namespace {
 
-/// A healthy network loses less.
+/// A healthy network loses less than this.
 constexpr double kMuchLost_percent = 1.0;
 constexpr double kAlmostAll_percent = 90.0;
 
@@ -28,7 +28,7 @@ Finding one_way(const LcmUrl& url, const Peer& peer) {
               "firewall there, or a switch between that does not pass the group on.",
           "ip route get " + url.group + "   # here: the interface that leads there?\n" +
               here_again(url) +
-              "   # there: what does it say of itself?\n"
+              "   # there: what does it report?\n"
               "nft list ruleset   # there, as root: what drops udp to " +
               url.group + "?"};
 }
@@ -62,7 +62,7 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
   if (!peer.to_it) {
     if (peer.judged()) return one_way(url, peer);
     finding.level = Level::kNote;
-    finding.found = "heard too briefly to say whether it hears this host";
+    finding.found = "heard too briefly to tell whether it receives this host";
     finding.why = "The tests on the two hosts hardly overlapped.";
     finding.remedy = here_again(url) + "   # on both, at about the same time";
     return finding;
@@ -101,7 +101,7 @@ Finding nobody(const LcmUrl& url, const PeerTest& test) {
   return {"peers", Level::kProblem,
           "nobody was heard (" + std::to_string(test.sent) + " probes sent)",
           "Either no other host ran this test at the same time with the same group and port, or "
-          "what it sent did not arrive. Whether this host was heard, only the other one can say.",
+          "what it sent did not arrive. Only the other host knows whether it received this one.",
           here_again(url) +
               "   # on every host, at about the same time\n"
               "tcpdump -ni any udp port " +
@@ -125,7 +125,7 @@ Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::strin
     findings.push_back(
         {"peers", Level::kProblem,
          std::to_string(test.only_received_by_others) + " more heard by others, but not here",
-         "One-way towards this host: other hosts hear somebody whom it does not.",
+         "One-way towards this host: other hosts receive one that it does not receive.",
          "tcpdump -ni any udp port " + std::to_string(url.base_port) + "   # here: what arrives?"});
   }
   return findings;

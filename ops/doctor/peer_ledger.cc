@@ -14,7 +14,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A peer that is silent for so long has ended; a longer hold would make the round trip inexact.
+/// A peer that is silent for longer has ended. Its echo stops then, because a longer hold would
+/// make the round trip inexact.
 constexpr auto kForgotten = 2s;
 constexpr std::size_t kMostRumours = 4 * kMaxPeers;
 

@@ -102,7 +102,7 @@ std::vector<SocketOwner> holders(const fs::path& proc, const LcmUrl& url) {
     const auto pid = read_number<long>(at->path().filename().string());
     if (pid) look_into(at->path(), *pid, wanted, found, all);
   }
-  // A socket that nobody was found to hold may have been closed while we looked.
+  // A socket without a known holder may have been closed while we looked.
   const std::map<unsigned long, int> present = sockets_at(proc, url);
   for (const auto& [inode, port] : wanted) {
     if (!found.contains(inode) && present.contains(inode)) all.push_back({port, "", 0});
@@ -125,9 +125,10 @@ Finding ports_finding(const LcmUrl& url, const std::vector<SocketOwner>& holders
   const std::string elsewhere =
       free_port ? "--lcm-url '" + other.base() + "'   # on every host" : "ss -ulpn   # who is it?";
   if (!refusal.empty()) {
-    return {"ports", Level::kProblem, refusal + (holders.empty() ? "" : "; " + described(holders)),
-            "Whoever has it does not share it, so no program of Ergocast can listen there.",
-            elsewhere};
+    return {
+        "ports", Level::kProblem, refusal + (holders.empty() ? "" : "; " + described(holders)),
+        "The program that has it does not share it, so no program of Ergocast can listen there.",
+        elsewhere};
   }
   std::vector<SocketOwner> strangers = holders;
   std::erase_if(strangers, is_ours);
@@ -136,10 +137,11 @@ Finding ports_finding(const LcmUrl& url, const std::vector<SocketOwner>& holders
             "Programs of Ergocast are at work on these ports. Another run needs ports of its own.",
             elsewhere};
   }
-  return {"ports", Level::kWarning, described(strangers),
-          "Whoever shares a port with a team hears the team and is heard by it: with LCM 1.3 "
-          "even if the group is another one. Everybody then parses everybody's messages.",
-          elsewhere};
+  return {
+      "ports", Level::kWarning, described(strangers),
+      "A program that shares a port with a team receives its messages, and the team receives those "
+      "of the program: with LCM 1.3 even if the group is another one. Each parses them all.",
+      elsewhere};
 }
 
 }  // namespace ergocast::doctor

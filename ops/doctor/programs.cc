@@ -76,10 +76,11 @@ std::string firewall_rules() {
 std::optional<Finding> firewall_finding(std::string_view rules, const std::string& group) {
   if (rules.empty()) return std::nullopt;
   const auto drops = [](const std::string& accept_group, const std::string& accept_igmp) {
-    return Finding{"firewall", Level::kNote, "drops incoming traffic that no rule accepts",
-                   "If other hosts are not heard, or the self test fails, let group and IGMP in "
-                   "(until the next start; the tool that wrote the rules makes it last).",
-                   accept_group + "\n" + accept_igmp};
+    return Finding{
+        "firewall", Level::kNote, "drops incoming traffic that no rule accepts",
+        "If nothing arrives from other hosts, or the self test fails, let group and IGMP in "
+        "(until the next start; the tool that wrote the rules makes it last).",
+        accept_group + "\n" + accept_igmp};
   };
   std::istringstream lines{std::string(rules)};
   std::string table, chain;

@@ -85,7 +85,7 @@ Finding interface_finding(const Interface& routed) {
                "ip link set " + routed.name + " multicast on"};
   } else if (!routed.carrier && !routed.loopback) {
     finding = {"interface", Level::kProblem, routed.name + " has no carrier",
-               "Nobody is at the other end of the cable or radio, so nobody hears this host.",
+               "The cable or radio has no other end, so no other host receives this one.",
                "ip link show " + routed.name + "   # plug it in, or join the network"};
   }
   return finding;
@@ -128,7 +128,7 @@ Finding self_test_finding(const LcmUrl& url, const std::optional<std::string>& f
   if (!failure) {
     return {"self test", Level::kOk, "a datagram to " + url.group + " came back", "", ""};
   }
-  // The first line tells what happened. The other checks cover the rest better.
+  // The first line has the cause. The other checks cover the rest better.
   std::string found = failure->substr(0, failure->find('\n'));
   if (found.starts_with(url.base() + ": ")) found.erase(0, url.base().size() + 2);
   const std::string why =

@@ -24,8 +24,8 @@ Findings routing_findings(const LcmUrl& url, const std::optional<std::string>& r
 Finding ttl_finding(const LcmUrl& url, bool several_hosts);
 
 /// @param failure    why a datagram to the group did not come back; nothing if it did
-/// @param has_route  whether there is a route to the group; without one the test needs no other
-///                   cause
+/// @param has_route  whether there is a route to the group; without one the failure
+///                   needs no other cause
 Finding self_test_finding(const LcmUrl& url, const std::optional<std::string>& failure,
                           bool has_route);
 

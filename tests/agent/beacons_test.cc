@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents that know their teammates' places from beacons alone.
+// Agents that know their teammates' positions only from beacons.
 #include <gtest/gtest.h>
 
 #include "tests/agent/driven_agent.h"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-/// All of the target is to the right, and everybody keeps 30 m.
+/// The whole target is to the right, and all agents keep 30 m.
 Mission leased(int agents) {
   Mission mission = small_mission(agents);
   mission.target_coefficients[4] = -0.5;
@@ -29,7 +29,7 @@ class Pair {
     for (AgentId id = 0; id < 2; ++id) agents_.push_back(running_agent(leased(2), id));
   }
 
-  /// The velocities that they command at the next tick.
+  /// The velocities that both agents command at the next tick.
   std::vector<Eigen::Vector3d> pass(bool first_is_heard = true) {
     const Instant now = at(tick_ * 100ms);
     std::vector<Eigen::Vector3d> velocities_mps;
@@ -71,8 +71,8 @@ TEST(AgentsWithBeacons, KeepFromWhereTheOtherSaysItIs) {
   pair.place_m(1) = pair.place_m(0) + 60 * free_mps.normalized();
   for (int i = 0; i < 6; ++i) pair.pass();
   const double closing_mps = pair.pass()[0].dot(free_mps.normalized());
-  // 60 m, less D, less 40 m/s for two ticks and more that the other may have gone: half of the
-  // rest in a tick.
+  // From 60 m subtract D, and what the other may have gone: 40 m/s for two ticks and more. Half of
+  // the rest may be used in a tick.
   EXPECT_LE(closing_mps, (60 - 30 - 2 * 4) / 2 / 0.1);
   EXPECT_LT(closing_mps, free_mps.norm() + 1e-9);
   pair.place_m(1) = pair.place_m(0) + 33 * free_mps.normalized();
@@ -92,7 +92,7 @@ TEST(AgentsWithBeacons, WhoIsNotHeardStandsAfterTheLease) {
   EXPECT_GT(pair.pass()[0].norm(), 5) << "heard again";
 }
 
-/// A body may have appeared that the agent does not know of.
+/// A newer roster may have a body that the agent does not know of.
 TEST(AgentsWithBeacons, StandWhileTheirRosterIsOld) {
   Mission mission = leased(1);
   Agent agent = running_agent(mission);

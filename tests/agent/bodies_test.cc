@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An agent whose body keeps a distance: what it waits for, what it commands, what it says of it.
+// An agent whose body keeps a distance: what it waits for, commands and reports.
 #include <gtest/gtest.h>
 
 #include "core/separation.h"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-/// All of the target is to the right, and everybody keeps 30 m.
+/// The whole target is to the right, and all agents keep 30 m.
 Mission apart(int agents, Pace pace) {
   Mission mission = small_mission(agents);
   mission.target_coefficients[4] = -0.5;
@@ -42,7 +42,7 @@ TEST(AgentKeepsApart, FromWhereItWantsToGo) {
   EXPECT_LE(cut.dot(free) / free.norm(), 2.5) << "half of the 0.5 m, in 0.1 s";
 }
 
-/// 17 vehicles come in two parts; the one ahead is in the second.
+/// A state of 17 vehicles has two parts; the vehicle ahead is in the second.
 TEST(AgentKeepsApart, AnswersOnlyOnceAllPartsOfATickAreThere) {
   for (const Pace pace : {Pace::kRealtime, Pace::kLockstep}) {
     Mission mission = apart(1, pace);
@@ -62,7 +62,7 @@ TEST(AgentKeepsApart, AnswersOnlyOnceAllPartsOfATickAreThere) {
     const auto sent = commands(agent, second, at(2s));
     ASSERT_EQ(sent.size(), 1u);
     EXPECT_LE(sent[0].velocity_mps.x(), 0.5);
-    // A part of another tick does not stand in for it.
+    // A part of another tick does not replace it.
     first.header.tick = 1;
     first.header.sequence = next_sequence();
     EXPECT_TRUE(commands(agent, first, at(3s)).empty());
@@ -112,7 +112,7 @@ TEST(AgentKeepsApart, TellsARestartedWorldWhereAllBodiesWere) {
   EXPECT_EQ(only<Command>(sent).size(), 2u);
 }
 
-/// A robot that has overshot is beside the domain; where it is counts, not where it should be.
+/// A robot that has overshot is outside of the domain. Its true position counts.
 TEST(AgentKeepsApart, AlsoBesideTheDomain) {
   const Mission mission = apart(2, Pace::kRealtime);
   const Eigen::Vector3d v_mps = command_among(mission, {{-3, 500, 0}, {900, 900, 0}});

@@ -125,7 +125,7 @@ TEST(AgentTick, BroadcastsOncePerPeriodAndNamesTheNextTimeTruthfully) {
   EXPECT_EQ(second_broadcast, (std::vector<Tick>{1, 2, 3, 4})) << "spread over the period";
 }
 
-/// The blocks that an agent says at each tick, and when it says them again.
+/// The blocks that an agent sends at each tick, and when it sends them again.
 struct Sent {
   int block;
   Tick next;

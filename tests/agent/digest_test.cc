@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// Agent 0 of a team, all in step at tick 19 and announcing their next blocks for tick 20.
+/// Agent 0 of a team. All agents are at tick 19 and have announced their next blocks for tick 20.
 struct Speaker {
   explicit Speaker(int members) : roster(roster_of(members)) {
     for (const RosterEntry& entry : roster) hold(entry.author, 20);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The final coverage of a team whose members were disconnected or died: each member holds
-// everything once, as its authors sent it.
+// The final coverage of a team whose members were disconnected or stopped: each member holds all
+// coverage once, as its authors sent it.
 #include <gtest/gtest.h>
 
 #include "tests/agent/live_team.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-/// Where agent `id` is at `tick`: nobody is twice at one place, nor where a teammate was.
+/// The position of agent `id` at `tick`; no two agents and ticks have the same one.
 Eigen::Vector3d place(AgentId id, Tick tick) {
   return {100.0 + 300.0 * id + 3.0 * static_cast<double>(tick),
           200.0 + 7.0 * static_cast<double>(tick), 0};
@@ -49,7 +49,7 @@ Coefficients average_of(const Mission& mission, const CoverageTable& table) {
   return average;
 }
 
-/// c_k of these lives, straight from where they were.
+/// c_k of these incarnations, computed directly from their positions.
 Coefficients average_of(
     const Mission& mission,
     const std::vector<std::pair<Author, std::vector<Eigen::Vector3d>>>& incarnations) {
@@ -71,7 +71,7 @@ TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
     const AgentId other = 2 - end;
     const auto held = team[end].coverage()->steps_held(author_of(other));
     ASSERT_GE(held.value_or(0), 28) << "30 ticks, and two broadcasts are tolerated";
-    // The same sums as the other's, bit for bit.
+    // The sums equal the other's, bit for bit.
     const auto words = blocks_of(mission, author_of(other), path_of(other, 0, *held), 0);
     for (int b = 0; b < 2; ++b) {
       EXPECT_EQ(team[end].coverage()->block(author_of(other), b).sums,
@@ -87,7 +87,7 @@ TEST(Chain, NewsKeepUpWithAMissionThatIsFasterThanTheClock) {
   for (Tick tick = 0; tick < 200; ++tick) {
     team.deliver(world_state(tick, {place(0, tick), place(1, tick), place(2, tick)}), at(0s));
     if (tick < 25) continue;
-    // A digest each 10 ticks, two to begin with, an answer within 3.
+    // A digest comes each 10 ticks, the second one begins a repair, and an answer comes within 3.
     EXPECT_GE(team[0].coverage()->steps_held(author_of(2)).value_or(0), tick - 15) << tick;
   }
 }
@@ -107,7 +107,7 @@ TEST(Chain, WhatIsPassedOnIsWhatItsAuthorSaidByteForByte) {
     if (word.relayer == kUnassigned) {
       original.emplace(key, bytes_of(*block));
     } else {
-      EXPECT_EQ(word.relayer, 1) << "who alone has heard it";
+      EXPECT_EQ(word.relayer, 1) << "only agent 1 has received it";
       EXPECT_EQ(word.bus, Bus::kSwarm);
       ASSERT_TRUE(original.contains(key));
       EXPECT_EQ(bytes_of(*block), original[key]);
@@ -123,7 +123,7 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   team.set_receives([](AgentId a, AgentId b) { return a / 2 == b / 2; });
   run_ticks(team, 4, 0, 20);
   EXPECT_EQ(team[0].coverage()->row_count(), 2u) << "its half";
-  // 3 dies after only 2 has received its blocks; then the halves meet.
+  // 3 stops when only 2 has received its blocks; then the halves meet.
   team.kill(3);
   auto roster = roster_of(4);
   roster[3].active_until = 20;

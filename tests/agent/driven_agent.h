@@ -19,7 +19,7 @@ inline AgentIdentity identity_of(AgentId id) {
   return {kRun, id, incarnation_of(id), "here", "1.2.3"};
 }
 
-/// 12 × 12 modes: two blocks.
+/// A mission with 12 × 12 modes: two blocks.
 inline Mission two_block_mission(int agents) {
   Mission mission = small_mission(agents);
   mission.basis.modes_x = mission.basis.modes_y = 12;
@@ -37,7 +37,7 @@ inline Agent running_agent(const Mission& mission, AgentId id = 0) {
   return agent;
 }
 
-/// The blocks of `author` after it has been at these places, one a tick.
+/// The blocks of `author` after it has been at these positions, one a tick.
 inline std::vector<Contribution> blocks_of(const Mission& mission, const Author& author,
                                            const std::vector<Eigen::Vector3d>& path_m,
                                            Tick next_broadcast_tick) {

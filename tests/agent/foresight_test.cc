@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An agent with a forecast: what its command depends on, when it may answer its tick, and that it
-// never sends forecast coverage. reckoning_test.cc has the places that it accepts.
+// never sends forecast coverage. reckoning_test.cc has the positions that it accepts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ Mission looking_ahead(int agents, bool dead_reckoning, Pace pace = Pace::kRealti
   return mission;
 }
 
-/// Where agent `id` is at `tick`: nobody is twice at one place, nor where a teammate was.
+/// The position of agent `id` at `tick`; no two agents and ticks near each other have the same one.
 Eigen::Vector3d whereabouts(AgentId id, Tick tick) {
   return {150.0 + 83.0 * id + 3.0 * static_cast<double>(tick % 100),
           200.0 + 7.0 * static_cast<double>(tick % 90), 0};
@@ -226,7 +226,7 @@ TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
   Outbox sent;
   std::int64_t sequence = 0;
   for (Tick tick = 3; tick < 60; ++tick) {
-    // Agent 2 sends each second a digest that has nothing of agent 1.
+    // Each second agent 2 sends a digest without coverage of agent 1.
     if (tick % 10 == 0) {
       Digest digest;
       digest.header = {kRun, 2, incarnation_of(2), ++sequence, tick};
@@ -308,7 +308,7 @@ TEST(AgentInLockstep, WaitsForNoPartThatItDoesNotNeed) {
   }
 }
 
-// ---- teammates that died ----
+// ---- teammates that stopped ----
 
 TEST(AgentForesees, NothingOfATeammateThatHasBeenSilentForLongerThanItLooksAhead) {
   for (const bool dead_reckoning : {false, true}) {
@@ -323,9 +323,9 @@ TEST(AgentForesees, NothingOfATeammateThatHasBeenSilentForLongerThanItLooksAhead
       if (tick <= 20) receive(agent, words_of(mission, 1, tick, 1));
       WorldState world = world_of(2, tick);
       world.vehicles[1].answered_tick =
-          std::min<Tick>(tick - 1, 20);  // it died; its vehicle drifts
+          std::min<Tick>(tick - 1, 20);  // it stopped; its vehicle drifts
       deliver(agent, world);
-      // Its vehicle was seen driven until 25.
+      // Its vehicle was last driven at tick 25.
       const double silent_s = 0.1 * static_cast<double>(tick - (dead_reckoning ? 25 : 20));
       const double ahead =
           (agent.foreseen_coverage() - agent.team_coverage()).cwiseAbs().maxCoeff();

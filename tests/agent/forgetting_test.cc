@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage that the roster forgets: from a given tick on it does not steer, but it is still
-// relayed.
+// Coverage that the roster forgets: from a given tick on it does not affect commands, but it is
+// still relayed.
 #include <gtest/gtest.h>
 
 #include "tests/agent/driven_agent.h"
@@ -103,14 +103,14 @@ TEST(AgentForgets, NobodyWhoseAdmissionDiedWithTheCoordinator) {
   give(agent, forgetting_from(0), at(0s));
   deliver(agent, world_at(0));
   EXPECT_TRUE(steered_alone(agent, mission, 1));
-  // The successor's roster, 1000 revisions on, has never heard of agent 1.
+  // The roster of the coordinator's successor, 1000 revisions later, does not have agent 1.
   give(agent, mission_part(1001, MissionState::kRunning, {{author_of(0), 0, -1}}), at(0s));
   EXPECT_EQ(only<Command>(deliver(agent, world_at(1, 1001))).size(), 1u);
-  EXPECT_FALSE(steered_alone(agent, mission, 2)) << "as for who was admitted since";
+  EXPECT_FALSE(steered_alone(agent, mission, 2)) << "as for agents admitted since";
 }
 
 TEST(AgentForgets, AndRemembersWhileTheMissionIsPaused) {
-  // Holds go by the world's ticks, and so does forgetting.
+  // Forgetting goes by the world's ticks, as holds do.
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
@@ -136,7 +136,7 @@ TEST(AgentForgets, NeverItself) {
                     {{author_of(0), 0, -1, true, 0}, {author_of(1), 0, 0}}),
        at(0s));
   EXPECT_EQ(only<Command>(deliver(agent, world_at(0))).size(), 1u);
-  EXPECT_EQ(agent.team_coverage()[0], 1) << "it lives, whatever the coordinator has heard";
+  EXPECT_EQ(agent.team_coverage()[0], 1) << "it runs, even if the coordinator received nothing";
 }
 
 TEST(AgentForgets, ButPassesItOn) {

@@ -48,8 +48,8 @@ TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
 }
 
 TEST(AgentRefuses, CoverageFromTheFuture) {
-  // A lead of a minute is allowed, because clocks of several hosts may differ; a larger one would
-  // win for ever.
+  // A lead of a minute is allowed, because clocks of several hosts may differ. A larger one would
+  // never be replaced.
   const Mission mission = small_mission(2);
   Contribution future = block_of(mission, 1, {{200, 500, 0}}, 1);
   const auto claim = [&future](std::int64_t steps) {
@@ -70,7 +70,7 @@ TEST(AgentRefuses, CoverageFromTheFuture) {
 }
 
 TEST(AgentRefuses, NothingForItsStepsBeforeItKnowsTheTick) {
-  // A late joiner hears of the others' steps before it hears of the world's tick.
+  // A late joiner receives the others' steps before the world's tick.
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   mission.timing.tick_count = 1000;
@@ -139,8 +139,8 @@ TEST(AgentStatusReport, MeasuresStalenessByTheOldestTeammate) {
   give(agent, block_of(mission, 2, {{300, 500, 0}}, 1), at(0s));
   deliver(agent, world_state(9, {{100, 500, 0}}));
   give(agent, block_of(mission, 1, {{200, 500, 0}, {200, 500, 0}, {200, 500, 0}}, 3), at(0s));
-  // Teammate 2 was last heard of at tick 0. How many samples the others gave does not matter: a
-  // teammate that was held up once is not out of date for ever.
+  // The last message of teammate 2 is of tick 0. The number of samples does not matter: a teammate
+  // that was delayed once does not stay out of date.
   EXPECT_DOUBLE_EQ(status_after(agent, at(0s)).max_staleness_s, 0.9);
 }
 

@@ -27,7 +27,7 @@ TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
   EXPECT_EQ(agent.next_wakeup(), at(250ms));
   EXPECT_EQ(only<Hello>(advance(agent, at(250ms))).size(), 1u);
 
-  // A roster without us changes nothing.
+  // A roster without us has no effect.
   EXPECT_EQ(
       only<Hello>(deliver(agent, mission_part(0, MissionState::kWaiting, roster_of(3)), at(500ms)))
           .size(),
@@ -132,7 +132,7 @@ TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
   EXPECT_EQ(agent.reason(), "agent 1 is already running on elsewhere: choose another id, or none");
-  EXPECT_TRUE(advance(agent, at(1h)).empty()) << "it must not speak under a number that is taken";
+  EXPECT_TRUE(advance(agent, at(1h)).empty()) << "it must not send under a number that is taken";
 }
 
 TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
@@ -230,7 +230,7 @@ TEST(AgentHears, CoverageOfMembersOnly) {
     give(agent, blocks_of(mission, {0, incarnation}, {{900, 900, 0}}, 1).front(), at(0s));
     give(agent, blocks_of(mission, {1, incarnation}, {{900, 900, 0}}, 1).front(), at(0s));
   }
-  // A member's name with another's life is nobody's either.
+  // A member's number with another member's incarnation is no member either.
   give(agent, blocks_of(mission, {0, incarnation_of(1)}, {{900, 900, 0}}, 1).front(), at(0s));
   EXPECT_EQ(agent.coverage()->row_count(), 1u) << "its own";
   deliver(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
@@ -249,8 +249,8 @@ TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
          at(0s));
     return *agent.coverage()->steps_held(author_of(1));
   };
-  // The ticks 0, 1 and 2, and the lead granted to all: the coordinator that evicted it may not have
-  // received its last ticks. A member of tick 9 might have 610.
+  // It may have the ticks 0, 1 and 2, and the lead granted to all: the coordinator that evicted it
+  // may lack its last ticks. A member of tick 9 might have 610.
   EXPECT_EQ(receive(603), 603) << "it still covers, but is no member";
   EXPECT_EQ(receive(604), 603);
 }

@@ -16,7 +16,7 @@ using Receives = std::function<bool(AgentId listener, AgentId transmitter)>;
 
 class LiveTeam {
  public:
-  /// Every planned agent, with a running mission; all receive all until a test changes it.
+  /// Makes every planned agent, with a running mission. All receive all until a test changes it.
   explicit LiveTeam(const Mission& mission) {
     for (AgentId id = 0; id < static_cast<AgentId>(mission.starts_m.size()); ++id) {
       agents_.emplace(id, running_agent(mission, id));
@@ -26,7 +26,7 @@ class LiveTeam {
   Agent& operator[](AgentId id) { return agents_.at(id); }
   void set_receives(Receives receives) { receives_ = std::move(receives); }
   void kill(AgentId id) { agents_.erase(id); }
-  /// Another incarnation of an agent that was killed.
+  /// Adds another incarnation of an agent that was killed.
   void revive(AgentId id, Agent agent) { agents_.emplace(id, std::move(agent)); }
 
   /// The world or the coordinator sends a message to all agents; returns all that follow from it.
@@ -49,7 +49,7 @@ class LiveTeam {
     return sent;
   }
 
-  /// Time passes and nothing comes from outside; returns the messages.
+  /// Lets time pass without a message from outside; returns the messages.
   Outbox wait(Instant from, std::chrono::nanoseconds duration) {
     Outbox sent;
     for (Instant now = from; now <= from + duration; now += 10ms) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents store the mission: they repeat it to a restarted coordinator or world, report their places
-// to the world, and ask for admission again when the roster has lost them.
+// Agents store the mission: they repeat it to a restarted coordinator or world, report their
+// positions to the world, and ask for admission again when the roster has lost them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ Agent informed_agent(const Mission& mission = small_mission(2)) {
   return agent;
 }
 
-/// With sequences above those of all former messages in the tests.
+/// A question with a sequence above those of all former messages in the tests.
 Hello question_of(AgentId who, Tick tick) {
   return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, 1000 + next_sequence(), tick},
           kUnassigned,
@@ -153,7 +153,7 @@ TEST(MissionRepeat, ComesToWhoAsksAlsoJustAfterAnOldOneWasCorrected) {
   EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 201ms))).size(), 4u);
 }
 
-// ---- where it was ----
+// ---- its position ----
 
 TEST(WorldQuestion, GetsTheLastTwoCommandsWithTheirTicksAndPlaces) {
   Mission mission = small_mission(1);
@@ -200,7 +200,7 @@ TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   deliver(agent, world_state(0, {{100, 500, 0}}), at(1s));
   EXPECT_TRUE(only<Hello>(advance(agent, at(10s))).empty());
 
-  // A coordinator that took over from a memory in which agent 0 was not yet a member.
+  // A coordinator took over from an old revision in which agent 0 was not yet a member.
   give(agent, mission_part(1000, MissionState::kRunning, {{author_of(1), 0, -1}}), at(11s));
   const auto hellos = only<Hello>(advance(agent, at(11s)));
   ASSERT_EQ(hellos.size(), 1u);

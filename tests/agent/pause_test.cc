@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent says in real time while its ticks do not come, in a mission that is paused or not,
-// and once it learns that it was.
+// What an agent sends in real time while no ticks arrive, in a mission that is paused or not, and
+// once it learns of the pause.
 #include <gtest/gtest.h>
 
 #include "tests/agent/driven_agent.h"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-/// The contributions of three seconds after tick 0, the only one that comes.
+/// The contributions sent in three seconds after tick 0, the only tick that arrives.
 std::vector<Contribution> sent_in_silence(std::vector<Hold> holds) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
@@ -33,7 +33,7 @@ TEST(AgentWithoutTicks, RepeatsOnceASecondWhatItHas) {
 }
 
 TEST(AgentWithoutTicks, SaysNothingWhileTheMissionIsPaused) {
-  // It joined in the pause and has covered nothing: others would refuse a row of no steps.
+  // It joined in the pause and has covered nothing. Others would refuse a row without steps.
   EXPECT_TRUE(sent_in_silence({{0, -1}}).empty());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents with a limited radio range: what they do not receive, receive through others, and wait
-// for.
+// Agents with a limited radio range: what they do not receive, what they receive through others,
+// and what they wait for.
 #include <gtest/gtest.h>
 
 #include "tests/agent/driven_agent.h"
@@ -40,7 +40,7 @@ TEST(AgentRadio, HearsItThroughATeammateInReach) {
   EXPECT_EQ(agent.coverage()->row_count(), 1u);
   give(agent, far, at(0s), 1);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), 1);
-  // The other way round, too: a message of a near agent does not count if a far one relays it.
+  // Likewise a message of a near agent does not count if a far one relays it.
   give(agent, block_of(mission, 1, {kLine[1]}, 1), at(0s), 2);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), std::nullopt);
 }

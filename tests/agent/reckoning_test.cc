@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An agent's forecast from the places of its teammates: their places since their last blocks count
-// as if broadcast there, the next block replaces them, and no agent is sent them.
+// An agent's forecast from the positions of its teammates. Positions since a teammate's last block
+// count as if they were broadcast, the next block replaces them, and they are never sent.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,8 +46,8 @@ Coefficients sums_of(const Mission& mission, const Path& path_m) {
 }
 
 /// ĉ at `tick` of an agent with its own path since `own_from` and one teammate. The teammate has
-/// been at these places, and it continues as in the `gained` last of them; the last known one was
-/// `age` ticks old.
+/// been at the positions `theirs`, and it continues as in the last `gained` of them. The last known
+/// one is `age` ticks old.
 Coefficients foreseen(const Mission& mission, Tick own_from, Tick tick, const Path& theirs,
                       std::size_t gained, Tick age) {
   const double dt_s = mission.timing.dt_s;
@@ -147,7 +147,7 @@ TEST_F(Reckoning, APlaceFromBeforeItTookPartIsNone) {
 
 TEST_F(Reckoning, APlaceBeyondTheRadiosRangeIsNone) {
   Mission mission = dead_reckoning_mission();
-  mission.radio_range_m = 830;  // they are 806 m apart at first, and come nearer
+  mission.radio_range_m = 830;  // they are 806 m apart at first, then nearer
   begin(mission);
   hear_block(their_path(0, 1));
   const auto tell_of = [&](Tick tick, double away_m) {

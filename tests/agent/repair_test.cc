@@ -18,10 +18,10 @@ std::vector<Eigen::Vector3d> path_of(std::int64_t steps) {
   return std::vector<Eigen::Vector3d>(static_cast<std::size_t>(steps), {700, 300, 0});
 }
 
-/// Agent 0's table and its readiness to repair, in a team of five.
+/// Agent 0's table and its AntiEntropy, in a team of five.
 class Repair : public ::testing::Test {
  protected:
-  /// Rosters ascend by author.
+  /// Adds an entry; rosters ascend by author.
   void admit(const RosterEntry& entry) {
     roster.push_back(entry);
     std::sort(roster.begin(), roster.end(),
@@ -169,7 +169,7 @@ TEST_F(Repair, AnyGapIsOneIfItsAuthorHasLeft) {
   hold(author_of(2), 20, 3);
   roster[2].active_until = 20;
   complain_twice(1, author_of(2), 19, at(0s));
-  EXPECT_EQ(answered(at(1s)), two) << "it will not speak again";
+  EXPECT_EQ(answered(at(1s)), two) << "it will not send again";
   complain_twice(1, author_of(2), 20, at(2s));
   EXPECT_EQ(answered(at(3s)), nobody);
 }
@@ -303,7 +303,7 @@ TEST_F(Repair, AFloodOfDigestsGetsNoMoreThanOneAnswerAtATime) {
     complain(1, author_of(3), 0, at(ms * 1ms));
     blocks += repair.answers_due(table, at(ms * 1ms), 0).size();
   }
-  // Two authors, 10 s, one answer each 0.125 s on average; its spread is 0.07 s · √80.
+  // Two authors for 10 s, with one answer each 0.125 s on average; the spread is 0.07 s · √80.
   EXPECT_LT(blocks, 2u * 100u);
 }
 
@@ -336,7 +336,7 @@ TEST_F(Repair, NoMoreRowsWaitToBeRepeatedThanItsLimitHoweverManySecondsPass) {
     gone.push_back({5 + i / 13, 5000 + static_cast<Incarnation>(i)});
   for (const Author& author : gone) admit({author, 0, 4});
   for (const Author& author : gone) hold(author, 9);
-  // Nothing is repeated in between, as in an agent whose process is paused.
+  // Nothing is repeated in between, as if the agent's process were suspended.
   for (const Instant now : {at(0s), at(1s), at(2s), at(3s)}) {
     for (const Author& author : gone) complain(1, author, 0, now);
   }

@@ -42,7 +42,8 @@ TEST(CoordinatorAdmits, BeyondThePlanUnderTheNextNumberUpToTheLimit) {
   }
   ASSERT_EQ(coordinator.roster().size(), static_cast<std::size_t>(kMaxAgents));
   EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 3})) << "the first beyond the plan";
-  EXPECT_EQ(coordinator.roster()[5].author, author_of(5)) << "whoever asks for a number gets it";
+  EXPECT_EQ(coordinator.roster()[5].author, author_of(5))
+      << "an agent that asks for a number gets it";
   for (AgentId id = 0; id < kMaxAgents; ++id) {
     EXPECT_EQ(coordinator.roster()[static_cast<std::size_t>(id)].author.agent, id);
   }
@@ -115,7 +116,7 @@ TEST(CoordinatorAdmits, NoMoreLivesOfANumberThanItsLimit) {
 }
 
 TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
-  // The coordinator did not receive the world's last state, and the world died.
+  // The coordinator did not receive the world's last state, and the world stopped.
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, world_where(7, {6, 6}), at(1s));
   AgentStatus status = status_of(1, 1);
@@ -129,7 +130,7 @@ TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
   }
 }
 
-// A container engine restarts a dead agent within a second and does not pass on its number.
+// A container engine restarts a stopped agent within a second and does not pass on its number.
 TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const auto ask_at = [&](Instant now) {
@@ -171,7 +172,7 @@ TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
 /// The newest revision that it sends until `now`.
 std::int64_t newest_sent(Coordinator& coordinator, Instant now) {
   for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) return part.revision;
-  ADD_FAILURE() << "it says no MISSION";
+  ADD_FAILURE() << "no MISSION was sent";
   return -1;
 }
 
@@ -194,7 +195,7 @@ TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
   EXPECT_EQ(coordinator.roster().size(), 20u);
 }
 
-// An agent waited for the number of a live agent and gave up; its messages were recorded.
+// An agent waited for the number of a running agent and gave up; its messages were recorded.
 TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const std::int64_t known = newest_sent(coordinator, at(1s));
@@ -207,7 +208,7 @@ TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
   give(coordinator, hello_of(0, 99, known), at(3500ms));
   EXPECT_EQ(coordinator.roster().size(), 2u);
   give(coordinator, hello_of(0, 99, newer), at(3500ms));
-  EXPECT_EQ(coordinator.roster().size(), 3u) << "who waits there still";
+  EXPECT_EQ(coordinator.roster().size(), 3u) << "the agent that still waits there";
 }
 
 // On a network with long delays, members fall silent and return faster than any HELLO arrives.
@@ -261,8 +262,7 @@ TEST(CoordinatorAdmits, OnlyItsOwnVersionAndItKnowsWhomItTurnedAway) {
     hello.host = std::to_string(i);
     give(coordinator, hello, at(0s));
   }
-  EXPECT_EQ(coordinator.version_mismatches().size(), 64u)
-      << "whoever invents hosts costs no memory";
+  EXPECT_EQ(coordinator.version_mismatches().size(), 64u) << "invented hosts cost no memory";
   give(coordinator, hello_of(0), at(0s));
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The coordinator under way, driven by hand: what it repeats, which agent a time-out names, and
-// that the end reaches all processes.
+// A coordinator whose mission runs, driven by hand: what it repeats, which agent a time-out names,
+// and that the end reaches all processes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -233,8 +233,8 @@ TEST(CoordinatorTimeOut, IsNotPutOffByRepeatsOfTheSameTick) {
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
 }
 
-/// The agent that the reason names if no answer of tick 5 has come; `waiting_for` as the agents
-/// report it.
+/// The agent that the reason names if no answer to tick 5 has arrived.
+/// @param waiting_for  as each agent reports it
 std::string blamed(const std::vector<AgentId>& waiting_for) {
   const auto agents = static_cast<int>(waiting_for.size());
   Coordinator coordinator = running_coordinator(impatient(agents));
@@ -248,14 +248,14 @@ TEST(CoordinatorTimeOut, DoesNotBlameWhoWaitsForATeammate) {
   EXPECT_EQ(blamed({1, -1}), "agent 1");
   EXPECT_EQ(blamed({-1, 0}), "agent 0");
   EXPECT_EQ(blamed({2, 2, -1}), "agent 2");
-  // 1 waits for 0, 0 for 2: the end of the chain.
+  // 1 waits for 0, and 0 for 2, which is the end of the chain.
   EXPECT_EQ(blamed({2, 0, -1}), "agent 2");
   // Two agents that wait for each other: one of them must be named.
   EXPECT_EQ(blamed({1, 0}), "agent 0");
 }
 
 TEST(CoordinatorTimeOut, BlamesTheSilentFirstAndAmongThemTheOneSilentForLongest) {
-  // 0 reports that it waits for 1; the last message of 1 is 2 s old, that of 2 from the start.
+  // 0 reports that it waits for 1. The last message of 1 is 2 s old; that of 2 is from the start.
   Coordinator coordinator = running_coordinator(impatient(3));
   give(coordinator, world_where(5, {4, 4, 4}), at(1s));
   give(coordinator, status_of(1, 1, 4), at(9s));

@@ -18,7 +18,7 @@ RosterEntry entry_of(const Coordinator& coordinator, const Author& author) {
   return at == coordinator.roster().end() ? RosterEntry{} : *at;
 }
 
-/// The revision it sends at `now`, or nothing.
+/// The revision that it sends at `now`, or nothing.
 std::optional<std::int64_t> sent_revision(Coordinator& coordinator, Instant now) {
   const auto parts = only<MissionPart>(advance(coordinator, now));
   return parts.empty() ? std::nullopt : std::optional(parts[0].revision);
@@ -118,11 +118,11 @@ TEST(Forgetting, ASilentAgentsCoverageStopsCountingAfterItsTimeFromANamedTickOn)
   ASSERT_TRUE(after);
   EXPECT_GT(*after, *before);
   const RosterEntry gone = entry_of(coordinator, author_of(1));
-  // In real time the team gets two seconds of notice; 20 ticks and the one that has begun.
+  // In real time the team gets two seconds of notice: 20 ticks, and the one that has begun.
   EXPECT_EQ(gone.since_tick, 50 + 21);
   EXPECT_FALSE(gone.forgotten_at(70, *after));
   EXPECT_TRUE(gone.forgotten_at(71, *after));
-  EXPECT_FALSE(gone.forgotten_at(71, *before)) << "the world has not heard of it";
+  EXPECT_FALSE(gone.forgotten_at(71, *before)) << "the world does not know it yet";
   EXPECT_FALSE(entry_of(coordinator, author_of(0)).forgotten);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When a coordinator leaves: as soon as all others have said that they leave, else after a second.
+// When a coordinator leaves: as soon as all others have reported that they leave, else after 1 s.
 #include <gtest/gtest.h>
 
 #include "tests/coordinator/driven_coordinator.h"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-/// A coordinator whose mission of two agents has just come to its last tick, at 1 s.
+/// A coordinator whose mission of two agents has just reached its last tick, at 1 s.
 class Farewell : public ::testing::Test {
  protected:
   Farewell() {
@@ -80,7 +80,7 @@ TEST_F(Farewell, AfterASecondIfAnotherWorldOrLoggerSpeaksAfterwards) {
 TEST_F(Farewell, AfterASecondIfAProcessThatIsNoMemberAsksToJoin) {
   agent_leaves(0), agent_leaves(1), world_leaves(), logger_leaves();
   give(coordinator_, hello_of(5), at(1001ms));
-  EXPECT_FALSE(leaves_at(at(1001ms))) << "it must hear the end, too";
+  EXPECT_FALSE(leaves_at(at(1001ms))) << "it must receive the end, too";
   EXPECT_TRUE(leaves_at(at(2s)));
 }
 

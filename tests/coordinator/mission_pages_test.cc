@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MISSION of large teams: what has changed is sent first, and all parts in turn.
+// MISSION of large teams: changed parts are sent first, and all parts in turn.
 #include "coordinator/mission_pages.h"
 
 #include <gtest/gtest.h>
@@ -107,7 +107,8 @@ TEST(LargeTeam, OfAllItsLivesIsFollowedAlsoByALatecomerUnderLoss) {
   ASSERT_EQ(coordinator.roster().size(), kMaxRosterEntries);
   MissionFollower follower;
   int sent = 0, repetitions = 0;
-  // Every fifth datagram is lost: after r rounds of 16 repetitions a part is missing with 0.2^r.
+  // Every fifth datagram is lost: after r rounds of 16 repetitions a part is missing with
+  // probability 0.2^r.
   for (; repetitions < 8 * 16 && follower.roster().size() < kMaxRosterEntries; ++repetitions) {
     for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) {
       if (++sent % 5 != 0) follower.receive(part);

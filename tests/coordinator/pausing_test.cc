@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From which tick on a mission is paused. In real time the team gets the whole notice, also when
-// the world's last message is old. In lockstep the world stands by first.
+// The tick from which a mission is paused. In real time the team gets the whole notice, even if the
+// world's last message is old. In lockstep the world stands by first.
 #include <gtest/gtest.h>
 
 #include "tests/coordinator/driven_coordinator.h"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-/// `agents` fly in real time at twice the speed.
+/// A mission of `agents` in real time at twice the speed.
 Mission realtime_mission(int agents) {
   Mission mission = small_mission(agents);
   mission.timing.pace = Pace::kRealtime;
@@ -64,7 +64,7 @@ TEST(Pausing, ARecordingOfAPauseThatNobodyObeyedHasNoEffect) {
   advance(coordinator, at(500ms));
   Pause pause = pause_after(0);
   pause.header.tick = 10;
-  give(coordinator, pause, at(10s));  // it has not heard of the world for so long
+  give(coordinator, pause, at(10s));  // the world has been silent for so long
   ASSERT_TRUE(coordinator.holds().empty());
   for (int second = 11; second < 31; ++second) {
     give(coordinator, world_where(second * 20, {9, 9}), at(second * 1s));
@@ -87,7 +87,7 @@ TEST(Pausing, InLockstepBeginsWithTheTickAfterTheNextOnceTheWorldStands) {
     const auto parts = only<MissionPart>(advance(coordinator, at(1s)));
     ASSERT_FALSE(parts.empty());
     ASSERT_GE(parts[0].stand_by_revision, 0);
-    ++world.header.tick;  // it has not heard yet that it is to stand by
+    ++world.header.tick;  // it does not know yet that it must stand by
     give(coordinator, world, at(1s));
     EXPECT_EQ(named_changes(coordinator.holds()), changes);
     world.roster_revision = parts[0].stand_by_revision;

@@ -39,7 +39,7 @@ Coordinator taken_over(const MissionPart& memory) {
   return coordinator;
 }
 
-/// A message that only a live coordinator sends.
+/// A message that only a running coordinator sends.
 TeamStatus alive(Incarnation incarnation, std::int64_t sequence = 1) {
   TeamStatus status;
   status.header = {kRun, kCoordinator, incarnation, sequence, 0};
@@ -52,7 +52,7 @@ const MissionPart& sent_by(const Outbox& out) {
     if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) return *part;
   }
   static const MissionPart nothing{};
-  ADD_FAILURE() << "no mission was said";
+  ADD_FAILURE() << "no mission was sent";
   return nothing;
 }
 
@@ -143,7 +143,7 @@ TEST(TakeoverIfRunning, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
 }
 
-// ---- a living predecessor ----
+// ---- a running predecessor ----
 
 constexpr const char* kLedByAnother =
     "run 0000000000001234 is led by the coordinator on there: leave it to that one, choose another "
@@ -213,7 +213,7 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   EXPECT_TRUE(coordinator.took_over());
   EXPECT_EQ(sent.header.run, kRun);
   EXPECT_EQ(sent.header.incarnation, kSuccessorLife);
-  EXPECT_GT(sent.revision, 7 + 100) << "the predecessor may have said more than was remembered";
+  EXPECT_GT(sent.revision, 7 + 100) << "the predecessor may have sent more than agents remember";
   EXPECT_EQ(sent.state, MissionState::kRunning);
   EXPECT_EQ(sent.plan, encode_plan(small_mission(2)));
   ASSERT_EQ(sent.roster.size(), 3u);
@@ -227,7 +227,7 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   }
 }
 
-/// A coordinator that knows revision 11 and has heard that the team may fly by revision 13.
+/// A coordinator that knows revision 11 and received a sign that the team may use revision 13.
 Coordinator that_lacks_the_newest(const Message& sign) {
   Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
@@ -365,7 +365,8 @@ TEST(TookOver, AnAgentItDoesNotKnowComesBackUnderItsIncarnation) {
 }
 
 TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
-  // From the world's message during the search, or from the predecessor's last one.
+  // It knows the tick from the world's message during the search, or from the predecessor's last
+  // one.
   for (const Tick remembered : {12, 3}) {
     Coordinator coordinator = successor(Takeover::kIfRunning);
     advance(coordinator, at(0s));
@@ -385,7 +386,7 @@ TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
 }
 
 TEST(TookOver, KnowsTheTickThatOnlyTheAgentsHaveSeen) {
-  // World and coordinator died together; the agents were ahead of the coordinator's last tick.
+  // World and coordinator stopped together. The agents were ahead of the coordinator's last tick.
   Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   AgentStatus status = status_of(0, 1);
@@ -457,7 +458,7 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanWhatTheWorldAloneHasHeardOfTheDead) 
   WorldState world = world_where(0, {0, 0});
   world.roster_revision = before + 8;
   give(coordinator, world, at(2s));
-  EXPECT_EQ(sent_by(advance(coordinator, at(3s))).revision, before) << "who said it may live";
+  EXPECT_EQ(sent_by(advance(coordinator, at(3s))).revision, before) << "its sender may still run";
   EXPECT_GT(sent_by(advance(coordinator, at(3600ms))).revision, before + 8);
   give(coordinator, world, at(3700ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(3700ms))).empty()) << "once is enough";

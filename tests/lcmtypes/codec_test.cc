@@ -46,7 +46,7 @@ void expect_header(const header_t& wire, AgentId sender) {
   EXPECT_EQ(wire.tick, 123456789012);
 }
 
-/// docs/safety.md has what this costs on the air.
+/// docs/safety.md has the cost of this on a radio link.
 TEST(Codec, ABeaconHasTwoBytesForEachTeammate) {
   Beacon one = beacon();
   for (const int team : {0, 1, 16, 64, kMaxEchoesPerMessage}) {
@@ -302,7 +302,7 @@ TEST(Codec, StringsAreCutAtTheirLimitsAndAtANul) {
   const auto cut = decoded_as<Hello>(encoded(long_names));
   EXPECT_EQ(cut.host, std::string(kMaxHostLength, 'h'));
   EXPECT_EQ(cut.version, std::string(kMaxVersionLength, 'v'));
-  // Not within a character.
+  // A text is not cut within a character.
   const std::string room(kMaxHostLength - 1, 'h');
   const Hello accent{header_of_sender(-1), -1, room + "\u00e9", ""};
   EXPECT_EQ(decoded_as<Hello>(encoded(accent)).host, room);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage that travels in 16 bits: how far it is from the exact one, that errors do not add up,
-// that it merges in any order, and that the two encodings never mix.
+// Coverage that is sent in 16 bits: it is close to the exact one, errors do not add up, it merges
+// in any order, and the two encodings never mix.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,12 +40,12 @@ Eigen::Vector3d place(AgentId agent, Tick tick) {
                     static_cast<std::uint64_t>(tick));
 }
 
-/// Agent `id` samples every tick and broadcasts every `period` of them, as it does in a mission.
+/// Agent `id`, which samples every tick and broadcasts every `period` ticks, as in a mission.
 class Author16 {
  public:
   explicit Author16(AgentId id) : author_{id, 5}, table_(rounded_table()) {}
 
-  /// What it has said by the end of so many ticks, as it arrives.
+  /// All blocks that it sends in so many ticks, as receivers decode them.
   std::vector<Contribution> run_ticks(Tick ticks, Tick period) {
     std::vector<Contribution> sent;
     std::vector<Contribution> before(static_cast<std::size_t>(table_.block_count()));
@@ -110,7 +110,7 @@ TEST(Fixed16, PassedOnItIsTheSameBytes) {
   }
 }
 
-/// Bit for bit.
+/// Both are equal bit for bit.
 void expect_same(const CoverageTable& a, const CoverageTable& b) {
   Coefficients ours = Coefficients::Zero(324), theirs = Coefficients::Zero(324);
   a.average(ours);

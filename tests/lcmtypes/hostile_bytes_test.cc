@@ -77,11 +77,11 @@ TEST(Codec, UnknownTypesAreRefusedEvenWithACorrectTag) {
   }
 }
 
-// ---- lying bytes: a correct tag over numbers that are not true ----
+// ---- false bytes: a correct tag over numbers that are not true ----
 
 constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
-/// A count that would only overflow.
+/// A count so large that sums with it overflow.
 constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
 
 TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
@@ -115,7 +115,7 @@ TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
   const auto part = decoded_as<MissionPart>(retagged(shifted));
   EXPECT_EQ(part.roster.size(), 1u);
   EXPECT_EQ(part.plan.size(), 346u);
-  // Beyond a limit a right total does not help.
+  // A right total does not help beyond a limit.
   put32(shifted, kSignatureEnd + 25, 9);
   put32(shifted, kSignatureEnd + 29, 300 - 7 * 46);
   EXPECT_EQ(verdict(retagged(shifted)), "size");
@@ -343,8 +343,8 @@ TEST(Codec, CountsThatOnlyOverflowAreRefused) {
   EXPECT_EQ(verdict(Message(status)), "range");
 }
 
-// A jump in a sender's numbering makes others count losses that never happened; others must still
-// accept their messages.
+// A jump in a sender's numbering makes others count losses that never happened. Their statuses must
+// still be accepted.
 TEST(Codec, MoreLossesThanThereCanBeAreSaidAsTheMostThatIsAccepted) {
   AgentStatus status = agent_status();
   status.contributions_lost = std::int64_t{1} << 57;

@@ -150,8 +150,8 @@ TEST(MessageAuthenticator, ASignatureIsOfOneMessageOfOneRun) {
             "unsigned");
 }
 
-/// The same team with another coordinator's public key: the first one's signatures are invalid for
-/// it.
+/// The same team with another coordinator's public key, for which the first one's signatures are
+/// invalid.
 MessageAuthenticator obeying_another() {
   MissionKey key = member_of(key_of(1));
   key.coordinator = key_of(2).coordinator;
@@ -165,7 +165,7 @@ TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
   KnownSignatures known;
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "unsigned");
   EXPECT_EQ(verdict(decode(bytes, kRun, kMemberAuthenticator, channel, &known)), "accepted");
-  // A check would refuse it as before.
+  // A check of the signature would refuse it.
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "accepted");
 }
 

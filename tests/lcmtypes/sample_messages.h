@@ -72,7 +72,7 @@ inline Contribution contribution() {
   return m;
 }
 
-/// The same coverage with numbers that travel in 16 bits.
+/// The same coverage with numbers in 16 bits.
 inline Contribution averages() {
   Contribution m = contribution();
   m.encoding = ContributionEncoding::kFixed16;
@@ -87,7 +87,7 @@ inline Contribution averages() {
   return m;
 }
 
-/// The first block where the other modes are sent less often.
+/// The first block of a mission that sends the other modes less often.
 inline Contribution low_modes(Contribution m) {
   const auto shorten = [](BlockSums& sums) {
     const std::vector<double> low(sums.begin(), sums.begin() + kLowModes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The record of robots each of which has a driver of its own.
+// The record of robots that each have a driver of their own.
 #include <map>
 
 #include "tests/logger/record.h"
@@ -20,7 +20,7 @@ Mission driven(int agents) {
   return mission;
 }
 
-/// What the driver of robot `id` says.
+/// The part that the driver of robot `id` sends.
 WorldState part_of(AgentId id, int robots, Tick tick) {
   WorldState state = world_state(tick, {{100.0 * (id + 1), 500 + static_cast<double>(tick), 0}});
   state.header.incarnation = 100 + static_cast<Incarnation>(id);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When a logger leaves: as soon as it has all that the others will say, else after a second.
+// When a logger leaves: as soon as it has all messages that the others will send, else after 1 s.
 #include <gtest/gtest.h>
 
 #include "tests/logger/record.h"

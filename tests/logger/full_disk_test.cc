@@ -57,8 +57,8 @@ TEST(FullDisk, InLockstepTheRecordGoesOnWhereTheTeamIsAndCountsTheGap) {
   for (Tick tick = 11; tick <= 5000; ++tick) record.deliver(state_of(tick), at(59s));
   free_space(record, at(60s));
   advance(record.recorder, at(60s));
-  // Its buffered ticks, 1024 from the first missing one on; then the world's repeats, after a
-  // while.
+  // It writes its buffered ticks, 1024 from the first missing one on. Then, after a while, it
+  // writes the world's repeats.
   record.deliver(state_of(5000), at(61s));
   EXPECT_EQ(acks(record.deliver(state_of(5001), at(62s))), std::vector<Tick>{5000});
   const auto rows = record.trajectory_rows();

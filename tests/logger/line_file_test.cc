@@ -29,7 +29,7 @@ class LineFileTest : public ::testing::Test {
     getrlimit(RLIMIT_FSIZE, &former_);
   }
   ~LineFileTest() override { room(former_.rlim_cur); }
-  /// From now on no file may grow beyond that.
+  /// From now on no file may grow beyond so many bytes.
   void room(rlim_t bytes) {
     const rlimit limit{bytes, former_.rlim_max};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -79,7 +79,7 @@ TEST_F(LineFileTest, TriesByItselfOnceSixtyFourKilobytesWait) {
   EXPECT_EQ(fs::file_size(file_), 65536U);
   room(65536);
   for (int i = 0; i < 63; ++i) EXPECT_TRUE(lines << line);
-  EXPECT_FALSE(lines << line) << "who heeds that keeps no more than this in memory";
+  EXPECT_FALSE(lines << line) << "a writer that stops here keeps no more than this in memory";
   room(former_.rlim_cur);
   lines.clear();
   ASSERT_TRUE(lines.flush());

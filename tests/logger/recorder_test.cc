@@ -170,7 +170,7 @@ TEST(Gap, InLockstepARecorderThatWasCutOffAndGivenUpComesBackAndCountsTheRowsItL
   Record record(mission);
   const auto patience = seconds(mission.timing.lockstep_timeout_s / 2);
   for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
-  // The world has continued meanwhile, further than it would with a logger.
+  // Meanwhile the world has continued, further than it would with a logger.
   record.deliver(state_of(500), at(1s));
   EXPECT_EQ(record.recorder.next_row(), 10) << "it may still be waiting for us";
   const Instant back = at(seconds(1)) + patience;
@@ -197,7 +197,7 @@ TEST(Gap, InRealTimeTheRecordGoesOnAndCountsTheRowsItLacks) {
   for (Tick tick = 0; tick <= 60; ++tick) {
     if (tick != 10 && tick != 11 && tick != 40) record.deliver(state_of(tick));
   }
-  // A row needs its own state and the next: 9, 10, 11 and 39, 40 are gone.
+  // A row needs its own state and the next one: 9, 10, 11 and 39, 40 are missing.
   std::vector<Tick> ticks;
   for (const std::string& row : record.trajectory_rows()) ticks.push_back(std::stoll(row));
   std::vector<Tick> expected;
@@ -334,7 +334,7 @@ TEST(Metrics, ShowWhatTheWorldMissedAndSkipped) {
 }
 
 TEST(Metrics, TicksOfAPauseThatIsTakenBackCountAfterAll) {
-  // The coordinator that named a second pause died, and no agent had heard of it.
+  // The coordinator that named a second pause stopped, and no agent had received the pause.
   Record record(small_mission(1));
   const auto run_ticks = [&](Tick from, Tick to, const auto& uncounted_at) {
     for (Tick tick = from; tick < to; ++tick) {
@@ -405,7 +405,7 @@ TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   EXPECT_FALSE(record.recorder.finished());
   record.deliver(mission_part(0, MissionState::kRunning, roster_of(1)), at(40s));
   advance(record.recorder, at(76s));
-  EXPECT_FALSE(record.recorder.finished()) << "the coordinator has spoken";
+  EXPECT_FALSE(record.recorder.finished()) << "the coordinator has sent a message";
   advance(record.recorder, at(76s + 1ms));
   EXPECT_TRUE(record.recorder.finished());
   EXPECT_STREQ(record.recorder.result(), "stopped");

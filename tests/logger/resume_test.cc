@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr Incarnation kNextWorldLife = kWorldLife + 1;
 
-/// Three agents that jump between places, each with digits to the last place. Two come near each
+/// Three agents that jump between positions, which use all digits of a double. Two come near each
 /// other at tick 7.
 WorldState team_at(Tick tick) {
   WorldState state = world_state(tick, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
@@ -77,7 +77,7 @@ class Resume : public testing::Test {
     write("metrics.csv", metrics);
     return std::get<RunData>(read_run(dir));
   }
-  /// After rows 0 … 9 of a single agent on its line.
+  /// The data after rows 0 … 9 of a single agent on its line.
   RunData ten_rows() const {
     Record former(small_mission(1));
     for (Tick tick = 0; tick <= 10; ++tick) former.deliver(state_of(tick));
@@ -284,7 +284,7 @@ TEST_F(Resume, ANewWorldThatRepeatsWhatIsRecordedChangesNothing) {
   for (Mission mission : {small_mission(1), realtime_mission()}) {
     Record record(mission);
     for (Tick tick = 0; tick <= 10; ++tick) record.deliver(state_of(tick));
-    // It does not know which velocities led there.
+    // The new world does not know which velocities led there.
     record.deliver(of_world(kNextWorldLife, state_of(8, {108, 500, 0}, {0, 0, 0})), at(1s));
     record.deliver(of_world(kNextWorldLife, state_of(10, {110, 500, 0}, {0, 0, 0})), at(1s));
     for (Tick tick = 11; tick <= 20; ++tick) {
@@ -382,7 +382,7 @@ TEST_F(Resume, OfEachDamagedFileTheRowsBeforeTheDamageCount) {
   const auto damage = read_up_to_damage(dir, run);
   ASSERT_TRUE(damage);
   EXPECT_NE(damage->find("trajectory.csv:4: "), std::string::npos) << *damage;
-  ASSERT_EQ(run.tracks.size(), 1u) << "an agent of whom no row can be read has none";
+  ASSERT_EQ(run.tracks.size(), 1u) << "an agent without a readable row has no track";
   std::vector<Tick> ticks;
   for (const TrackPoint& row : run.tracks.at(0)) ticks.push_back(row.tick);
   EXPECT_EQ(ticks, (std::vector<Tick>{0, 1, 7, 9}));
@@ -400,7 +400,7 @@ TEST_F(Resume, ADiscardedSegmentLeavesNoTrace) {
   EXPECT_EQ(read("trajectory.csv"), "rows\n");
 }
 
-// No table of the record has it.
+// No table of the record has this metric.
 TEST_F(Resume, KnowsTheMetricInCosinesWithoutARowMore) {
   Mission mission = small_mission(1);
   mission.cosine_target = mission.target_coefficients;

@@ -58,7 +58,7 @@ TEST(Summary, SaysWhetherTheGoalIsReachedIfThereIsOne) {
   EXPECT_EQ(goal_after_a_tick(1e-6)["ergodic_metric"], 1e-6);
 }
 
-/// Of two agents, the second of which answers from tick 10 on.
+/// The second of two agents answers from tick 10 on.
 TEST(Summary, SaysHowMuchADistanceHasCost) {
   Mission mission = small_mission(2);
   mission.speed_limit_mps = 40;

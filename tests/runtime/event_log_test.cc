@@ -16,7 +16,7 @@
 #include "runtime/segment_compressor.h"
 #include "tests/support/temp_folder.h"
 
-/// A disk that does not keep what it was given: stands in for the system's call.
+/// Replaces the system's call, as for a disk that cannot keep its data.
 static bool disk_fails = false;
 extern "C" int fsync(int) { return disk_fails ? -1 : 0; }
 
@@ -40,7 +40,7 @@ class EventLogTest : public ::testing::Test {
     for (const auto& entry : fs::directory_iterator(folder_)) bytes += entry.file_size();
     return bytes;
   }
-  /// How many events a segment holds, and whether it ends with a whole one.
+  /// The number of events in a segment, and whether it ends with a whole one.
   int events(const std::string& name) const {
     lcm::LogFile log(folder_ / name, "r");
     int count = 0;
@@ -233,18 +233,18 @@ TEST_F(EventLogReaderTest, ReadsCompressedSegmentsAsTheyAre) {
   while (!compressor.idle()) compressor.work(1 << 20);
   ASSERT_FALSE(fs::exists(segment(0)));
   EXPECT_EQ(read_back(folder_), "A B C D E F ");
-  // Of both, the one that is not compressed.
+  // If both files exist, the one that is not compressed is read.
   const fs::path packed = segment(0).string() + ".zst";
   fs::copy_file(segment(1), segment(0));
   EXPECT_EQ(read_back(folder_), "E F E F ");
   fs::remove(segment(0));
-  // Several frames, as zstd may write them.
+  // A file may have several frames, as zstd may write them.
   const fs::path frame = folder_ / "frame";
   fs::copy_file(packed, frame);
   std::ofstream(packed, std::ios::app | std::ios::binary) << std::ifstream(frame).rdbuf();
   EXPECT_EQ(read_back(folder_), "A B C D A B C D E F ");
   fs::rename(frame, packed);
-  // No killed logger leaves an incomplete one.
+  // A killed logger leaves no incomplete file, so one is damaged.
   for (const std::uintmax_t size : {fs::file_size(packed) - 1, std::uintmax_t{0}}) {
     fs::resize_file(packed, size);
     const std::string read = read_back(folder_);

@@ -91,7 +91,7 @@ TEST_F(KeyFile, OnlyACredentialOfSystemdMayBeReadableByItsGroup) {
     ::chmod(inside.c_str(), mode);
     EXPECT_FALSE(is_read(inside)) << mode;
   }
-  // Neither one of the same name elsewhere nor what a link leads to.
+  // Neither a file of the same name elsewhere nor the target of a link is accepted.
   EXPECT_FALSE(is_read(folder_ / "a.key"));
   fs::remove(inside);
   fs::create_symlink(folder_ / "a.key", inside);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LCM's datagram is read as it was written, and no bytes lead out of it.
+// LCM's datagram is read as it was written, and no bytes lead to a read past its end.
 #include "runtime/lcm_datagram.h"
 
 #include <gtest/gtest.h>

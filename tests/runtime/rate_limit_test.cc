@@ -43,7 +43,7 @@ TEST(RateLimit, OnlyAgentsHaveABudgetAndOnlyInAMission) {
   }
 }
 
-/// How many of so many messages a tick are refused over 10 000 ticks at that pace.
+/// How many messages are refused in 10 000 ticks at this rate and pace.
 int refused(const Mission& mission, int messages_per_tick, double ticks_per_second) {
   RateLimit limit;
   int refused = 0;

@@ -19,7 +19,7 @@ class Guarded : public ::testing::Test {
   bool receive(const Header& from, Instant when) {
     return guard_.count(from, guard_.is_new(from, when), when);
   }
-  /// So many of the same at once.
+  /// Receives the same message `count` times at once. True if the kernel needs a new list.
   bool flood(const Header& from, int count, Instant when) {
     bool changed = false;
     for (int i = 0; i < count; ++i) changed = receive(from, when) || changed;
@@ -63,7 +63,7 @@ TEST_F(Guarded, AFloodIsCutAtTheNewestThatIsKnownOfWhoIsRepeated) {
 TEST_F(Guarded, AFloodThatLastsIsCutAtEverNewerSequencesAndItsEndOpensAgain) {
   receive(sent(3, 7, 5), at(1s));
   flood(sent(3, 7, 5), RepeatGuard::kMostRepeats, at(1s));
-  // A share of it passes and shows that it lasts.
+  // A share of the flood passes and shows that it lasts.
   receive(sent(3, 7, 6), at(1050ms));
   constexpr int kShareOfIt =
       RepeatGuard::kMostRepeats * RepeatGuard::kCalmWindows / static_cast<int>(kShareThatPasses);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a launcher hands to a process: nobody can change it, and only a child that is given it reads
-// it.
+// A file that a launcher hands to a process: no process can change it, and only a child that gets
+// it can read it.
 #include "runtime/sealed_file.h"
 
 #include <fcntl.h>
@@ -51,7 +51,7 @@ TEST(SealedFile, IsItsOwnersAlone) {
   EXPECT_EQ(info.st_mode & 0777, 0400U);
 }
 
-/// What `cat` prints of the last of these files, which are handed to it in this order.
+/// The output of `cat` for the last of these files, which it gets in this order.
 std::string seen_by_child(const std::vector<SealedFile>& files) {
   const test::TempFolder folder;
   const auto log = folder.path() / "log";

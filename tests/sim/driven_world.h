@@ -16,7 +16,7 @@ inline World world_of(const Mission& mission) {
   return {kRun, kWorldLife};
 }
 
-/// Every agent's two answers to the question of this incarnation of the world for its place.
+/// Gives every agent's two answers to the question of this incarnation of the world.
 inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation life = kWorldLife) {
   for (AgentId id = 0; id < agents; ++id) {
     for (int command = 0; command < 2; ++command) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies that keep a distance, as the world sees them: where they appear, what a restarted world
-// knows, and what it leaves of commands in real time.
+// Bodies that keep a distance, in the world: where they appear, what a restarted world knows, and
+// how commands are filtered in real time.
 #include <gtest/gtest.h>
 
 #include "core/separation.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-/// 100 m apart on a line; they keep 30 m.
+/// Agents are 100 m apart on a line and keep 30 m.
 Mission apart(int agents, Pace pace) {
   Mission mission = small_mission(agents);
   mission.timing.pace = pace;
@@ -30,14 +30,14 @@ double nearest_m(const WorldState& state) {
 TEST(WorldKeepsBodiesApart, WhateverTheirAgentsCommand) {
   World world = running_world(apart(3, Pace::kRealtime));
   state_after(world, at(1ms));
-  // At once towards each other, and never again: the commands are held for 0.5 s.
+  // One command towards each other, which is held for 0.5 s; no other one follows.
   give(world, command_of(0, 0, {40, 0, 0}), at(2ms));
   give(world, command_of(1, 0, {0, 0, 0}), at(2ms));
   give(world, command_of(2, 0, {-40, 1, 0}), at(2ms));
   for (int tick = 1; tick <= 20; ++tick) {
     const WorldState state = state_after(world, at(1ms + tick * 100ms));
     EXPECT_GE(nearest_m(state), 30) << tick;
-    EXPECT_EQ(place(state, 1), Eigen::Vector3d(200, 500, 0)) << "who stands is not pushed";
+    EXPECT_EQ(place(state, 1), Eigen::Vector3d(200, 500, 0)) << "a standing body is not pushed";
   }
 }
 
@@ -61,7 +61,7 @@ TEST(WorldKeepsBodiesApart, ANewcomerAppearsWhereThereIsRoom) {
   give(world, mission_part(0, MissionState::kRunning, {{author_of(0), 0, -1}}), at(0s));
   nobody_has_moved(world, 1, at(0s));
   EXPECT_EQ(state_after(world, at(1ms)).vehicle_count, 1);
-  // It goes to where the other one would start, at (200, 500).
+  // Agent 0 goes to the start of the other one, (200, 500).
   for (Tick tick = 0; tick < 30; ++tick) {
     give(world, command_of(0, tick, {33, 0, 0}), at(2ms));
     advance(world, at(2ms));
@@ -75,7 +75,7 @@ TEST(WorldKeepsBodiesApart, ANewcomerAppearsWhereThereIsRoom) {
 
 // ---- a world that begins anew ----
 
-/// What a former world said at `tick` of vehicles 0 to 2.
+/// A former world's state of vehicles 0 to 2 at `tick`.
 WorldState state_before(Tick tick, double shift_m) {
   WorldState state = world_state(
       tick, {{300 + shift_m, 400, 0}, {340 + shift_m, 400, 0}, {400 + shift_m, 400, 0}});
@@ -114,7 +114,7 @@ TEST(RestartedWorld, KnowsTheBodiesOfThoseWhoHaveLeft) {
   EXPECT_EQ(place(state, 2), Eigen::Vector3d(400, 400, 0));
 }
 
-/// Its former life had stepped on by the answers to tick 9; agent 1 has crashed since.
+/// The former world had taken its step with the answers to tick 9. Agent 1 has crashed since.
 TEST(RestartedWorld, GoesOnFromTheNewestStateThatAnyAgentKnows) {
   World world = asking(apart(3, Pace::kLockstep));
   for (const Tick tick : {8, 9}) give(world, answer(0, tick, 300), at(1ms));
@@ -128,7 +128,7 @@ TEST(RestartedWorld, GoesOnFromTheNewestStateThatAnyAgentKnows) {
               state_before(10, 4).vehicles[static_cast<std::size_t>(i)].position_m);
 }
 
-/// The answers of two ticks are of two times, at which other distances held.
+/// Answers of two ticks are of two times, at which distances differed.
 TEST(RestartedWorld, InRealTimePutsAllWhereOneStateSaysAndLetsThemStand) {
   World world = asking(apart(3, Pace::kRealtime));
   give(world, state_before(7, 0), at(1ms), 0);
@@ -158,7 +158,7 @@ TEST(RestartedWorld, BelievesNoStateOnceItHasBegun) {
   EXPECT_EQ(place(state, 0), Eigen::Vector3d(100, 500, 0));
 }
 
-/// A wing does not fly as it is commanded, so commands do not say how it goes on near a wall.
+/// A wing does not move exactly as commanded, so commands do not determine its way near a wall.
 TEST(RestartedWorld, TakesPlacesAndVelocitiesAmongWallsFromAState) {
   Mission mission = small_mission(3);
   mission.timing.pace = Pace::kRealtime;

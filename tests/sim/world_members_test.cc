@@ -28,7 +28,7 @@ TEST(WorldRefuses, CommandsThatAreNotAnAnswerOfAMemberToThisTick) {
     EXPECT_TRUE(advance(world, at(0s)).empty());
   }
   EXPECT_EQ(world.tick(), 0);
-  // None of them stands in the way of the real answer.
+  // None of these prevents the real answer.
   give(world, command_of(0, 0, {2, 0, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector3d(2, 0, 0));
   // An old one does not count as an answer to the new tick.
@@ -109,7 +109,7 @@ TEST(WorldAdmits, AgentsBeyondThePlanAtStartsDrawnFromTheSeed) {
     nobody_has_moved(world, 3, at(0s));
     const WorldState state = state_after(world, at(0s));
     EXPECT_EQ(state.vehicle_count, 3);
-    EXPECT_EQ(place(state, 0), mission.starts_m[0]) << "who is in the plan begins as planned";
+    EXPECT_EQ(place(state, 0), mission.starts_m[0]) << "a planned agent begins as planned";
     for (const int stranger : {1, 2}) {
       EXPECT_EQ(place(state, stranger), random_start(mission.domain, seed, stranger));
       EXPECT_TRUE(mission.domain.contains(place(state, stranger)));

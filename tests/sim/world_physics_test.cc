@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A world whose bodies something else moves than core/vehicle.h.
+// A world whose bodies are not moved by core/vehicle.h.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -9,7 +9,7 @@
 namespace ergocast::test {
 namespace {
 
-/// Bodies that go half as fast as they are told, and roll on for a tick.
+/// Bodies that move at half the commanded speed, and roll on for a tick.
 class Sluggish : public Physics {
  public:
   void place(AgentId id, const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps) override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated world, driven by hand: real time, where ticks go by the clock.
+// The simulated world in real time, driven by hand: ticks follow the clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,7 +81,7 @@ TEST(WorldInRealTime, CatchesUpABoundedNumberOfTicksAndCountsTheRest) {
   World world = running_world(realtime_mission());
   advance(world, at(0s));
   advance(world, at(100ms));
-  // 18 ticks late: 5 are made up for, 1 is due anyway, 13 are given up.
+  // 18 ticks late: 5 are caught up, 1 is due anyway, 13 are skipped.
   const auto states = states_after(world, at(2s));
   ASSERT_EQ(states.size(), 6u);
   EXPECT_EQ(states.back().header.tick, 7);

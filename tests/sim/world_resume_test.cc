@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A world that dies and is restarted continues where the team was, from the agents' answers: in
-// lockstep without any difference, bit for bit, at whatever moment it died.
+// A restarted world continues where the team was, from the agents' answers. In lockstep the result
+// is the same bit for bit, whenever the world stopped.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,14 +16,14 @@ using namespace test;
 
 // ---- lockstep, with real agents ----
 
-/// Which of three agents received the tick at which the world died; none of their answers reached
-/// it.
+/// Which of three agents received the tick at which the world stopped. None of their answers
+/// reached it.
 struct Death {
   Tick tick;
   bool heard[3];
 };
 
-/// A lockstep flight of three agents. Checks that no tick is sent with two contents.
+/// A lockstep mission of three agents. Checks that no tick is sent with two contents.
 class ResumedMission {
  public:
   using Published = std::map<Tick, std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>>;
@@ -31,7 +31,7 @@ class ResumedMission {
   explicit ResumedMission(const Mission& mission)
       : mission_(mission), team_(mission), world_(begin(1)) {}
 
-  /// Until the team has answered tick `end`.
+  /// Runs until the team has answered tick `end`.
   void run_until(Tick end) {
     while (world_.tick() < end) {
       now_ += 10ms;
@@ -40,7 +40,7 @@ class ResumedMission {
     }
   }
 
-  /// The world dies at `death` and another begins.
+  /// The world stops at `death` and another begins.
   void restart(const Death& death) {
     run_until(death.tick - 1);
     now_ += 10ms;
@@ -188,8 +188,8 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
   EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
 }
 
-// Only that agent may have received the last tick of the former world, and no other process knows
-// its place.
+// Each agent may be the only one that received the former world's last tick, and no other process
+// knows its position.
 TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
   World world = asking_world(small_mission(2));
   for (const Tick tick : {8, 9})
@@ -227,7 +227,7 @@ TEST(WorldAsks, InLockstepNobodyWhoHasLeftTheRosterMeanwhile) {
   EXPECT_EQ(state_after(world, at(5s)).header.tick, 9);
 }
 
-// Agents that have not been anywhere answer with (0, 0), which may lie outside.
+// Agents without a position answer with (0, 0), which may be outside of the domain.
 TEST(WorldAsks, BeginsAtOnceInADomainFarFromTheOrigin) {
   Mission mission = small_mission(2);
   const Eigen::Vector3d far_m(512300, 5403700, 0);
@@ -240,7 +240,7 @@ TEST(WorldAsks, BeginsAtOnceInADomainFarFromTheOrigin) {
   EXPECT_EQ(place(state, 1), mission.starts_m[1]);
 }
 
-/// The state with which a world of one agent begins that was told these commands, in this order.
+/// The first state of a world of one agent that received these commands in this order.
 WorldState begun_with(const std::vector<Command>& published) {
   World world = asking_world(small_mission(1));
   for (const Command& command : published) give(world, command, at(0s));
@@ -267,7 +267,7 @@ TEST(WorldAsks, OneOfTwoCommandsIsHalfAnAnswer) {
   EXPECT_EQ(applied(state_after(world, at(101ms))), Eigen::Vector3d(1, 0, 0));
 }
 
-/// Who has answered tick 0 alone says first that it has not answered the tick before.
+/// An agent that has answered only tick 0 first sends a command without a tick.
 TEST(WorldAsks, HalfAnAnswerDoesNotSayThatThereIsNone) {
   const auto halves = [](AgentId id, Tick last, std::int64_t sequence) {
     std::vector<Command> sent = {command_from(id, -1, {0, 0, 0}, {0, 0, 0}),
@@ -348,7 +348,8 @@ TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
     const WorldState state = state_after(world, at(5ms));
     EXPECT_EQ(state.header.tick, 10);
     EXPECT_EQ(place(state, 0), Eigen::Vector3d(500, 500, 0));
-    // From 7 to 10 in three steps of 1 m; with a hold of 0.1 s the third has no command.
+    // It goes from tick 7 to 10 in three steps of 1 m; with a hold of 0.1 s the third has no
+    // command.
     EXPECT_EQ(place(state, 1), Eigen::Vector3d(700, hold_s > 1 ? 503 : 502, 0));
     EXPECT_EQ(applied(state, 1), Eigen::Vector3d(0, hold_s > 1 ? 10 : 0, 0));
     EXPECT_EQ(state_after(world, at(105ms)).header.tick, 11) << "and the clock goes on from here";
@@ -360,7 +361,7 @@ TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
 TEST(WorldWithoutAMission, AsksForItAfterASecondAndAHalfIfItKnowsTheRun) {
   World world = world_of(small_mission(1));
   EXPECT_TRUE(advance(world, at(10s)).empty());
-  EXPECT_EQ(world.next_wakeup(), at(11500ms)) << "the coordinator speaks each second";
+  EXPECT_EQ(world.next_wakeup(), at(11500ms)) << "the coordinator sends each second";
   EXPECT_TRUE(advance(world, at(11499ms)).empty());
   for (const Instant now : {at(11500ms), at(13s)}) {
     const Outbox out = advance(world, now);

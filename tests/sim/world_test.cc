@@ -197,7 +197,7 @@ TEST(WorldRecord, RepeatsWhatTheLoggerLacks) {
   const auto states = states_after(world, at(2s));
   std::vector<Tick> ticks;
   for (const WorldState& state : states) ticks.push_back(state.header.tick);
-  // The newest state lists the answers; then come the oldest ones that are missing.
+  // The newest state lists the answers; then come the oldest missing states.
   std::vector<Tick> expected{84};
   for (Tick tick = 21; tick <= 36; ++tick) expected.push_back(tick);
   EXPECT_EQ(ticks, expected);

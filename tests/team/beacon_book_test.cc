@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ages from echoes, the lease, and beacons that nobody should believe.
+// Ages from echoes, the lease, and beacons that must be refused.
 #include "team/beacon_book.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ Mission leased(int agents) {
 
 Moment moment(Tick tick) { return {tick, at(tick * 100ms)}; }
 
-/// Agents that hear each other, each with a driver: all within one tick, in the order of numbers.
+/// Agents that receive each other, each with a driver. All act within one tick, in ascending order.
 class Team {
  public:
   explicit Team(int agents) : mission_(leased(agents)), roster_(roster_of(agents)) {
@@ -43,7 +43,7 @@ class Team {
     }
   }
 
-  /// @param hears  whether what the first says reaches the second
+  /// @param receives  whether messages of the first agent reach the second
   void pass(
       Tick tick, const std::function<bool(AgentId, AgentId)>& receives = [](AgentId, AgentId) {
         return true;
@@ -103,8 +103,8 @@ TEST(BeaconBook, KnowsNobodyAtFirst) {
   EXPECT_TRUE(team.book(0).next(1, moment(5)));
 }
 
-/// Agents whose beacons come late or never, and whose drivers are late: what they say of a tick
-/// comes `lag` ticks later, and so do their commands there.
+/// Agents whose beacons arrive late or never, and whose drivers are late. The measurement of a tick
+/// arrives `lag` ticks later, and so do commands at the driver.
 class LateTeam {
  public:
   LateTeam() {
@@ -122,7 +122,7 @@ class LateTeam {
         book.receive(coming_[id].front().second, true, moment(tick));
         coming_[id].erase(coming_[id].begin());
       }
-      // The place says when it was measured.
+      // The position shows when it was measured.
       const Tick measured = tick - lag;
       book.measured(measured - lag - 1, 1, {40.0 * id, static_cast<double>(measured), 0},
                     {0, 0, 0});
@@ -182,7 +182,7 @@ TEST(BeaconBook, AgesAreAFewTicksWhereNothingIsLost) {
   EXPECT_LE(team.seen(0, 1, 19).age_ticks, 3);
 }
 
-/// Whichever of them has gone on while the other stood still.
+/// The clock or the ticks may have stood still.
 TEST(BeaconBook, CountsTheMoreOfTicksAndTime) {
   Team team(2);
   for (Tick tick = 0; tick < 20; ++tick) team.pass(tick);
@@ -199,13 +199,13 @@ TEST(BeaconBook, WhoIsNotEchoedForTheLeaseMustStand) {
   Team team(3);
   for (Tick tick = 0; tick < 30; ++tick) team.pass(tick);
   EXPECT_TRUE(team.seen(0, 1, 29).known);
-  // 1 does not hear 0 any more, and is heard by all.
+  // 1 no longer receives 0, and all receive 1.
   const auto deaf = [](AgentId from, AgentId to) { return from != 0 || to != 1; };
   Tick stood = 0;
   for (Tick tick = 30; tick < 70; ++tick) {
     team.pass(tick, deaf);
     if (stood == 0 && !team.seen(0, 1, tick).known) stood = tick;
-    EXPECT_TRUE(team.seen(0, 2, tick).known) << "2 does hear it";
+    EXPECT_TRUE(team.seen(0, 2, tick).known) << "2 does receive it";
     EXPECT_TRUE(team.seen(2, 0, tick).known);
   }
   EXPECT_GE(stood, 45);
@@ -214,15 +214,15 @@ TEST(BeaconBook, WhoIsNotEchoedForTheLeaseMustStand) {
   EXPECT_TRUE(team.seen(0, 1, 79).known) << "the lease is renewed";
 }
 
-/// However long ago it was: it stands, or it has left.
+/// However old a position is: the body stands by then, or its agent has left.
 TEST(BeaconBook, AnAgeIsNeverMoreThanTheLease) {
   Team team(2);
   for (Tick tick = 0; tick < 10; ++tick) team.pass(tick);
   EXPECT_EQ(team.seen(0, 1, 1000).age_ticks, kLease);
-  EXPECT_FALSE(team.seen(0, 1, 1000).known) << "we must stand, too: it may not hear us";
+  EXPECT_FALSE(team.seen(0, 1, 1000).known) << "we must stand, too: it may not receive us";
   team.roster()[1].active_until = 900;
   team.note_roster();
-  EXPECT_TRUE(team.seen(0, 1, 1000).known) << "it has left, and need not hear us";
+  EXPECT_TRUE(team.seen(0, 1, 1000).known) << "it has left, and need not receive us";
   EXPECT_EQ(team.seen(0, 1, 1000).age_ticks, kLease);
 }
 
@@ -240,7 +240,7 @@ TEST(BeaconBook, DoesNotEchoWhoHasLeft) {
 TEST(BeaconBook, AnEchoOfAnotherIncarnationIsNone) {
   Team team(2);
   for (Tick tick = 0; tick < 10; ++tick) team.pass(tick);
-  // A successor of 0 that numbers its beacons from the beginning on, too.
+  // A successor of 0, which also numbers its beacons from 1 on.
   BeaconBook successor(leased(2), {0, 77}, 5);
   std::vector<RosterEntry> roster = team.roster();
   roster[0].active_until = 9;
@@ -266,7 +266,7 @@ TEST(BeaconBook, ASuccessorStandsUntilItIsEchoed) {
   team.roster().push_back({{1, 77}, 9, -1});
   team.book(0).note_roster(team.roster());
   const Neighbour body = team.seen(0, 1, 10);
-  EXPECT_FALSE(body.known) << "it has not heard us";
+  EXPECT_FALSE(body.known) << "it has not received us";
   EXPECT_EQ(body.age_ticks, kLease);
   Beacon stranger = team.last(1);
   stranger.position_m = {555, 0, 0};

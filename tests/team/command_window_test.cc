@@ -40,7 +40,7 @@ TEST(CommandWindow, AdmitsTheTickAtWhichTheMissionStands) {
   EXPECT_FALSE(window.admits(6));
 }
 
-// What it has heard may be a recording, too.
+// Received ticks may be those of a recording, too.
 TEST(CommandWindow, WantsTheNewestTickUntilItsOwnerTakesPart) {
   CommandWindow window;
   window.note(100, false, at(0s));

@@ -118,7 +118,7 @@ TEST(HostilePlan, WithACoefficientThatCannotBeIsRefused) {
   EXPECT_FALSE(is_taken(mission));
 }
 
-// What computes modes relies on it.
+// The computation of modes relies on this.
 TEST(HostilePlan, SteersByModesOnlyWithAllThatBelongsToThem) {
   ASSERT_TRUE(is_taken(with_free_domain(rich_mission())));
   constexpr void (*kBroken[])(Mission&) = {
@@ -407,7 +407,7 @@ TEST(HostilePlan, WithoutAVersionIsDamagedOrMuchNewer) {
   }
 }
 
-// Protobuf would read these: unknown fields, a field given twice, padding.
+// Protobuf would accept these: unknown fields, a field given twice, padding.
 TEST(HostilePlan, WithASpellingOfItsOwnIsRefused) {
   const Bytes plan = encode_plan(rich_mission());
   const auto appended = [&](std::initializer_list<int> bytes) {

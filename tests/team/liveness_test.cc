@@ -57,7 +57,7 @@ TEST(Liveness, RemembersNoMoreLivesThanItsLimit) {
   }
   EXPECT_FALSE(is_new(liveness, sent(0, kMost + 1, 1)));
   EXPECT_FALSE(liveness.last_sign({0, kMost + 1}));
-  EXPECT_TRUE(is_new(liveness, sent(0, kMost, 2))) << "whom it knows, it still hears";
+  EXPECT_TRUE(is_new(liveness, sent(0, kMost, 2))) << "known senders are still received";
   EXPECT_TRUE(is_new(liveness, sent(0, kMost, 4)));
   EXPECT_EQ(liveness.lost({0, kMost}, Bus::kSwarm), 1) << "of those it goes on";
   EXPECT_EQ(liveness.lost({0, kMost + 1}, Bus::kSwarm), 0);
@@ -132,7 +132,7 @@ TEST(Silence, IsSixHeartbeats) {
   EXPECT_EQ(silence_of(kWorld, CoordinatorSign::kMission, &timing), 3s);
   timing.realtime_factor = 1;
   EXPECT_EQ(silence_of(kWorld, CoordinatorSign::kMission, &timing), 12s) << "six ticks of 2 s";
-  EXPECT_EQ(silence_of(0, CoordinatorSign::kMission, &timing), 3s) << "agents speak in between";
+  EXPECT_EQ(silence_of(0, CoordinatorSign::kMission, &timing), 3s) << "agents also send in between";
   timing.pace = Pace::kLockstep;
   EXPECT_EQ(silence_of(kWorld, CoordinatorSign::kMission, &timing), 3s);
 }

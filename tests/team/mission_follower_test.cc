@@ -211,7 +211,7 @@ TEST(MissionFollower, ARevisionWithAnotherPlanChangesNothing) {
   EXPECT_EQ(follower.foreign_plans(), 1);
 }
 
-/// Revision 1 complete, of which revision `revision` changes `changed`: the parts of both.
+/// The parts of a complete revision 1, and of `revision`, which changes the parts `changed`.
 struct Change {
   explicit Change(std::set<int> changed, std::int64_t revision = 2) {
     for (int p = 0; p < kParts; ++p) {

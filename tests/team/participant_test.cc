@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The checks that all processes share, and what a process knows of the others and publishes itself.
+// The checks that all processes share, what a process knows of the others, and what it publishes.
 #include "team/participant.h"
 
 #include <gtest/gtest.h>
@@ -285,7 +285,7 @@ TEST(Participant, ALoggerThatHearsOnlyARepeatedMissionWaitsAsLong) {
   EXPECT_TRUE(logger.cut_off(3, at(45001ms)));
 }
 
-// ---- what it says ----
+// ---- what it sends ----
 
 TEST(Participant, SequencesGrowByOneOnEachBus) {
   Participant agent = participant(Role::kAgent);

@@ -81,7 +81,7 @@ class Fields : public FieldVisitor {
   }
 };
 
-/// Turns the switch of this number, among those of two and more values.
+/// Changes the switch of this number, among all fields with a few values.
 class Switch : public FieldVisitor {
  public:
   explicit Switch(int number) : left_(number) {}
@@ -153,7 +153,8 @@ TEST(Plan, CarriesEachSwitchByItself) {
   EXPECT_GE(count, 10);
 }
 
-// ops/spy/Plan.java and the plans of recorded runs have these. A new field leaves them as they are.
+// ops/spy/Plan.java and the plans of recorded runs rely on these bytes. A new field must not change
+// them.
 TEST(Plan, KeepsTheBytesOfItsFields) {
   Mission mission = rich_mission();
   mission.wait_for_logger = true;

@@ -31,7 +31,7 @@ class Enricher : public FieldVisitor {
   int count_ = 0;
 };
 
-/// No field at its default, no number twice.
+/// A mission with no field at its default and no number twice.
 inline Mission rich_mission() {
   Mission mission;
   Enricher enricher;
@@ -79,14 +79,14 @@ inline Mission rich_mission() {
   mission.separation.position_error_m = 0.15;
   mission.separation.disturbance_m = 0.22;
   mission.separation.response_s = 1.1;
-  mission.separation.lease_s = 0;  // of bodies that hear each other: with_lease()
-  mission.wall_clearance_m = 0;    // of none: with_walls()
+  mission.separation.lease_s = 0;  // needs bodies with beacons: with_lease()
+  mission.wall_clearance_m = 0;    // needs walls: with_walls()
   mission.vehicle = {};            // inertia allows none of these: with_inertia()
   mission.wait_for_logger = false;
   return mission;
 }
 
-/// The same in a box.
+/// The same mission in a box.
 inline Mission rich_mission_in_space() {
   Mission mission = rich_mission();
   mission.domain.origin_m.z() = -7;
@@ -100,7 +100,7 @@ inline Mission rich_mission_in_space() {
   return mission;
 }
 
-/// Of vehicles that are no points, which know where all others are.
+/// The mission with vehicles that are no points and know all positions.
 inline Mission with_inertia(Mission mission) {
   mission.vehicle = {VehicleKind::kAcceleration, 11};
   mission.kinds[1].vehicle = {VehicleKind::kAcceleration, 12.5};
@@ -110,7 +110,7 @@ inline Mission with_inertia(Mission mission) {
   return mission;
 }
 
-/// Of bodies each of which knows its own place alone, and that hear each other everywhere.
+/// The mission with bodies that know only their own position, and an unlimited radio range.
 inline Mission with_lease(Mission mission) {
   mission.radio_range_m = 0;
   mission.separation.guard = false;
@@ -122,7 +122,8 @@ inline Mission with_lease(Mission mission) {
   return mission;
 }
 
-/// With a wall that has a room, too small for a way into it to be asked for, and a triangle.
+/// The mission with a triangle, and a wall around a room. The room is too small to need an
+/// entrance.
 inline Mission with_walls(Mission mission) {
   mission.walls = {{{40, 30}, {60, 30}, {60, 45}, {40, 45}},
                    {{45, 35}, {49, 35}, {49, 39}, {45, 39}},
@@ -131,14 +132,14 @@ inline Mission with_walls(Mission mission) {
   return mission;
 }
 
-/// Whose second agent goes home.
+/// The mission with a station for the second agent.
 inline Mission with_stations(Mission mission) {
   mission.kinds[1].stations_m = {{25, 26, mission.domain.planar() ? 0.0 : 12.0}};
   mission.kinds[1].reserve_s = 1.5;
   return mission;
 }
 
-/// One that steers by the modes of its free domain, by sensors that see points.
+/// The mission with the modes of its free domain, and sensors that see points.
 inline Mission with_free_domain(Mission mission) {
   mission.basis.free_domain = true;
   mission.basis.table_hash = 0xfedcba9876543210;
@@ -148,7 +149,7 @@ inline Mission with_free_domain(Mission mission) {
   return mission;
 }
 
-/// Of vehicles that turn slowly and never stand, which belong to a plane.
+/// The mission with vehicles that turn slowly and never stand; it must be in a plane.
 inline Mission with_wings(Mission mission) {
   mission = with_inertia(std::move(mission));
   mission.vehicle = {VehicleKind::kFixedWing, 0, 13, 0.5};

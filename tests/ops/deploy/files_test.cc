@@ -98,7 +98,7 @@ TEST_F(DeployFiles, TheSshScriptGivesEveryProcessItsOwnKey) {
   const std::string script = ssh_files(hosts_, mission_)[0].text;
   const std::string starts =
       output("set -- start; . \"$file\" | grep -o '^starting .*'",
-             // An ssh on which nothing runs yet and which lists what it would start.
+             // A fake ssh: nothing runs yet, and it lists what it would start.
              "ssh() { case $* in *nohup*) echo \"starting ${3#*nohup }\";; *pid*) return 1;; "
              "*.key*) echo \"$1 $(cat)\" >>\"$file.keys\";; esac; }\ntar() { :; }\n" +
                  script);
@@ -136,7 +136,7 @@ TEST_F(DeployFiles, TheTableOfModesGoesToEveryHostAndToAllButTheWorld) {
 }
 
 TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
-  // An ssh that prints what it would do.
+  // A fake ssh that prints what it would do.
   const std::string ssh =
       "ssh() { if [ \"$1\" = -n ]; then echo \"$2: $3\"; else echo \"$1: $2\"; cat; fi; }\n";
   std::string script = systemd_files(hosts_, mission_)[0].text;

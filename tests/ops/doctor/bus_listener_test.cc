@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Datagrams of runs, foreign senders and random bytes lead to the right finding, and none does
-// harm.
+// Datagrams of runs, foreign senders and random bytes lead to the right finding and do no harm.
 #include "ops/doctor/bus_listener.h"
 
 #include <cstring>
@@ -12,7 +11,7 @@
 namespace ergocast::doctor {
 namespace {
 
-/// As LCM sends a short message.
+/// A datagram as LCM sends a short message.
 std::vector<std::byte> datagram(const std::string& channel, const std::vector<std::byte>& payload) {
   std::vector<std::byte> bytes(8 + channel.size() + 1);
   std::memcpy(bytes.data(), "LC02", 4);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rule sets as nft prints them: which of them drop all fragments to our ports, and which only
-// seem to.
+// Rule sets as nft prints them: which drop all fragments to our ports, and which only seem to.
 #include "ops/doctor/fragment_rule.h"
 
 #include "tests/ops/doctor/fixture.h"
@@ -8,7 +7,7 @@
 namespace ergocast::doctor {
 namespace {
 
-/// As nft writes it.
+/// A rule set as nft writes it.
 /// @param more  additional matches
 /// @param before  a rule before it
 std::string ruleset(const std::string& hook, const std::string& ports, const std::string& verdict,
@@ -26,7 +25,7 @@ std::string ruleset(const std::string& hook, const std::string& ports, const std
          verdict + R"(": null}]}}]})";
 }
 
-/// For the same port, with another verdict.
+/// A rule for the same port, with another verdict.
 std::string other_rule(const std::string& verdict) {
   return R"({"rule": {"family": "inet", "table": "ergocast", "chain": "in", "handle": 2, "expr": [
       {"match": {"op": "==", "left": {"payload": {"protocol": "udp", "field": "dport"}},

@@ -15,7 +15,7 @@ std::string socket_at(const std::string& hex_port, const std::string& inode) {
          " 2 0000000000000000 0\n";
 }
 
-/// Of the ports 24000, 24002 and 24003.
+/// A table with the ports 24000, 24002 and 24003.
 const std::string kTable = "  sl  local_address rem_address\n" + socket_at("5DC0", "111") +
                            socket_at("5DC2", "222") + socket_at("5DC3", "333");
 
