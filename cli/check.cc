@@ -16,7 +16,7 @@ namespace ergocast::cli {
 
 namespace {
 
-/// What bodies that follow late keep, in the scenario's numbers.
+/// The distance that late-following bodies keep, in the scenario's numbers.
 void tell_margins(const Mission& mission) {
   const Separation& rule = mission.separation;
   if (rule.distance_m == 0 || rule.response_s == 0) return;

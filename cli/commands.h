@@ -22,7 +22,7 @@
 namespace ergocast::cli {
 
 /// Runs the command that the command line selects; returns the program's exit code. A command that
-/// declares its own options (`add_…`) stores its action here when it was selected.
+/// declares its own options (`add_…`) stores its action here when it is selected.
 using Action = std::function<int()>;
 
 /// The options of `run` and `simulate`.
@@ -91,7 +91,7 @@ struct MergeOptions {
   std::filesystem::path out;
 };
 
-/// Makes the folder of the whole study of its shards.
+/// Makes the folder of the whole study from its shards.
 int merge_studies(const MergeOptions& options);
 
 /// `list`: the live runs of this user on this host.
@@ -100,14 +100,14 @@ void add_list(CLI::App& app, Action& action);
 /// `status`: shows the state of a running team, from any host on its buses.
 void add_status(CLI::App& app, Action& action);
 
-/// `watch`: a record, or a running team, in a browser.
+/// `watch`: shows a record or a running team in a browser.
 void add_watch(CLI::App& app, Action& action);
 /// --port and --listen.
 void add_page_options(CLI::App& app, PageOptions& options);
 /// Serves until Ctrl-C or SIGTERM comes, at a low priority.
 /// @param wait  waits until the server, or what it shows, has something to do, at most 0.1 s
 void serve_until_stop(PageServer& server, StopSignals& signals, const std::function<void()>& wait);
-/// `run-page`: the page of `run --watch`, for that command alone.
+/// `run-page`: serves the page of `run --watch`; only that command starts it.
 void add_run_page(CLI::App& app, Action& action);
 
 /// `export`: writes a record in the formats of other tools.
@@ -119,13 +119,13 @@ void add_replay(CLI::App& app, Action& action);
 /// `stop`: ends a mission that another command started, in order or at once.
 void add_stop(CLI::App& app, Action& action);
 
-/// `pause` and `resume`: a mission stands still for a while.
+/// `pause` and `resume`: stop and continue a running mission.
 void add_pause(CLI::App& app, Action& action);
 
 /// Reports every problem of a scenario. With `print`, prints the scenario with all defaults.
 int check(const std::filesystem::path& scenario, const Overrides& overrides, bool print);
 
-/// Makes the report of a run directory, again if it exists.
+/// Makes the report of a run directory; replaces an existing report.
 int report(const std::filesystem::path& run_dir);
 
 /// Simulates a recorded run again and compares every file of the record.
@@ -133,11 +133,11 @@ int verify(const std::filesystem::path& run_dir);
 
 /// `deploy`: writes the files that start a mission on several hosts.
 void add_deploy(CLI::App& app, Action& action);
-/// `spy`: LCM's viewer on one bus of a mission.
+/// `spy`: starts LCM's viewer on one bus of a mission.
 void add_spy(CLI::App& app, Action& action);
-/// `keygen`: a mission key.
+/// `keygen`: makes a mission key.
 void add_keygen(CLI::App& app, Action& action);
-/// `doctor`: finds what prevents communication between hosts, and the commands that repair it.
+/// `doctor`: finds what prevents communication between hosts, and prints commands that repair it.
 void add_doctor(CLI::App& app, Action& action);
 
 }  // namespace ergocast::cli

@@ -5,7 +5,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// Why every message was refused, if the cause is the keys.
+/// Explains why every message was refused, if the keys are the cause.
 std::string key_problem(const BusOptions& options, const RefusalCounts& refused) {
   const auto count = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)]; };
   const std::string url = options.url.base();

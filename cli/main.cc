@@ -237,7 +237,7 @@ int parse_and_do(int argc, char** argv) {
   study_command->callback([&, merge_command] {
     action = [&] { return study(study_options); };
     if (merge_command->parsed()) action = [&] { return merge_studies(merge_options); };
-    // CLI11 would take the word "merge" for a scenario that is required.
+    // CLI11 would read "merge" as the required scenario.
     if (!merge_command->parsed() && study_options.scenarios.empty())
       throw CLI::RequiredError("SCENARIO");
   });
@@ -273,7 +273,7 @@ int parse_and_do(int argc, char** argv) {
   add_spy(app, action);
   add_doctor(app, action);
 
-  app.footer(kExitCodes);  // only now, or every command without its own would show it, too
+  app.footer(kExitCodes);  // set last, or each command without its own footer would inherit it
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version_text());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decodes each logged message for its kind and tick; its bytes stay as they were.
+// Decodes each logged message to get its kind and tick; its bytes stay unchanged.
 #include "cli/replay_source.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// Where each kind of message was sent (ARCHITECTURE.md#channels): the log does not say.
+/// The bus of each kind of message (ARCHITECTURE.md#channels), which the log does not record.
 std::vector<Bus> buses_of(const Message& message) {
   if (std::holds_alternative<WorldState>(message)) return {Bus::kWorld};
   if (std::holds_alternative<Command>(message)) return {Bus::kCommand};

@@ -39,7 +39,7 @@ constexpr auto kNoteAfter = 500ms;
 constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
 
 /// Returns when all processes have ended.
-/// @param page  null: there is none
+/// @param page  may be null
 void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, PageProcess* page,
                StopSignals& signals, ProgressDisplay& display) {
   int asked = 0;
@@ -86,7 +86,7 @@ nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
           {"tick_count", timing.tick_count}};
 }
 
-/// The summary that this run's logger has written. Whatever else stands in the folder is none.
+/// The summary that this run's logger has written. Any other file of that name does not count.
 std::optional<nlohmann::ordered_json> loggers_summary(const Launcher::Setup& setup) {
   auto read = read_summary(setup.run_dir);
   auto* const summary = std::get_if<nlohmann::ordered_json>(&read);
@@ -138,7 +138,7 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
                 (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
 }
 
-/// What other commands of this user find out about the run.
+/// The registry's entry of this run, for other commands of this user.
 LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
   return {.run = setup.run,
           .scenario = scenario.name(),
@@ -150,7 +150,7 @@ LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
           .pid = getpid()};
 }
 
-/// The page of the mission, if it is wanted; an error if it cannot be served.
+/// The page of the mission, if requested; an error if it cannot be served.
 std::variant<std::unique_ptr<PageProcess>, std::string> begin_page(const MissionOptions& options,
                                                                    const Launcher::Setup& setup,
                                                                    ProgressDisplay& display) {
@@ -178,7 +178,7 @@ void show_record(PageProcess& page, StopSignals& signals) {
   for (pollfd stop{signals.fd(), POLLIN, 0}; poll(&stop, 1, kAttend_ms) <= 0;) page.attend(now());
 }
 
-/// The program in the world's place; an error if there is none.
+/// The program that replaces the world; an error if it does not exist.
 std::variant<fs::path, std::string> world_program(const fs::path& wanted,
                                                   const fs::path& programs) {
   if (wanted.empty()) return programs / "ergocast-sim";
@@ -188,8 +188,8 @@ std::variant<fs::path, std::string> world_program(const fs::path& wanted,
          " (name one that takes --lcm-url and --run-id, with its folder)";
 }
 
-/// What the processes are handed, from what this process has read or computed; an error if there is
-/// no memory for it.
+/// Makes the sealed files that the processes inherit, from the data in this process. An error if
+/// memory is missing.
 /// @pre options.seal can sign
 std::optional<std::string> seal_files(const MissionOptions& options, const Mission& mission,
                                       Launcher::Setup& setup) {
@@ -210,7 +210,7 @@ std::optional<std::string> seal_files(const MissionOptions& options, const Missi
   return problem;
 }
 
-/// Runs the mission. LCM works and the run directory is ready.
+/// Runs the mission. @pre LCM works and the run directory is ready
 int run_mission(const MissionOptions& options, const Scenario& scenario,
                 const Launcher::Setup& setup, StopSignals& signals) {
   const MessageAuthenticator& authenticator = options.authenticator;
@@ -253,7 +253,7 @@ int run_mission(const MissionOptions& options, const Scenario& scenario,
                                                                              : kExitDone;
 }
 
-/// Reads the scenario; if that takes long, a line says why nothing happens.
+/// Reads the scenario; if that takes long, a line explains the delay.
 std::optional<Scenario> load_with_a_note(const MissionOptions& options) {
   auto loading =
       std::async(std::launch::async, load_or_complain, options.scenario, options.overrides);

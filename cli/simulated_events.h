@@ -22,7 +22,7 @@ class SimulatedEvents : public lab::SimulationObserver {
   SimulatedEvents(const std::filesystem::path& folder, const Mission& mission);
 
   void sends(lab::NodeId, const Outbox& outbox) override;
-  /// The write error, if there was one.
+  /// Returns the write error, if there was one.
   std::optional<std::string> flush() { return log_.flush(); }
   /// Segments removed because of the log's limit.
   int removed() const { return log_.removed(); }

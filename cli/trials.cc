@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kSwarm = "swarm";
 constexpr std::int64_t kMostFailuresShown = 20;
-/// A trial takes some hundredths of a second; one that takes so long hangs.
+/// A trial takes some hundredths of a second; above this time it hangs.
 constexpr unsigned kPatience_s = 120;
 
 /// Faults by seed: from a file, or drawn. Nothing, after an error message, if the file is invalid.

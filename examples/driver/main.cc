@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast-example-driver: robots instead of the simulated world.
+// ergocast-example-driver: drives robots instead of the simulated world.
 #include <spdlog/spdlog.h>
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast-example-mujoco: robots in a physics engine instead of the simulated world.
+// ergocast-example-mujoco: moves robots in a physics engine instead of the simulated world.
 #include <map>
 #include <optional>
 #include <string>
