@@ -27,7 +27,7 @@ void trim_zeros(std::string& digits) {
   if (digits.back() == '.') digits.pop_back();
 }
 
-/// Groups of three before the point from 10 000 on, and a real minus sign.
+/// Groups of three digits before the point from 10 000 on, and a real minus sign.
 std::string typeset(std::string digits) {
   const bool negative = digits.front() == '-';
   if (negative) digits.erase(0, 1);
@@ -117,7 +117,7 @@ std::string with_unit(double value, std::string_view unit) {
 
 std::string duration(double seconds) {
   if (!(seconds >= 120 && seconds < 1e15)) return readable(seconds) + "\u00a0s";
-  const double unit = seconds < 3600 ? 1 : 60;  // seconds do not matter in hours
+  const double unit = seconds < 3600 ? 1 : 60;  // above an hour, seconds are not shown
   const auto whole = static_cast<long long>(std::round(seconds / unit) * unit);
   const long long hours = whole / 3600, minutes = whole / 60 % 60, rest = whole % 60;
   std::string text;

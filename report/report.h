@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes the report of a run, for people.
+// Makes the report of a run.
 #pragma once
 
 #include <filesystem>
@@ -24,19 +24,19 @@ struct ReportFile {
 /// Draws report.html and figures/*.svg from the run's trajectory.csv, metrics.csv and, if they
 /// exist, summary.json and target_density.csv. An empty run and an incomplete last line are
 /// allowed. On failure, an error with its place and remedy.
-/// @param team  how the agents were over time, for the page (cli/recorded_team.h); may be null
+/// @param team  the agents' states over time, for the page (cli/recorded_team.h); may be null
 /// @pre `mission` is that of the run's plan.
 std::variant<std::vector<ReportFile>, std::string> draw_report(const std::filesystem::path& run_dir,
                                                                const Mission& mission,
                                                                const nlohmann::ordered_json& team);
 
-/// What the page shows of a record, or the error; see page.h.
+/// The page's data of a record, or the error; see page.h.
 std::variant<nlohmann::ordered_json, std::string> read_page_record(
     const std::filesystem::path& run_dir, const Mission& mission,
     const nlohmann::ordered_json& team);
 
-/// Writes them into `run_dir` and replaces existing files, each as a whole or not at all. Nothing
-/// on success, otherwise the error.
+/// Writes the report's files into `run_dir` and replaces existing files, each completely or not at
+/// all. Returns nullopt on success, otherwise the error.
 std::optional<std::string> write_report(const std::filesystem::path& run_dir,
                                         const Mission& mission, const nlohmann::ordered_json& team);
 

@@ -12,13 +12,13 @@
 
 namespace ergocast {
 
-/// The density in multiples of the uniform density: a table with the north-west first.
+/// Encodes the density, in multiples of the uniform density, as a table with the north-west first.
 inline constexpr const char* kTargetDensityFile = "target_density.csv";
 
 /// The content of the file.
 std::string target_density_text(const Field& density);
 
-/// Nothing on success, otherwise the error.
+/// Writes the file; returns nullopt on success, otherwise the error.
 std::optional<std::string> write_target_density(const std::filesystem::path& file,
                                                 const Field& density);
 
