@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a recorded event log says of a team: when an agent was silent, and when only the logger was.
+// A recorded event log shows when an agent was silent, and when only the logger was absent.
 #include "cli/recorded_team.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The state of a team as a listening process knows it: which agents have trouble, and since when.
+// The state of a team as a listening process knows it: agents with trouble, and its start.
 #include "cli/team_view.h"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ TEST_F(TeamViewTest, NamesWhoseCoverageIsForgottenAndCallsThatTrouble) {
   hear_mission(at(200ms), roster, 1);
   EXPECT_TRUE(view_.picture(at(200ms)).forgotten.empty());
   EXPECT_FALSE(view_.picture(at(200ms)).trouble);
-  // An incarnation that has a successor is missed no more.
+  // An incarnation that has a successor is not reported as missing.
   RosterEntry former{{2, 7}, 0, 1};
   former.forgotten = true;
   roster.insert(roster.begin() + 2, former);

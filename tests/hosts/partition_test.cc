@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts that are disconnected for a while: in real time all processes continue with what they have,
+// Hosts that are disconnected for a while: in real time all processes continue with their own data,
 // and afterwards the team agrees again.
 #include "tests/hosts/team_on_hosts.h"
 
@@ -122,7 +122,7 @@ TEST_F(Partition, InLockstepEverybodyWaitsForACutOffHostAndNotABitChanges) {
 }
 
 TEST_F(Partition, AnAgentThatIsCutOffWhenTheMissionEndsDoesNotWaitForEver) {
-  // The world stands still in mid-flight, so that the mission's end comes after the cut.
+  // The world is stopped during the mission, so that the mission's end comes after the cut.
   hold_next("ERGOCAST_WORLD_STATE", 100);
   start(mission("100", "pace: REALTIME realtime_factor: 20"));
   hold_none();

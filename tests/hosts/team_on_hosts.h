@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Programs on several hosts, each with its own network stack, started as people would start them
-// there.
+// Programs on several hosts, each with its own network stack, started as people would start them.
 #pragma once
 
 #include <optional>
@@ -70,7 +69,7 @@ class TeamOnHosts : public OnHosts {
     start_agents();
   }
 
-  /// Tells the coordinator to end the mission.
+  /// Sends the coordinator a signal to end the mission.
   void end_mission() { coordinator_->child.send(SIGINT); }
 
   /// The mission continues until it is stopped, and the record equals the simulation's.
