@@ -20,7 +20,7 @@ class StopCommand : public ByHand {
   }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
 
-  /// Whether the record has that reason, possibly with a remark on late commands.
+  /// Whether the record has that reason, possibly followed by a remark on late commands.
   bool was_ended(const std::string& reason) const {
     return summary()["reason"].get<std::string>().starts_with(reason);
   }
@@ -108,7 +108,7 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
   expect_halt(GetParam());
 }
 
-// The tick of STOP is known when the team waits for one of its agents.
+// The team waits for one agent, so the tick in which STOP arrives is known.
 TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
   constexpr Tick kWaitedFor = 100;
   hold_next("ERGOCAST_COMMAND_2", kWaitedFor);

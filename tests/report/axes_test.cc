@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Axes need numbers: for any range, at least two of its marks have labels.
+// Axes need numbers: for any range, at least two marks have labels.
 #include "report/axes.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A view of a box is a mission in a plane: its coverage and target are those along the third axis.
+// A view of a box is a mission in a plane: its coverage and target are averages along the third
+// axis.
 #include "report/projection.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ Mission box_mission() {
   return mission;
 }
 
-// Of samples anywhere: the mean of f along an axis that has no waves is f in the plane.
+// For any samples, the mean of f along an axis without waves is f in the plane.
 TEST(Projection, KeepsTheCoverageInItsPlane) {
   const Mission mission = box_mission();
   const Eigen::Vector3d x_m(17, 90, 61);

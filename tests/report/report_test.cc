@@ -78,7 +78,7 @@ testing::AssertionResult well_formed(const std::string& xml) {
   return testing::AssertionSuccess();
 }
 
-/// A run directory of its own, with the mission it belongs to.
+/// A run directory, with the mission that it belongs to.
 class Report : public testing::Test {
  protected:
   Report() {
@@ -150,7 +150,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-// What a browser makes of it: tests/page.
+// tests/page tests it in a browser.
 TEST_F(Report, HasSixFiguresAndOnePageThatLoadsNothing) {
   record(4, 1000);
   ASSERT_EQ(report(), std::nullopt);
@@ -205,7 +205,8 @@ TEST_F(Report, SaysHowLargeBodiesAreAndWhoGoesHomeWhen) {
   EXPECT_EQ(record["mission"]["body_radius_m"], 1.5);
   EXPECT_EQ(record["mission"]["stations"],
             nlohmann::json::parse(R"([{"id": 0, "at_m": [600, 500], "rest_from": 800}])"));
-  // It circles 330 to 610 m away, and goes at 10 m/s: 33 to 61 s before tick 800.
+  // The agent circles 330 to 610 m away and moves at 10 m/s, so it goes home 33 to 61 s before tick
+  // 800.
   ASSERT_EQ(record["home_from"].size(), 1U);
   EXPECT_GT(record["home_from"]["0"], 190);
   EXPECT_LT(record["home_from"]["0"], 480);
@@ -392,7 +393,7 @@ TEST(TrackGrid, CodesRunsBetweenGapsAsSecondDifferences) {
   EXPECT_EQ(grid.rows(), 6);
   const auto coded = grid.encode(0, grid.rows());
   EXPECT_EQ(coded["agents"].dump(), R"([{"id":7,"runs":[0,3,5,1]}])");
-  // x 0 10 20, y 64 64 64, then x 50, y 64; zigzag doubles what is positive.
+  // x 0 10 20, y 64 64 64, then x 50, y 64; zigzag doubles positive numbers.
   EXPECT_EQ(coded["data"], base64(std::string("\x00\x14\x00\x80\x01\x7f\x00\x64\x80\x01", 10)));
   EXPECT_EQ(grid.encode(3, 5)["agents"].size(), 0U);
   EXPECT_EQ(grid.encode(1, 2)["agents"].dump(), R"([{"id":7,"runs":[1,1]}])");
@@ -407,7 +408,7 @@ TEST(TrackGrid, KeepsEveryOtherRowWhenThereAreTooMany) {
   grid.put(3, TrackGrid::kMostPositions, {0, 0, 0});
   EXPECT_EQ(grid.stride(), 2);
   EXPECT_EQ(grid.rows(), TrackGrid::kMostPositions / 2 + 1);
-  // Of the ticks 0, 2, 4 the places 0, 2, 4.
+  // The places 0, 2, 4 of the ticks 0, 2, 4.
   EXPECT_EQ(grid.encode(0, 3)["data"], base64(std::string("\x00\x04\x00\x00\x00\x00", 6)));
   grid.put(3, Tick{1} << 52, {1, 1, 0});  // as a damaged record may
   EXPECT_LE(grid.rows(), TrackGrid::kMostPositions);
@@ -503,7 +504,8 @@ TEST(Polylines, PathsDoNotDrift) {
   EXPECT_EQ(path_data({{1, 2}}), "M1 2l0 0");
 }
 
-// The last chunk of every PNG is empty and its checksum known, which vouches for those before.
+// The last chunk of every PNG is empty with a known checksum, which confirms the computation for
+// all chunks.
 TEST(Raster, IsAPng) {
   const std::string uri = png_data_uri(Field::Constant(3, 1, 0.5), pencil());
   EXPECT_TRUE(uri.starts_with("data:image/png;base64,iVBORw0KGgo")) << uri;

@@ -78,7 +78,7 @@ public final class SpyProbe {
     Thread.sleep(Long.MAX_VALUE);
   }
 
-  /** Says again at another URL whatever is heard at one. */
+  /** Repeats all messages of one URL on another one. */
   private static void echo(String from, String to) throws Exception {
     LCM there = new LCM(to);
     new LCM(from).subscribe("ERGOCAST_.*", (lcm, channel, in) -> {
@@ -120,7 +120,7 @@ public final class SpyProbe {
     for (double value : plan.target) System.out.println(Double.toHexString(value));
   }
 
-  /** The modes of each block with so much room. */
+  /** The modes of each block with that space. */
   private static void modes(String file, int room) throws Exception {
     Plan plan = new Plan(Files.readAllBytes(Paths.get(file)));
     for (int block = 0; plan.modesOf(block, room).length > 0; ++block) {

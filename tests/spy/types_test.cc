@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The jar for lcm-spy: types, the plan's reader, and pictures of given messages. LCM's Java reads
-// what we send, and the reverse.
+// our messages, and we read its messages.
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -38,7 +38,7 @@ class SpyJar : public WithProbe {
                static_cast<std::streamsize>(plan.size()));
     return scenario;
   }
-  /// The same of a shipped scenario with one bell as its target.
+  /// The same for a shipped scenario with one Gaussian as its target.
   void plan_of_bell(const std::string& name, const std::string& bell) {
     std::string text = text_of(scenario_file(name));
     const auto target = text.find("target {"), end = text.find("\n}", target);
@@ -95,7 +95,7 @@ TEST_F(SpyJar, EveryMessageComesBackFromLcmsJavaAsItWasSent) {
   wait_for(echo);
 }
 
-/// Reads as Java's Double.toHexString writes.
+/// Reads the format of Java's Double.toHexString.
 double next_number(std::istream& in) {
   std::string word;
   in >> word;
@@ -128,7 +128,7 @@ TEST_F(SpyJar, APlanIsReadToTheLastBit) {
   }
 }
 
-/// The modes of all blocks as they travel, each after its block's number.
+/// The encoded modes of all blocks, each after its block's number.
 std::string modes_by_block(const Mission& mission) {
   const BlockLayout layout(mission);
   const auto count = static_cast<std::size_t>(mission.basis.mode_count());
@@ -167,7 +167,7 @@ TEST_F(SpyJar, KnowsWhichModesABlockHas) {
 }
 
 TEST_F(SpyJar, TheMapHasXToTheRightAndYUpwards) {
-  // One bell at a place whose four mirror images are other places.
+  // One Gaussian at a place whose four mirror images are different places.
   plan_of_bell("quadrimodal_corners", "mean_x_m: 600 mean_y_m: 1600 sigma_m: 150");
   auto found = places("xy");
   EXPECT_NEAR(found["target"].first, 0.3, kPixels) << output();
