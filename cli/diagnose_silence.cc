@@ -26,7 +26,7 @@ std::string why_nobody(const BusOptions& options, const Transport& transport) {
   std::string text =
       "nobody of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
       " was heard on " + url +
-      ": is the mission flying, and on this URL? `ergocast list` names the runs that "
+      ": is the mission running, and on this URL? `ergocast list` names the runs that "
       "you started here, `ergocast doctor --lcm-url \"" +
       url + "\"` checks the network between the hosts";
   if (transport.unknown_format().count > 0) {

@@ -23,8 +23,9 @@ int make_keys(const std::string& name) {
     return report_error(kExitBadInput, *problem);
   }
   std::printf(
-      "%s: for every agent, world, driver, logger and whoever watches\n"
-      "%s: for who starts, pauses and ends missions: coordinator, ergocast run, stop, pause, "
+      "%s: for every agent, world, driver, logger and monitor\n"
+      "%s: for processes that start, pause and end missions: coordinator, ergocast run, stop, "
+      "pause, "
       "resume\n"
       "Copy them over a channel you trust; each program takes its own as --key-file or in "
       "ERGOCAST_KEY_FILE.\n",
@@ -41,7 +42,7 @@ void add_keygen(CLI::App& app, Action& action) {
   command->add_option("NAME", *name, "Writes NAME.key and NAME.coordinator.key, never over others")
       ->capture_default_str();
   command->footer(
-      "Whoever has NAME.key can speak for any agent; only NAME.coordinator.key signs what begins "
+      "NAME.key is enough to send as any agent; only NAME.coordinator.key signs what begins "
       "and\n"
       "ends missions. Nothing is encrypted.\n"
       "Exit codes: 0 done; 2 a file is there already or cannot be written.");

@@ -232,7 +232,7 @@ FileComparison compare_metrics(const fs::path& run_dir, const Expectation& expec
   metrics.compared = std::to_string(rows) + " rows";
   if (!expectation.whole) {
     metrics.compared += ": tick, t_s, ergodic_metric";
-    metrics.left_out = "the other columns are what agents said of the network";
+    metrics.left_out = "the other columns are the agents' reports of the network";
   }
   return metrics;
 }

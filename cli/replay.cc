@@ -133,7 +133,7 @@ class Player {
 
 void announce(const LcmUrl& url, const Mission& mission, const ReplayOptions& options) {
   std::printf(
-      "replay of %s from %s, %s times as fast as it flew in mission time\n"
+      "replay of %s from %s, %s times as fast as mission time\n"
       "  ergocast status --watch --lcm-url \"%s\"\n"
       "  ergocast watch --lcm-url \"%s\"\n"
       "  ergocast spy --lcm-url \"%s\"\n",

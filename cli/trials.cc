@@ -172,7 +172,8 @@ int trials(const TrialsOptions& options) {
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const TrialTotals& totals = desk.close();
-  std::printf("%lld of %llu missions flown in %.1f s\n%s", static_cast<long long>(totals.trials),
+  std::printf("%lld of %llu missions simulated in %.1f s\n%s",
+              static_cast<long long>(totals.trials),
               static_cast<unsigned long long>(options.seeds.count()), wall_s,
               totals.describe(wall_s, basis).c_str());
   if (!path.empty() && !csv)

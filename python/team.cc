@@ -174,7 +174,7 @@ edges: "reflect", or "none": agents leave the domain, as in the paper's theorems
       .def(py::init(&make_ideal_team), "mission"_a, "edges"_a = "reflect")
       .def_static("stands_for", &IdealTeam::stands_for, "mission"_a,
                   "Whether a distributed team would compute the same.")
-      .def("step", &step, "count"_a = 1, "So many ticks: samples, commands, motion.")
+      .def("step", &step, "count"_a = 1, "Runs `count` ticks: samples, commands, motion.")
       .def_property_readonly("tick", &IdealTeam::tick, "Steps done.")
       .def_property_readonly("t_s", &IdealTeam::t_s, "The time that they took [s].")
       .def_property_readonly("positions_m", &rows<&IdealTeam::x_m>,

@@ -64,7 +64,8 @@ std::optional<std::string> Driver::why_not() const {
            "most the robots' 2 rad/s";
   if (only_ && mission.separation.distance_m > 0 && !uses_beacons(mission))
     return "a driver of one robot does not know where the others are: give the mission separation "
-           "{ lease_s }, so that agents tell each other, or drive all robots without --id";
+           "{ lease_s }, so that agents send each other their positions, or drive all robots "
+           "without --id";
   return std::nullopt;
 }
 

@@ -119,7 +119,7 @@ TEST_F(ThreeHosts, CountPacketsAndFragments) {
 TEST_F(ThreeHosts, SpeakWhereTheRouteLeads) {
   lan_->add_interface(2);
   lan_->route_multicast(2, "eth1");
-  EXPECT_EQ(hearers(2), "") << "not even itself, who listens to eth0";
+  EXPECT_EQ(hearers(2), "") << "not even itself, because it listens to eth0";
   EXPECT_EQ(hearers(0), "012");
   lan_->route_multicast(2, "");
   EXPECT_EQ(hearers(2), "");

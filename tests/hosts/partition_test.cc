@@ -69,7 +69,7 @@ TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
              before[static_cast<std::size_t>(whose)] + 20 * kTicksPerSecond;
     };
     return holds_more(0, 1) && holds_more(1, 0);
-  })) << "who hears the world goes on";
+  })) << "agents that receive the world continue";
   const auto stands_still = [&](AgentId id) { return cut_off.stands_still(cut_off.member(id)); };
   EXPECT_TRUE(stands_still(2) && stands_still(3)) << "and the others do not";
   for (const AgentId id : {2, 3}) {

@@ -103,7 +103,7 @@ TEST_F(Conformance, LcmReadsEveryMessageThatWePublish) {
     EXPECT_TRUE(eventually([&] { return theirs[bus].listen().size() >= expected.size(); }));
     EXPECT_EQ(theirs[bus].listen(), expected) << "bus " << bus;
     EXPECT_TRUE(eventually([&] { return listen(kBuses[bus]).size() >= expected.size(); }));
-    EXPECT_EQ(heard_[kBuses[bus]], expected) << "we hear ourselves, bus " << bus;
+    EXPECT_EQ(heard_[kBuses[bus]], expected) << "we receive our own messages, bus " << bus;
   }
 }
 

@@ -101,7 +101,7 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
   EXPECT_EQ(wait_for(mission), 0) << printed();
 
   EXPECT_EQ(observer.held(member(), former), observer.steps_sent(former))
-      << "no more than it had said";
+      << "no more than it had sent";
   EXPECT_LT(observer.answered(former), observer.block(former).next_broadcast_tick)
       << "lost is only what it covered since its last broadcast";
   for (const Author& life : {former, member()}) {

@@ -168,7 +168,7 @@ TEST_F(StopCommand, NeedsTheCoordinatorsKeyIfTheTeamHasOne) {
     how.insert(how.end(), {"--key-file", team});
     EXPECT_EQ(stop(how), 2);
     EXPECT_TRUE(answered("cannot begin or end missions")) << output();
-    EXPECT_TRUE(moves_on()) << "nobody obeys who is not the coordinator's";
+    EXPECT_TRUE(moves_on()) << "no process obeys without the coordinator's key";
   }
   ASSERT_EQ(stop({"--now", "--key-file", coordinator}), 0) << output();
   EXPECT_EQ(wait_for(sim.child), 0) << sim.printed();

@@ -64,7 +64,7 @@ TEST_F(Waiting, ForAnotherProcessEndsAtOnceToo) {
 TEST_F(Waiting, ForAProgramsWordsEndsWithIt) {
   hand("ergocast-agent");
   Program& told = hand("ergocast", {"doctor", "--help"});
-  expect_parts(failures_of([&] { return told.prints("what it never says"); }),
+  expect_parts(failures_of([&] { return told.prints("what it never prints"); }),
                {"/ergocast doctor --help", "exited with code 0 while the test waited"});
 }
 
