@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps positions on a grid, compares each picture of the team with the previous one, and divides
-// what is new for a browser into frames.
+// Keeps positions on a grid, and compares each picture of the team with the previous one. Divides
+// the new data for a browser into frames.
 #include "cli/live_team.h"
 
 #include <algorithm>

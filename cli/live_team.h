@@ -29,7 +29,7 @@ class LiveTeam {
   static constexpr std::size_t kMostLines = 400, kMostIncidents = 500;
 
   /// @param since  when the listening began
-  /// @param authenticated  whether its messages were checked with the team's key
+  /// @param authenticated  whether messages are checked with the team's key
   /// @param replay  whether `ergocast replay` sends it
   LiveTeam(RunId run, Instant since, bool authenticated, bool replay = false);
 

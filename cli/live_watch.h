@@ -37,8 +37,8 @@ class LiveWatch {
   virtual void listen(int wake_fd) = 0;
   /// Whether the mission's end has been received.
   virtual bool over() const = 0;
-  /// Makes the page show the record of `run_dir`, or the received data if there is none. A thread
-  /// of its own reads the record, because a long one takes a while.
+  /// Makes the page show the record of `run_dir`, or the received data if there is none. A separate
+  /// thread reads the record, because a long one takes a while.
   virtual void finish() = 0;
 };
 

@@ -16,7 +16,7 @@
 namespace ergocast::cli {
 
 /// Observes a simulation and writes events-000.lcm, events-001.lcm, … Each message has the time of
-/// its tick, counted from when this object is made.
+/// its tick, counted from the construction of this object.
 class SimulatedEvents : public lab::SimulationObserver {
  public:
   SimulatedEvents(const std::filesystem::path& folder, const Mission& mission);

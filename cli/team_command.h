@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The common part of `ergocast stop`, `pause` and `resume`. They listen for the runs on a URL, send
-// a request to one of them, and wait until its messages show that it obeys.
+// The common part of `ergocast stop`, `pause` and `resume`. They listen for the runs on a URL and
+// send a request to one of them. Then they wait until its messages show that it obeys.
 #pragma once
 
 #include <chrono>

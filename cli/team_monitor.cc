@@ -59,7 +59,7 @@ void MonitoredRun::on(const AgentStatus& status, const Arrival& arrival) {
   agents_[author] = status.phase == AgentPhase::kFinished;
 }
 
-/// Each robot may have a driver of its own, which keeps its own ticks.
+/// Each robot may have its own driver, which has its own ticks.
 void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
   if (!arrival.fresh) return;
   note_end(arrival, world.last);

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr PacingClock::duration kOverdue = 2 * kAgentStatusPeriod;
 /// In lockstep every agent waits now and then; a longer wait is reported.
 constexpr PacingClock::duration kStandstill = 750ms;
-/// An event loop blocked for so long, or an agent so far behind the world, is late.
+/// An agent is late if its event loop was blocked, or it is behind the world, by this time.
 constexpr double kLate_s = 0.5;
 /// In a replay, the status of an agent comes each mission second.
 constexpr double kSilentInReplay_s = 6;

@@ -79,7 +79,7 @@ class TeamView {
   static constexpr Role kRole = Role::kMonitor;
 
   /// @param since  when the listening began
-  /// @param authenticated  whether its messages were checked with the team's key
+  /// @param authenticated  whether messages are checked with the team's key
   /// @param replay  whether `ergocast replay` sends it; then silence is measured in mission time
   TeamView(RunId run, Instant since, bool authenticated = false, bool replay = false);
 

@@ -84,7 +84,7 @@ build_preset() {
   wanted="$root ${arguments[*]}; $(optional_packages); presets $(cksum <"$root/CMakePresets.json")"
 
   # After a change of arguments, presets, packages or the checkout's path, start from an empty
-  # cache, so that no old setting remains.
+  # cache: no old setting remains.
   if [ ! -f "$folder/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
     say "Configuring $folder"
     rm -f "$stamp"

@@ -105,7 +105,7 @@ void MujocoPhysics::build() {
     robot.body = named(model_.get(), mjOBJ_BODY, "robot" + number);
     robot.qpos_at = model_->jnt_qposadr[joint];
     robot.dof_at = model_->jnt_dofadr[joint];
-    // Each actuator has one number of its own.
+    // Each actuator has one activation value.
     robot.act_at = named(model_.get(), mjOBJ_ACTUATOR, actuator);
     std::copy(robot.qpos.begin(), robot.qpos.end(), data_->qpos + robot.qpos_at);
     std::copy(robot.qvel.begin(), robot.qvel.end(), data_->qvel + robot.dof_at);

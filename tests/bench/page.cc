@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures the page in Chromium: the time until any tick of a long record is on the screen, and the
-// time of the browser's main thread for a frame of a live team. `cpu_ms` is processor time of that
-// thread for a seek or a frame, from reading a message to drawing; it depends less on other load.
+// main thread's time for a frame of a live team. `cpu_ms` is processor time of that thread for a
+// seek or a frame, from reading a message to drawing; it depends less on other load.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
 

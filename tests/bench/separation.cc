@@ -51,7 +51,7 @@ void KeepApart(benchmark::State& state) {
 }
 BENCHMARK(KeepApart)->ArgNames({"near", "error_m"})->ArgsProduct({{0, 6, 63}, {0, 2}});
 
-/// Vehicles of up to 20 m/s whose braking paths, up to 40 m, are near each other, or which are
+/// Vehicles of up to 20 m/s. Their braking paths, up to 40 m, are near each other, or they are
 /// within 4 m of contact.
 void KeepWaysApart(benchmark::State& state, const VehicleLimits& vehicle) {
   Mission mission = mission_with(0);

@@ -214,7 +214,7 @@ namespace {
 
 /// The messages that a book's owner has received.
 struct Overheard {
-  std::map<AgentId, Tick> heard;  // when the newest beacon came
+  std::map<AgentId, Tick> heard;  // tick of the newest beacon
   std::map<AgentId, bool> known;  // ever
   std::vector<Neighbour> sent;
 };

@@ -38,7 +38,7 @@ class RecordedTeam : public ::testing::Test {
                big_endian(channel.size(), 4) + big_endian(bytes.size(), 4) + channel;
     for (const std::byte byte : bytes) events_ += static_cast<char>(byte);
   }
-  /// Half seconds of a team whose agents of `ids` are alive.
+  /// Adds half seconds of a team in which the agents of `ids` run.
   void record_ticks(std::chrono::microseconds duration, const std::vector<AgentId>& ids) {
     for (const auto end = now_ + duration; now_ < end; now_ += 500ms) {
       tick_ += 5;

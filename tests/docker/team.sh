@@ -63,7 +63,7 @@ start_team() {
 stop_team() {
   expect compose down
   [ -z "$(docker ps -aq)" ] || fail "docker-compose down leaves $(docker ps -a)"
-  rm -f "$ERGOCAST_RUNS"/*/events-*.lcm  # the test's disk lies in memory
+  rm -f "$ERGOCAST_RUNS"/*/events-*.lcm  # the test's disk is in memory
 }
 
 one() { containers "$1" | head -n 1; }

@@ -19,7 +19,7 @@ class Partition : public TeamOnHosts {
     }
     return coverage;
   }
-  /// Whether `who` reports that it holds at least so much of all other agents.
+  /// Whether `who` reports at least that much coverage of all other agents.
   static bool holds(const BusObserver& observer, AgentId who, const Coverage& coverage) {
     for (AgentId whose = 0; whose < 4; ++whose) {
       const std::int64_t held = observer.held(observer.member(who), observer.member(whose));

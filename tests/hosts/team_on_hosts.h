@@ -42,8 +42,8 @@ class OnHosts : public ByHand {
   std::optional<Lan> lan_;
 };
 
-/// The default scenario's four agents: the coordinator on host 0, world and logger on host 1, agent
-/// i on host i but agent 3 on host 2, too.
+/// The default scenario's four agents: the coordinator on host 0, world and logger on host 1,
+/// agents 0, 1 and 2 on the hosts of these numbers, agent 3 also on host 2.
 class TeamOnHosts : public OnHosts {
  protected:
   /// The default scenario, lasting that long, with more fields in its `time`.

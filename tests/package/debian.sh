@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Sourced by the tests of the Debian package (bash): a separate bare Debian 12 for the test.
 #   SCRIPT BUILD_DIR
-# It is in memory, in a mount namespace that ends with the test, and its processes are in such a
-# process namespace. So nothing remains in any case.
+# It is in memory, and its mounts and processes are in namespaces that end with the test. So nothing
+# remains in any case.
 #   ERGOCAST_DEBIAN_CACHE   where bare systems and fetched packages are kept (default: BUILD_DIR/debian)
 # shellcheck shell=bash
 set -euo pipefail

@@ -28,8 +28,8 @@ constexpr const char* kDistance =
     "    1.9779984951 * l - 2.428592205 * m + 0.4505937099 * s,"
     "    0.0259040371 * l + 0.7827717662 * m - 0.808675766 * s]; };"
     "const distance = (p, q) => Math.hypot(...lab(p).map((v, i) => v - lab(q)[i]));"
-    // The pixel of the shading in the middle of the first cell of the target that is between two
-    // levels of 255.
+    // Finds the first cell whose density is between `low` and `high` of 255, and reads the
+    // shading's pixel in its middle.
     "const { S, view } = ergocast, { density: { width, height, cells }, size } = S.run;"
     "const pixel = (low, high) => { const i = cells.findIndex(v => v >= low && v <= high);"
     "  const x = view.px((i % width + 0.5) / width * size[0]);"

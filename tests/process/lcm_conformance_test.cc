@@ -171,8 +171,8 @@ TEST_F(Conformance, LcmsLoggerRecordsUsAndItsPlayerReachesUs) {
       return std::find(heard.begin(), heard.end(), one) != heard.end();
     });
   };
-  // Each message is repeated until it is in the file, because the logger's start is not visible,
-  // and it buffers few messages.
+  // Each message is repeated until it is in the file: the logger's start is not visible, and it
+  // buffers few messages.
   for (const Message& message : under_every_name()) {
     expected.push_back(printed(message));
     ASSERT_TRUE(eventually(

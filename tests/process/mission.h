@@ -5,7 +5,7 @@
 // disturbed mission either lasts until the test ends it (launch_endless()), or stands still at a
 // tick while the test acts (launch_held()). A test waits for visible events and never sleeps
 // instead. tests/at_speed checks that: with ERGOCAST_TEST_SPEED=fast, which is read here, missions
-// run several times as fast and the default one is over after a tenth of its ticks.
+// run several times as fast. The default mission then has a tenth of its ticks.
 #pragma once
 
 #include <algorithm>
@@ -47,8 +47,8 @@ class RunningMission : public OwnHost {
   /// The tick at which a held mission waits.
   static constexpr int kHeldTick = 50;
 
-  /// The default scenario with other or more fields in its `time` and `agents`. A tick may stay
-  /// unanswered, and the team gather, for longer than any test takes, unless a test says otherwise.
+  /// The default scenario with other or more fields in its `time` and `agents`. By default,
+  /// time-outs for answers and for gathering the team are longer than any test.
   std::filesystem::path scenario(std::string time = "", const std::string& agents = "") {
     std::string text = text_of(scenario_file("quadrimodal_corners"));
     std::vector<std::string> others{"dt_s: 0.1", "duration_s: 600", "pace: LOCKSTEP",
@@ -96,7 +96,7 @@ class RunningMission : public OwnHost {
   }
   static void release() { signal_to(agent(0), SIGCONT); }
 
-  /// Stops the first of the programs started from now on that is about to send a message on that
+  /// For programs started from now on: stops the first one before it sends a message on that
   /// channel at that tick or later.
   void hold_next(const std::string& channel, Tick tick) const {
     const auto once = folder_ / "hold";

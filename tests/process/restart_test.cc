@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kill -9: neither the loss of one process nor of several at once ends a mission, and a restarted
-// process continues where it was.
+// kill -9: the loss of one or several processes never ends a mission, and a restarted process
+// continues where it was.
 #include <lcm/lcm-cpp.hpp>
 #include <tuple>
 

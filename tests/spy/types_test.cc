@@ -47,7 +47,7 @@ class SpyJar : public WithProbe {
     plan_of_file(folder_ / "one_bell.textproto");
   }
   std::filesystem::path plan_file() const { return folder_ / "plan.binpb"; }
-  /// The places of "agent" and "target" in the map of those axes, as shares of its sides.
+  /// The positions of "agent" and "target" in the map of those axes, as shares of its sides.
   std::map<std::string, std::pair<double, double>> places(const std::string& axes) {
     std::istringstream printed(ask({"map", plan_file(), axes}));
     std::map<std::string, std::pair<double, double>> found;
