@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast check`: loads a scenario, prints its warnings, and then prints either one line about it
-// or its whole text with all defaults.
+// `ergocast check`: loads a scenario and prints its warnings. Then it prints one line about it, or
+// its whole text with all defaults.
 #include <cstdio>
 #include <memory>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Commands that a person can give again.
+// Command lines that a person can run again.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace ergocast::cli {
 
-/// The options that say `overrides`, as the words of a command; --seed is left out.
+/// `overrides` as the options of a command, one word each; --seed is left out.
 std::vector<std::string> words_of(const Overrides& overrides);
 
-/// The options that say `overrides`, each after a space, as a shell reads them; --seed is left out.
+/// `overrides` as options for a shell, each after a space; --seed is left out.
 std::string options_of(const Overrides& overrides);
 
 }  // namespace ergocast::cli

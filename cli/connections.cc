@@ -19,12 +19,12 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kTextPeriod = 100ms;  // of a stream
-constexpr auto kSignPeriod = 2s;     // of signs of life in a stream without news
-/// For what a client still sends after its answer: a socket that is closed before it was read
-/// resets the connection, and the answer may be lost.
+constexpr auto kSignPeriod = 2s;     // between keep-alive texts of an idle stream
+/// How long to read what a client still sends after its answer. Closing a socket with unread data
+/// resets the connection, and the client may lose the answer.
 constexpr auto kGoodbye = 1s;
-constexpr int kAccepted = 64;    // at most in a turn
-constexpr int kReactions = 128;  // the same; more than there are places
+constexpr int kAccepted = 64;    // at most in one call of serve()
+constexpr int kReactions = 128;  // the same; above the number of places
 
 Connections::Answer refusal(const char* status, const char* why) {
   const std::string text = std::string(why) + '\n';
@@ -40,7 +40,7 @@ std::array<unsigned char, 16> address_in(const sockaddr_storage& from) {
   std::array<unsigned char, 16> address{};
   if (from.ss_family == AF_INET6) {
     const auto& six = reinterpret_cast<const sockaddr_in6&>(from).sin6_addr;
-    // An IPv4 client of a socket for both families differs in the second half.
+    // On a dual-stack socket, the addresses of IPv4 clients differ in the second half.
     const std::size_t size = IN6_IS_ADDR_V4MAPPED(&six) ? 16 : 8;
     std::memcpy(address.data(), &six, size);
   } else {
@@ -49,7 +49,7 @@ std::array<unsigned char, 16> address_in(const sockaddr_storage& from) {
   return address;
 }
 
-/// Whether the last call would have waited.
+/// Whether the last call failed because it would have blocked.
 bool nothing_yet() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 }  // namespace
@@ -72,7 +72,7 @@ Connections::Connections(int listener, Handler handler)
 void Connections::serve(Instant now) {
   std::array<epoll_event, kReactions> events{};
   const int count = epoll_wait(epoll_.fd(), events.data(), kReactions, 0);
-  // Before newcomers: a request that is complete needs its place no longer.
+  // Existing connections come before new ones: a complete request frees its place.
   for (int i = 0; i < count; ++i) {
     const auto& event = events[static_cast<std::size_t>(i)];
     if (Connection* one = find(event.data.fd)) react(*one, event.events, now);
@@ -134,7 +134,7 @@ void Connections::read_head(Connection& one, Instant now) {
   }
 }
 
-/// Whatever comes after the request means nothing.
+/// Reads and discards everything after the request.
 void Connections::discard(Connection& one) {
   std::array<char, 16384> bytes;
   const ssize_t count = recv(one.socket.fd(), bytes.data(), bytes.size(), 0);
@@ -155,7 +155,7 @@ void Connections::answer(Connection& one, Answer answer, Instant now) {
   push(one, now);
 }
 
-/// Sends what the socket takes.
+/// Sends as much as the socket takes.
 void Connections::push(Connection& one, Instant now) {
   while (!one.unsent().empty()) {
     const std::string_view rest = one.unsent();
@@ -176,13 +176,13 @@ void Connections::push(Connection& one, Instant now) {
   watch(one);
 }
 
-/// What time alone brings about.
+/// Handles deadlines and due stream texts.
 void Connections::tend(Connection& one, Instant now) {
   const bool stuck = !one.unsent().empty() && now - one.moved > kTakePatience;
   switch (one.phase) {
     case Phase::kHead:
       if (now - one.since <= kHeadPatience) return;
-      // Browsers open some connections in advance, and send nothing.
+      // Browsers open some connections in advance and send nothing on them.
       if (one.head.empty()) return drop(one);
       return answer(one, refusal("408 Request Timeout", "the request did not come in time"), now);
     case Phase::kAnswer:
@@ -197,7 +197,8 @@ void Connections::tend(Connection& one, Instant now) {
   }
 }
 
-/// A client that is slow is not asked for, and gets more at a time.
+/// Asks the stream only when the client has taken the previous text. A slow client gets a longer
+/// text less often.
 void Connections::take_text(Connection& one, Instant now) {
   auto text = one.stream();
   one.next_text = now + kTextPeriod;
@@ -220,7 +221,7 @@ void Connections::enter(Connection& one, Phase phase, Instant now) {
   one.since = one.moved = now;
 }
 
-/// Lets a connection go if all places of that phase are taken.
+/// Closes a connection if all places of that phase are taken.
 void Connections::make_room(Phase phase) {
   const int most = phase == Phase::kHead     ? kMostHeads
                    : phase == Phase::kStream ? kMostStreams

@@ -21,14 +21,14 @@
 
 namespace ergocast::cli {
 
-/// Serves all of them in one thread without waiting: a connection costs bounded memory, and no
-/// other connection's time.
+/// Serves all connections in one thread without blocking. A connection uses bounded memory and
+/// delays no other connection.
 ///
-/// No client can lock out another. There are separate places for connections that have not sent
-/// their whole request yet, for those that take an answer, and for event streams. Where all are
-/// taken, a newcomer gets the place of another connection: of the address that holds most of them,
-/// the one that has been stuck or open for longest. (Refusing the newcomer instead would let 16
-/// idle streams close the page to everybody.)
+/// No client can lock out another. Incomplete requests, answers in progress and event streams have
+/// separate places. If all places of one sort are taken, a new connection replaces an old one. The
+/// old one is chosen at the address with the most places: its connection that has been stuck or
+/// open for longest. (If new connections were refused instead, 16 idle streams would close the page
+/// to everybody.)
 class Connections {
  public:
   /// Limit (Page): unfinished requests to a page. Beyond it: the next gets the place of the oldest,
@@ -43,7 +43,9 @@ class Connections {
   /// The longest request line with all its headers. A longer one gets 431.
   /// Limit (Page): length of the head of a request [bytes]. Beyond it: the answer is 431.
   static constexpr std::size_t kLongestHead = 16 << 10;
-  /// For the whole head, however it trickles in; then 408.
+  /// The time to send the whole head; a client that needs longer gets 408.
+  static constexpr auto kHeadPatience = std::chrono::seconds(5);
+  /// How long a client may take no byte of the data that waits for it.
   /// Limit (Page): time in which the head of a request must arrive [s]. Beyond it: the answer is
   /// 408.
   static constexpr auto kHeadPatience = std::chrono::seconds(5);
@@ -53,35 +55,35 @@ class Connections {
   static constexpr auto kTakePatience = std::chrono::seconds(5);
 
   using Text = std::shared_ptr<const std::string>;
-  /// The next text of an event stream, empty if there is nothing new; nothing at its end.
+  /// Returns the next text of an event stream: empty if there is nothing new, nullopt at its end.
   using Stream = std::function<std::optional<std::string>()>;
   struct Answer {
     std::string head;  ///< up to the empty line, or with a short body
     Text body;         ///< the rest, one copy for all clients; may be null
-    Stream stream;     ///< texts that follow until its end; none: the answer is complete
+    Stream stream;     ///< texts that follow `body`; null: there are none
   };
   /// Answers the head of a request, which ends with the empty line.
   using Handler = std::function<Answer(const std::string& head)>;
 
-  /// @param listener  a non-blocking socket that listens; remains the caller's
+  /// @param listener  a non-blocking listening socket, which the caller owns
   Connections(int listener, Handler handler);
   Connections(const Connections&) = delete;
   Connections& operator=(const Connections&) = delete;
 
-  /// Readable as soon as serve() has something to do. For streams and deadlines serve() is needed
-  /// ten times a second besides.
+  /// Readable as soon as serve() has something to do. For streams and deadlines, also call serve()
+  /// ten times a second.
   int fd() const { return epoll_.fd(); }
   void serve(Instant now);
 
  private:
   enum class Phase { kHead, kAnswer, kStream, kLeaving };
-  /// A client's address. IPv6 addresses keep their network half alone, because one host may have
-  /// all the others.
+  /// A client's address. Only the network half of an IPv6 address counts, because one host may have
+  /// all addresses of a network.
   using Address = std::array<unsigned char, 16>;
 
   struct Connection {
     Connection(Socket owned, const Address& from) : socket(std::move(owned)), address(from) {}
-    /// What waits to be sent.
+    /// The bytes that wait to be sent.
     std::string_view unsent() const;
 
     Socket socket;

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A host takes a line of about twenty bytes.
+/// A line for one host has about twenty bytes.
 /// Limit (Commands): length of a file of hosts [bytes]. Beyond it: `deploy` refuses it.
 constexpr std::size_t kMaxHostsBytes = std::size_t{1} << 18;
 
@@ -48,8 +48,8 @@ bool is_plain(const std::string& path) {
          });
 }
 
-/// The options by which the coordinator changes the scenario as it was changed here. A service
-/// splits them at spaces.
+/// The options with which the coordinator makes the same changes to the scenario. A service splits
+/// them at spaces.
 std::vector<std::string> overrides_of(const DeployOptions& options,
                                       std::vector<Problem>& problems) {
   std::vector<std::string> words = words_of(options.overrides);
@@ -133,7 +133,7 @@ int write_files(const std::vector<TextFile>& files, const fs::path& folder) {
   return kExitDone;
 }
 
-/// Puts the table that `mission` names beside the written files.
+/// Copies the table of modes that `mission` names to the folder of the written files.
 int write_modes(const DeployMission& mission, const Basis& basis, const fs::path& folder) {
   if (mission.modes.empty()) return kExitDone;
   if (const auto problem = save_table(*basis.table, folder))
@@ -142,7 +142,7 @@ int write_modes(const DeployMission& mission, const Basis& basis, const fs::path
   return kExitDone;
 }
 
-/// Where each robot has a driver of its own, it is the user's to start.
+/// The user starts the drivers if each robot has its own.
 void note_drivers(const Mission& mission, const std::vector<DeployHost>& hosts, const LcmUrl& url) {
   const bool driven = std::ranges::any_of(hosts, &DeployHost::driver);
   if (!driven || !uses_beacons(mission)) return;
@@ -152,7 +152,7 @@ void note_drivers(const Mission& mission, const std::vector<DeployHost>& hosts, 
                url.base().c_str());
 }
 
-/// Scripts take the table from beside themselves.
+/// Scripts read the table from their own folder.
 void note_modes(const DeployOptions& options, const Basis& basis) {
   if (!basis.free_domain || !options.out.empty()) return;
   std::fprintf(stderr,

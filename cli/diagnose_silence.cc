@@ -5,7 +5,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// Why every message was refused, if the cause is the keys.
+/// Explains why every message was refused, if the keys are the cause.
 std::string key_problem(const BusOptions& options, const RefusalCounts& refused) {
   const auto count = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)]; };
   const std::string url = options.url.base();
@@ -26,7 +26,7 @@ std::string why_nobody(const BusOptions& options, const Transport& transport) {
   std::string text =
       "nobody of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
       " was heard on " + url +
-      ": is the mission flying, and on this URL? `ergocast list` names the runs that "
+      ": is the mission running, and on this URL? `ergocast list` names the runs that "
       "you started here, `ergocast doctor --lcm-url \"" +
       url + "\"` checks the network between the hosts";
   if (transport.unknown_format().count > 0) {

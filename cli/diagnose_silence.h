@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Why a command that listens to a team receives nothing.
+// Explains why a command that listens to a team receives nothing.
 #pragma once
 
 #include <string>

@@ -45,10 +45,11 @@ Finding not_tried(const doctor::Examination& host, int seconds) {
     return {"peers", Level::kProblem, "not tried: LCM cannot be used on this host",
             "Mend the other problems first.", ""};
   }
-  return {"peers", Level::kWarning, "not tried: the port is in use",
-          "Probes would disturb whoever is there. With another port, they take the same way:",
-          "ergocast doctor --peer " + std::to_string(seconds) + " --lcm-url '" + host.port_taken +
-              "'   # on every host"};
+  return {
+      "peers", Level::kWarning, "not tried: the port is in use",
+      "Probes would disturb the processes at this port. With another port, they take the same way:",
+      "ergocast doctor --peer " + std::to_string(seconds) + " --lcm-url '" + host.port_taken +
+          "'   # on every host"};
 }
 
 doctor::PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& authenticator,

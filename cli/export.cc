@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast export`: a record for Foxglove, spreadsheets and maps.
+// `ergocast export`: writes a record for Foxglove, spreadsheets and maps.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -39,7 +39,7 @@ GeoPlace parse_origin(const std::string& text) {
   return {*latitude, *longitude};
 }
 
-/// Writes to another name first, so that a reader never sees an incomplete file.
+/// Writes to a temporary name first, so that a reader never sees an incomplete file.
 std::optional<std::string> write_whole(const ExportRecord& record, const fs::path& file,
                                        std::optional<std::string> (*write)(const ExportRecord&,
                                                                            const fs::path&)) {

@@ -11,14 +11,14 @@
 namespace ergocast::cli {
 namespace {
 
-/// The live runs, after a line for each entry of no use.
+/// Returns the live runs; prints a line for each unusable entry.
 std::vector<LiveRun> runs_here() {
   LiveRuns found = live_runs();
   for (const std::string& warning : found.warnings) print_message("warning: " + warning);
   return std::move(found.runs);
 }
 
-/// Takes the key of the run, unless another one was given.
+/// Uses the key of the run, unless another one was given.
 std::optional<int> take_key(const CLI::App& command, const LiveRun& run, BusOptions& options) {
   const CLI::Option* option = command.get_option_no_throw("--key-file");
   if (option == nullptr || option->count() > 0 || run.key_file.empty()) return std::nullopt;
@@ -32,7 +32,8 @@ std::optional<int> take_key(const CLI::App& command, const LiveRun& run, BusOpti
   return std::nullopt;
 }
 
-/// Takes the URL, the run and its key; an exit code, after an error message, if it cannot be used.
+/// Sets the URL, the run and its key. If the run cannot be used, prints an error and returns an
+/// exit code.
 std::optional<int> take(const CLI::App& command, const LiveRun& run, BusOptions& options) {
   if (run.version != version()) {
     return report_error(kExitBadInput, "run " + to_hex(run.run) + " of " + run.scenario +

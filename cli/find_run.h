@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which run, or runs, a command is about that was given no URL.
+// Finds the runs that a command without a URL applies to.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,33 +12,34 @@
 
 namespace ergocast::cli {
 
-/// The live runs of this user, or the one with that number; after a line for each entry of the
-/// registry that is of no use.
+/// The live runs of this user, or the one with that number. Prints a line for each unusable entry
+/// of the registry.
 /// @param run  0: all
 std::vector<LiveRun> live_runs_named(RunId run);
 
-/// Asks to choose one of several live runs; the exit code.
+/// Asks the user to choose one of several live runs; returns the exit code.
 int choose(const std::vector<LiveRun>& runs);
 
-/// Says in --help where find_run() looks. @pre the command has --lcm-url
+/// Explains in --help where find_run() looks. @pre the command has --lcm-url
 void describe_search(CLI::App& command);
 
-/// If neither --lcm-url nor $LCM_DEFAULT_URL names a URL: gives `options` URL, run and key of the
-/// only live run of this user, or of the one that --run-id names, and `run_dir` its folder. Nothing
-/// changes if there is none: the team may have been started by hand, on LCM's own group. Returns an
-/// exit code, after an error message, if several runs are live or the one cannot be used.
+/// Does nothing if --lcm-url or $LCM_DEFAULT_URL names a URL. Otherwise takes the only live run of
+/// this user, or the one that --run-id names. Sets URL, run and key in `options`, and its folder in
+/// `run_dir`. Without a live run nothing changes: the team may have been started by hand, on LCM's
+/// own group. If several runs are live or the run cannot be used, prints an error and returns an
+/// exit code.
 /// @param command  that has the options
 std::optional<int> find_run(const CLI::App& command, BusOptions& options,
                             std::filesystem::path* run_dir = nullptr);
 
-/// The teams that a command is about which takes more than one.
+/// The teams that a command for several teams applies to.
 struct FoundRuns {
   std::vector<BusOptions> runs;
-  int code = kExitDone;  ///< the exit code of live runs that cannot be used, after an error each
+  int code = kExitDone;  ///< the exit code of unusable live runs; an error was printed for each
 };
 
-/// The team on the given URL; without one every live run of this user, or the one that --run-id
-/// names; if there is none, `options` as they are.
+/// Returns the team on the given URL. Without a URL, returns every live run of this user, or the
+/// one that --run-id names. If there is no live run, returns `options` unchanged.
 /// @param command  that has the options
 FoundRuns find_runs(const CLI::App& command, const BusOptions& options);
 

@@ -12,7 +12,7 @@ std::string team_key_file(const std::string& name);
 /// The key file of the processes that start and end missions.
 std::string coordinator_key_file(const std::string& name);
 
-/// Why a team cannot use the two files of `name`, with the remedy; nothing if it can.
+/// The reason why a team cannot use the two files of `name`, with the remedy; nullopt if it can.
 std::optional<std::string> problem_of_key_pair(const std::string& name);
 
 }  // namespace ergocast::cli

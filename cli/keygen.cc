@@ -23,8 +23,9 @@ int make_keys(const std::string& name) {
     return report_error(kExitBadInput, *problem);
   }
   std::printf(
-      "%s: for every agent, world, driver, logger and whoever watches\n"
-      "%s: for who starts, pauses and ends missions: coordinator, ergocast run, stop, pause, "
+      "%s: for every agent, world, driver, logger and monitor\n"
+      "%s: for processes that start, pause and end missions: coordinator, ergocast run, stop, "
+      "pause, "
       "resume\n"
       "Copy them over a channel you trust; each program takes its own as --key-file or in "
       "ERGOCAST_KEY_FILE.\n",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps a state for each process; every turn decides whether to wait, restart, report or kill.
+// Keeps a state for each process. Each call of attend() decides whether to wait, restart, report or
+// kill.
 #include "cli/launcher.h"
 
 #include <unistd.h>
@@ -22,9 +23,9 @@ using namespace std::chrono_literals;
 /// Limit (Commands): restarts of a process under `ergocast run`. Beyond it: the mission goes on
 /// without it, or fails.
 constexpr int kMaxRestarts = 3;
-/// A program that the system cannot execute for so long counts as lost.
+/// A program counts as lost if the system cannot execute it for this time.
 constexpr auto kLaunchPatience = 30s;
-/// How long processes may take to end by themselves, and then after SIGTERM.
+/// How long processes may take to exit by themselves, and then after SIGTERM.
 constexpr auto kEndPatience = 6s;
 constexpr auto kPoliteness = 2s;
 constexpr int kLinesOfExplanation = 5;
@@ -43,20 +44,20 @@ void Launcher::plan(Role role, std::string name, const std::filesystem::path& pr
   auto& command = process.program.command;
   command.insert(command.end(), arguments.begin(), arguments.end());
   process.program.log = setup_.run_dir / "log" / (name + ".log");
-  // The logger still closes its files if the launcher dies; the others have nothing to save.
+  // The logger can still close its files if the launcher is killed; other processes have none.
   process.program.signal_if_orphaned = role == Role::kLogger ? SIGTERM : SIGKILL;
   process.name = std::move(name);
   processes_.push_back(std::move(process));
 }
 
-/// Gives the process a file under that option, unless there is none.
+/// Passes the file to the process with that option, if there is a file.
 void Launcher::hand(Process& process, const char* option, const std::optional<SealedFile>& file) {
   if (!file) return;
   const std::string path = process.program.hand(file->descriptor());
   process.program.command.insert(process.program.command.end(), {option, path});
 }
 
-/// A program in the world's place may start another one, which gets no descriptor of ours.
+/// A program that replaces the world may start another one, which inherits no descriptor of ours.
 void Launcher::hand_key(Process& process) const {
   if (process.role != Role::kWorld || is_simulated())
     return hand(process, "--key-file", setup_.key);
@@ -117,8 +118,8 @@ void Launcher::attend(Instant now, Stage stage) {
   if (escalated_ < 2 && now - *end_expected_ > kEndPatience + kPoliteness) escalate(2);
 }
 
-/// What a team has covered is in its agents alone. If all have stopped at once, the law begins
-/// anew; the record still has the whole mission.
+/// Only the agents keep the team's coverage. If all agents have stopped at once, the law starts
+/// from zero; the record still has the whole mission.
 void Launcher::note_forgetting(Stage stage) {
   if (stage != Stage::kRunning || end_expected_ || failure_ || forgot_) return;
   forgot_ = std::none_of(processes_.begin(), processes_.end(), [](Process& process) {
@@ -134,7 +135,7 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   if (implies_the_end(process)) expect_end(now);
   if (ended_as_expected(process)) return;
   const bool refused = code == kExitUnavailable || !process.child->executed();
-  // A process that ends in order may have received the mission's end before us.
+  // A process that exits normally may have received the mission's end before us.
   if (code != kExitDone && !(refused && process.refusals > 0)) explain(process);
   if (end_expected_ && process.role == Role::kLogger && code && code != kExitDone) {
     fail("the record cannot be written; see log/logger.log");
@@ -143,11 +144,11 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   if (refused) return try_again(process, now, stage, process.child->executed());
   process.refusals = 0;
   process.without_program_since.reset();
-  // A coordinator yields to another coordinator, or has found no mission to take over.
+  // The coordinator has yielded to another one, or has found no mission to take over.
   const bool gave_way = process.role == Role::kCoordinator && code == kExitFailed;
   const bool too_often = code != kExitDone && process.restarts >= kMaxRestarts;
   if (gave_way || too_often) return give_up(process, stage);
-  // The agent has reached the last tick, or left. Without a coordinator no successor is admitted.
+  // The agent has reached the last tick or left. Without a coordinator no successor can join.
   if (process.role == Role::kAgent && code == kExitDone && leaderless()) return;
   process.restart_at = now + restart_delay(process.restarts);
 }
@@ -183,8 +184,8 @@ void Launcher::restart(Process& process, Instant now, Stage stage) {
 }
 
 /// A refused start does not count as a restart, because the process never ran. Without LCM no team
-/// flies on this host, so we retry without limit. A missing program may be gone for good, so we
-/// retry for kLaunchPatience.
+/// can run on this host, so we retry without limit. A missing program may not come back, so we
+/// retry only for kLaunchPatience.
 void Launcher::try_again(Process& process, Instant now, Stage stage, bool executed) {
   if (executed) process.without_program_since.reset();
   if (!executed && !process.without_program_since) process.without_program_since = now;

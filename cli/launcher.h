@@ -29,26 +29,26 @@ class Launcher {
  public:
   struct Setup {
     std::filesystem::path programs;  ///< folder of the ergocast-* executables
-    std::filesystem::path world;     ///< the simulated world, or who takes its place
+    std::filesystem::path world;     ///< the simulated world, or the program in its place
     std::vector<std::string> world_arguments;
     std::filesystem::path run_dir;
     LcmUrl url;
     RunId run = 0;
     std::filesystem::path key_file;  ///< the key file that can sign; empty: no key
-    /// What the processes are handed. So a file that is removed or overwritten under way harms none
-    /// that is started again.
+    /// Sealed copies that the processes inherit. A restarted process works although the original
+    /// file was removed or overwritten.
     std::optional<SealedFile> plan;   ///< compiled; needed
     std::optional<SealedFile> modes;  ///< the mission's table of modes, if it has one
     std::optional<SealedFile> key;    ///< what key_file held, if there is one
     int agents = 0;
-    std::vector<std::string> kinds;  ///< that of each agent; of a team whose agents are alike none
+    std::vector<std::string> kinds;  ///< the kind of each agent; empty if all agents are alike
     std::int64_t event_log_mib = kEventLogMib;
     bool event_log_zstd = false;
   };
 
   Launcher(Setup setup, ProgressDisplay& display) : setup_(std::move(setup)), display_(display) {}
 
-  /// Starts logger, world, coordinator and agents. An error if one cannot be started at all.
+  /// Starts logger, world, coordinator and agents. Returns an error if one cannot be started.
   std::optional<std::string> start();
 
   /// Checks the processes at `now`: reports each process that ended, restarts it while the mission
@@ -58,10 +58,10 @@ class Launcher {
   /// True when every process has ended and none will be started again.
   bool all_ended();
 
-  /// The mission ends: attend() restarts no process any more and waits for the processes to exit.
+  /// Call when the mission ends: attend() restarts no more processes and waits until they exit.
   void expect_end(Instant now);
 
-  /// Makes the mission a failure; the first reason counts.
+  /// Marks the mission as failed; the first reason counts.
   void fail(std::string reason);
   const std::optional<std::string>& failure() const { return failure_; }
   /// Whether the logger has ended with an error.
@@ -71,10 +71,10 @@ class Launcher {
   /// Whether a coordinator process runs.
   bool led() { return runs(Role::kCoordinator); }
   /// "; coordinator was killed by SIGSEGV after 3 restarts": the processes that the team lost, and
-  /// whether it lost its memory.
+  /// whether it lost its coverage.
   std::string losses() const;
 
-  /// Ends the remaining processes: 1 by SIGTERM, 2 by SIGKILL.
+  /// Ends the remaining processes: by SIGTERM if `how_hard` is 1, by SIGKILL if it is 2.
   void escalate(int how_hard);
 
   int restarts() const;
@@ -116,7 +116,7 @@ class Launcher {
   std::vector<Process> processes_;
   std::optional<std::string> failure_;
   std::optional<Instant> end_expected_;
-  bool forgot_ = false;  // all agents had stopped at once
+  bool forgot_ = false;  // all agents had stopped at the same time
   int escalated_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast list`: prints the registry of live runs, and which processes they have.
+// `ergocast list`: prints the registry of live runs, and their processes.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -16,7 +16,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// A large team's processes fill the screen.
+/// Above this size, a list of all processes would fill the screen.
 constexpr std::size_t kMostNamed = 12;
 
 struct ListOptions {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps positions on a grid, compares each look at the team with the one before, and cuts what is
-// new for a browser into frames.
+// Keeps positions on a grid, and compares each picture of the team with the previous one. Divides
+// the new data for a browser into frames.
 #include "cli/live_team.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// An agent that was silent for less mission time than this twice was not missed.
+/// A gap of at most twice this mission time is not reported.
 constexpr double kShortGap_s = 1;
 constexpr std::int64_t kPositionsPerFrame = 20'000;
 
@@ -74,7 +74,7 @@ void LiveTeam::look(Instant now) {
   const TeamPicture picture = notice(now);
   end_text_ = picture.reason;
   status_ = Json::parse(team_json(picture));
-  // The page's time goes on in a pause, as the record's does.
+  // The page's time continues in a pause, as in the record.
   status_["t_s"] = static_cast<double>(picture.tick) * picture.dt_s;
   history_.add(picture);
   ++statuses_;
@@ -124,7 +124,7 @@ void LiveTeam::compare(const AgentRow& row, double t_s, double dt_s) {
   last = {row.condition, row.author.incarnation, heard_s};
 }
 
-/// By the ticks that MISSION names, whenever they are noticed.
+/// Uses the ticks that MISSION names, not the time at which they arrive.
 void LiveTeam::note_holds(Tick tick, double dt_s) {
   const auto holds = me_.follower().holds();
   const auto named = static_cast<std::size_t>(named_changes(holds));
@@ -161,7 +161,7 @@ void LiveTeam::add_incident(Incident incident) {
   ++incident_changes_;
 }
 
-/// The bar of the outage that ends now, at its first incident.
+/// Ends the bar of the outage, which is drawn at its first incident.
 void LiveTeam::close_outage(const std::string& of, double t_s) {
   const auto outage = outages_.find(of);
   if (outage == outages_.end()) return;

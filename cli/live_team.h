@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flying team as frames for the page: messages and log lines in, JSON out. No clock, no I/O.
+// A running team as frames for the page: messages and log lines in, JSON out. No clock, no I/O.
 #pragma once
 
 #include <cstddef>
@@ -20,34 +20,35 @@
 
 namespace ergocast {
 
-/// Everything is kept once, up to limits, and each browser has a cursor into it: a slow one gets
-/// later what it missed, and costs no memory. Not thread-safe.
+/// Everything is kept once, up to limits, and each browser has a cursor into it. A slow browser
+/// gets what it missed later and uses no extra memory. Not thread-safe.
 class LiveTeam {
  public:
   static constexpr Role kRole = Role::kMonitor;
-  /// Longer histories lose their oldest lines and incidents.
+  /// The limits of the history; above them the oldest lines and incidents are dropped.
+  static constexpr std::size_t kMostLines = 400, kMostIncidents = 500;
   /// Limit (Page): log lines on the page. Beyond it: the oldest is removed.
   static constexpr std::size_t kMostLines = 400;
   /// Limit (Page): incidents on the page. Beyond it: the oldest is removed.
   static constexpr std::size_t kMostIncidents = 500;
 
   /// @param since  when the listening began
-  /// @param authenticated  whether what it receives was checked with the team's key
+  /// @param authenticated  whether messages are checked with the team's key
   /// @param replay  whether `ergocast replay` sends it
   LiveTeam(RunId run, Instant since, bool authenticated, bool replay = false);
 
-  /// The mission and its target density, where they are known before a message comes.
+  /// Sets mission and target density if they are known before the first message.
   void begin(const Mission& mission, const Field& density);
 
   /// @pre the message is of this view's run
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void log(std::string line);
-  /// Looks for incidents; to be called a few times a second. The picture that it has looked at.
+  /// Looks for incidents; call it a few times a second. Returns the picture that it examined.
   TeamPicture notice(Instant now);
-  /// The same, and keeps what the agents say for the browsers.
+  /// Does the same, and keeps the agents' statuses for the browsers.
   void look(Instant now);
-  /// [{"t", "kind", "sign", "text", "agent", "until"}, …] as the page gets them, the last two only
-  /// if they are known.
+  /// [{"t", "kind", "sign", "text", "agent", "until"}, …] as the page gets them. The last two keys
+  /// are there only if known.
   nlohmann::ordered_json incidents_json() const;
 
   RunId run() const { return me_.run(); }
@@ -55,14 +56,14 @@ class LiveTeam {
   bool over() const { return view_.over(); }
   const std::string& end_text() const { return end_text_; }
 
-  /// What a browser has got.
+  /// What a browser has received so far.
   struct Cursor {
-    Tick stride = 0;  ///< of the rows; when it grows, the browser begins anew
+    Tick stride = 0;  ///< of the rows; when it grows, the browser starts again
     std::int64_t row = 0;
     std::uint64_t statuses = 0, incidents = 0, rosters = 0, lines = 0;
   };
-  /// The next server-sent events for it; empty if there is nothing new. One call gives a bounded
-  /// number of rows; `more` tells whether others wait.
+  /// The next server-sent events for that browser; empty if there is nothing new. One call returns
+  /// a bounded number of rows; `more` is set if others wait.
   std::string frame(Cursor& cursor, bool& more) const;
 
  private:
@@ -100,8 +101,8 @@ class LiveTeam {
   std::map<AgentId, LastLook> last_looks_;
   std::map<std::string, bool> trouble_;  // of the processes, by name
   std::deque<Incident> incidents_;
-  std::map<std::string, double> outages_;  // that go on: since when
-  std::size_t changes_noted_ = 0;          // of holds: their begins and ends
+  std::map<std::string, double> outages_;  // that continue: their starts
+  std::size_t changes_noted_ = 0;          // starts and ends of holds
   std::deque<std::string> lines_;
   std::uint64_t statuses_ = 0, incident_changes_ = 0, rosters_ = 0, line_count_ = 0;
   std::int64_t roster_revision_ = -1;

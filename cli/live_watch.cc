@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Feeds the team's picture with what it hears, and cuts it into frames for the browsers.
+// Feeds received messages to the team's picture, and divides it into frames for the browsers.
 #include "cli/live_watch.h"
 
 #include <chrono>
@@ -25,12 +25,12 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr auto kPageTurn = 50ms;  // between two looks at the page's clients, at most
+constexpr auto kPageTurn = 50ms;  // the maximum between two calls of the page's server
 constexpr auto kLook = 250ms;
 /// Limit (Page): frames for one browser in a turn of 0.1 s. Beyond it: the rest follows in the next
 /// turns.
 constexpr int kFramesAtOnce = 8;
-/// Agents report the end before the coordinator tells its reason.
+/// Agents report the end before the coordinator reports its reason.
 constexpr auto kLastFrame = 1s;
 
 std::string dumped(const Json& json) {
@@ -41,12 +41,12 @@ Connections::Text shared_text(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
 }
 
-/// The page of a record, and the record for pages that were open before.
+/// The page of a record, and the record's data for pages that were already open.
 struct RecordedPage {
   Connections::Text page, record;
 };
 
-/// Nothing if the record cannot be read, also for want of memory.
+/// Nullopt if the record cannot be read, or if memory is missing.
 RecordedPage read_page(const std::filesystem::path& run_dir, const Mission& mission) {
   try {
     const auto read = recorded_page_data(run_dir, mission);
@@ -54,7 +54,7 @@ RecordedPage read_page(const std::filesystem::path& run_dir, const Mission& miss
       return {recorded_page(*data), shared_text(dumped((*data)["record"]))};
     }
   } catch (const std::exception&) {
-    // The page keeps what it has heard.
+    // The page keeps the data that it has received.
   }
   return {};
 }

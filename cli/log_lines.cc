@@ -13,7 +13,7 @@ namespace {
 /// Limit (Page): length of a log line on the page [bytes]. Beyond it: the rest is cut off.
 constexpr std::size_t kLongestLine = 400;
 
-/// Adds the whole lines of `text`; returns how many bytes they have.
+/// Adds the complete lines of `text`; returns their size in bytes.
 std::size_t add_lines(std::string_view text, std::vector<std::string>& lines) {
   std::size_t begin = 0;
   for (auto end = text.find('\n'); end != text.npos; end = text.find('\n', begin)) {

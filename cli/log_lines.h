@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lines that the processes of a mission log, while they do so.
+// Follows the log lines of a mission's processes.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace ergocast::cli {
 
-/// Follows all files of a folder. Lines are cut to a limit, and of a file that grows faster than it
-/// is read only the newest are taken.
+/// Follows all files of a folder. Long lines are cut. If a file grows faster than it is read, only
+/// its newest lines are taken.
 class LogLines {
  public:
   static constexpr std::uintmax_t kMostBytes = 16 << 10;  ///< of a file at once
 
   explicit LogLines(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// The whole lines since the last call, by their times; none if there is no such folder.
+  /// The complete lines since the last call, sorted by time; empty if the folder does not exist.
   std::vector<std::string> take();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each message moves the mission to a later stage, never back; the clock shows when a stage is
+// A message can move the mission to a later stage, never back. The clock shows when a stage is
 // overdue.
 #include "cli/mission_watch.h"
 

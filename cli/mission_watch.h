@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `ergocast run` receives of its mission and shows of it.
+// What `ergocast run` receives and shows of its mission.
 //
-// It sends STOP, and repeats MISSION to a process that asks: agents do so, too, but all of them may
-// have stopped, and a coordinator that is started then finds the mission nowhere else.
+// It sends STOP, and repeats MISSION to a process that asks. Agents repeat MISSION, too. But if all
+// agents have stopped, a new coordinator can get the mission only here.
 #pragma once
 
 #include <optional>
@@ -46,7 +46,7 @@ class MissionWatch {
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   Stage stage() const { return stage_; }
-  /// Whether the coordinator reported that the mission failed. reason() tells why it ended.
+  /// Whether the coordinator reported that the mission failed; reason() returns the cause.
   bool failed() const { return failed_; }
   /// Whether the mission is over because it reached its last tick.
   bool complete() const {
@@ -54,15 +54,15 @@ class MissionWatch {
   }
   const std::string& reason() const { return reason_; }
 
-  /// Lockstep: the error text of a tick that has not been answered in time.
+  /// Lockstep: the error text of a tick that was not answered in time.
   std::optional<std::string> overdue(Instant now) const;
-  /// Whether the mission flies and no agent has flown for so long that none is left.
+  /// Whether the mission is running, but no agent has reported for so long that none can be left.
   bool deserted(Instant now) const;
 
   /// Repeats the mission, as its coordinator sent it, to a process that has asked for it.
   void answer(Transport& transport, Instant now);
 
-  /// From now on repeat() sends STOP; only the first call has an effect.
+  /// Makes repeat() send STOP from now on; only the first call has an effect.
   void stop(bool failed, std::string reason);
   bool stopping() const { return stop_.has_value(); }
   /// @param led  whether a coordinator can end the mission in order
@@ -89,7 +89,7 @@ class MissionWatch {
   std::string reason_;
   Tick tick_ = 0;           // the newest, whether it counts or not
   Instant tick_since_{};    // when the last tick or stage was reached
-  Instant last_running_{};  // when an agent was last heard that flies
+  Instant last_running_{};  // when a running agent was last received
 
   std::optional<StopRequest> stop_;
   std::optional<Instant> stopping_since_;

@@ -8,9 +8,9 @@
 namespace ergocast {
 namespace {
 
-/// As the summary's reason does.
+/// The summary's reason has the same threshold.
 constexpr double kNotableShare = 0.01;
-/// Fewer are late at the start of any team.
+/// Each team has a few late commands at its start.
 constexpr std::int64_t kFew = 20;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Late commands as people are told of them: their share, and the warning where it is notable.
+// Reports late commands to people: their share, and a warning if it is large.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 namespace ergocast {
 
 /// The share of the commands that were missing when their tick ended.
-/// @param ticks  that the world has had
+/// @param ticks  ticks of the world so far
 double late_share(std::int64_t missed_deadlines, Tick ticks, int agents);
 
-/// A sentence with the remedies; nothing below one in a hundred, or for a few late commands.
+/// A warning with the remedies; empty below one in a hundred, or for a few late commands.
 std::optional<std::string> overload_warning(std::int64_t missed_deadlines, Tick ticks, int agents);
 
 }  // namespace ergocast

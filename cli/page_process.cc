@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps the socket, the pipe and the command, and starts the process from them as often as needed.
+// Keeps the socket, the pipe and the command, and starts the process with them as often as needed.
 #include "cli/page_process.h"
 
 #include <fcntl.h>
@@ -21,12 +21,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long the process may take to end by itself.
+/// How long the process may take to exit by itself.
 constexpr auto kEndOfPage = 2s;
-/// More ends of the process are not reported.
+/// Further ends of the process are not reported.
 constexpr int kMostEndsToReport = 5;
 
-/// In the format of the processes' logs (runtime/logging.cc).
+/// Uses the format of the processes' logs (runtime/logging.cc).
 std::shared_ptr<spdlog::logger> open_log(const std::filesystem::path& file) {
   try {
     auto log = std::make_shared<spdlog::logger>(

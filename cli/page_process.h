@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of `ergocast run --watch`: a process of its own, whose end costs the mission nothing.
+// The page of `ergocast run --watch` in a separate process. If it ends, the mission continues.
 //
 // The socket is bound here, before the mission starts, and outlives the process that serves it. So
-// the address and the token stay, and browsers that connect meanwhile wait for the next process.
+// a restarted process has the same address and token, and waiting browsers connect to it.
 #pragma once
 
 #include <filesystem>
@@ -23,8 +23,8 @@ class logger;
 
 namespace ergocast::cli {
 
-/// What the process inherits, besides its options (cli/run_page.cc): descriptors, and a variable of
-/// its environment, which only this user can read.
+/// The process inherits these descriptors, its options (cli/run_page.cc), and an environment
+/// variable that only this user can read.
 inline constexpr int kPageSocket = 3;
 inline constexpr int kPageUntil = 4;  ///< a pipe that ends when the mission has ended
 inline constexpr const char* kPageToken = "ERGOCAST_PAGE_TOKEN";
@@ -40,7 +40,7 @@ class PageProcess {
     PageOptions page;
   };
 
-  /// An error tells why the page's address cannot be used.
+  /// Returns an error if the page's address cannot be used.
   static std::variant<std::unique_ptr<PageProcess>, std::string> start(const Setup& setup,
                                                                        ProgressDisplay& display);
   PageProcess(const PageProcess&) = delete;
@@ -49,11 +49,11 @@ class PageProcess {
   ~PageProcess();
 
   std::string url() const { return socket_.url(); }
-  /// Starts the process again if it has ended; to be called all the time.
+  /// Starts the process again if it has ended; call it often.
   void attend(Instant now);
-  /// A line for the page's log, which goes to log/run.log.
+  /// Writes a line to the page's log, log/run.log.
   void print(const std::string& line);
-  /// The record is complete: from now on the page shows it.
+  /// Call when the record is complete: from now on the page shows it.
   void finish() { running_.reset(); }
 
  private:
@@ -62,7 +62,7 @@ class PageProcess {
 
   PageSocket socket_;
   ProgressDisplay& display_;
-  std::shared_ptr<spdlog::logger> log_;  // null: it cannot be written
+  std::shared_ptr<spdlog::logger> log_;  // null: it cannot be opened
   std::optional<Socket> until_;          // the process's end of the pipe
   std::optional<Socket> running_;        // ours, as long as the mission runs
   Child::Program program_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// cpp-httplib reads a request's head from memory and writes the head of the answer there. (Its own
-// server waits for each client in a thread, and neither the number of headers nor their time has a
-// limit.) Each request passes the guard first.
+// cpp-httplib reads a request's head from memory and writes the answer's head to memory. (Its own
+// server needs a thread for each client, and limits neither the number of headers nor their time.)
+// The guard checks each request first.
 #include "cli/page_server.h"
 
 #include <httplib.h>
@@ -20,7 +20,7 @@ using httplib::Response;
 /// 414.
 constexpr std::size_t kLongest = 1024;  // of a request's target
 
-/// Takes as long for a wrong text as for the right one of its length.
+/// Takes equal time for every text of one length, right or wrong.
 bool same(const std::string& a, const std::string& b) {
   unsigned difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
@@ -29,15 +29,15 @@ bool same(const std::string& a, const std::string& b) {
   return difference == 0;
 }
 
-/// Always false, for those that ask whether a request passes.
+/// Always returns false, so that a check can return its result.
 bool refuse(Response& response, int status, const std::string& why) {
   response.status = status;
   response.set_content(why + "\n", "text/plain; charset=utf-8");
   return false;
 }
 
-/// Without the lines that ask for parts of an answer, which is always sent whole: cpp-httplib would
-/// make as many copies of the page as they ask for.
+/// Removes the headers that request parts of an answer. Answers are always sent whole, because
+/// cpp-httplib would copy the page once for each part.
 std::string without_ranges(const std::string& head) {
   std::string kept;
   for (std::size_t begin = 0, end = 0; begin < head.size(); begin = end) {
@@ -47,7 +47,7 @@ std::string without_ranges(const std::string& head) {
   return kept;
 }
 
-/// The two ends of a connection that cpp-httplib believes in.
+/// Stands for a connection in cpp-httplib; reads and writes memory.
 class Exchange final : public httplib::Stream {
  public:
   explicit Exchange(std::string request) : request_(std::move(request)) {}
@@ -117,7 +117,7 @@ class Server final : public PageServer {
     response.set_header("Cache-Control", "no-store");
   }
 
-  /// Whether the request passes; if not, the answer says why.
+  /// Whether the request passes; if not, the answer contains the reason.
   bool admit(const Request& request, Response& response) const {
     if (request.method != "GET") return refuse(response, 405, "only GET");
     if (request.target.size() > kLongest) return refuse(response, 414, "too long");
@@ -142,7 +142,7 @@ class Server final : public PageServer {
     const std::string& token = socket_.token();
     if (request.path == "/" && same(request.get_param_value("token"), token)) {
       response.set_header("Set-Cookie", name + '=' + token + "; HttpOnly; SameSite=Strict; Path=/");
-      response.set_redirect("/", 303);  // the address bar shows it no more
+      response.set_redirect("/", 303);  // removes the token from the address bar
       return false;
     }
     const std::string cookies = "; " + request.get_header_value("Cookie") + ';',
@@ -173,14 +173,14 @@ class Server final : public PageServer {
         return;
       }
       answer_.stream = content_.events();
-      // Without a length: the answer ends with the connection.
+      // No length: the answer ends with the connection.
       response.set_content_provider("text/event-stream",
                                     [](std::size_t, httplib::DataSink&) { return false; });
     });
   }
 
-  /// The text follows the head that cpp-httplib writes, which does not get it: one copy of a text
-  /// serves all browsers.
+  /// The text follows the head that cpp-httplib writes. It does not pass through cpp-httplib, so
+  /// that all browsers share one copy.
   void send(Response& response, Connections::Text text, const char* type) {
     response.set_content_provider(
         text->size(), type, [](std::size_t, std::size_t, httplib::DataSink&) { return false; });

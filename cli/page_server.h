@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serves a page to browsers. It answers GET only, and nothing that it gets has any other effect.
+// Serves a page to browsers. It answers only GET, and a request has no other effect.
 //
-// Against other pages in the same browser: a Host header that is not ours is refused (DNS
-// rebinding), so are requests that other origins make; no answer allows another origin to read it.
-// Beyond this host a token is needed, which becomes a cookie that no script reads and no other site
-// sends. Against clients that send or take nothing, or too much: cli/connections.h.
+// Protection against other pages in the same browser: a foreign Host header is refused (DNS
+// rebinding). Requests of other origins are refused, and no answer allows another origin to read
+// it. Other hosts need a token, which becomes a cookie that no script reads and no other site
+// sends. cli/connections.h protects against clients that are too slow or send too much.
 #pragma once
 
 #include <functional>
@@ -22,17 +22,17 @@ class PageServer {
   struct Content {
     std::function<Connections::Text()> page;
     std::string policy;  ///< the header Content-Security-Policy
-    /// JSON of the record; null as long as there is none.
+    /// JSON of the record; null while there is none.
     std::function<Connections::Text()> record;
-    /// One for each browser; none: there are no events.
+    /// Makes the event stream of one browser; null: there are no events.
     std::function<Connections::Stream()> events;
   };
 
-  /// @param socket  whose connections it takes
+  /// @param socket  accepts the connections
   static std::unique_ptr<PageServer> make(PageSocket socket, Content content);
   virtual ~PageServer() = default;
 
-  /// Those of Connections.
+  /// Same as in Connections.
   virtual int fd() const = 0;
   virtual void serve(Instant now) = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binds to the first address that the system names for a text.
+// Binds to the first address to which the system resolves a text.
 #include "cli/page_socket.h"
 
 #include <arpa/inet.h>
@@ -36,7 +36,7 @@ std::string address_in(const PageOptions& options) {
   return options.listen.empty() ? "127.0.0.1" : options.listen;
 }
 
-/// A socket that listens, or why there is none, as errno says it.
+/// A listening socket, or the error as errno.
 std::variant<Socket, int> listening(const std::string& address, int port) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
@@ -60,7 +60,7 @@ int port_of(int fd) {
   sockaddr_storage address{};
   socklen_t length = sizeof address;
   getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length);
-  // Both families have it at the same place.
+  // Both address families store the port at the same place.
   return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
 }
 
@@ -70,8 +70,8 @@ std::string name_in(const std::string& host) {
   return host.substr(0, host.find(':', bracket == host.npos ? 0 : bracket));
 }
 
-/// Whether it is an address: a page of another site cannot make a browser use one as our name,
-/// because it has no name to rebind.
+/// Whether the text is an address. DNS rebinding needs a name, so an address in a Host header is
+/// safe.
 bool is_address(const std::string& name) {
   unsigned char bytes[16];
   if (name.starts_with('[') && name.ends_with(']')) {

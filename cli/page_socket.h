@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a page is served: its socket, the address that a person opens, and the token.
+// The socket of a page, the address that a person opens, and the token.
 #pragma once
 
 #include <string>
@@ -16,26 +16,26 @@ struct PageOptions {
 
 class PageSocket {
  public:
-  /// Taken if it is free and no other is asked for.
+  /// The default port, if it is free.
   static constexpr int kUsualPort = 8765;
 
-  /// A new socket that listens, with a new token. An error tells why it cannot.
+  /// A new listening socket with a new token; an error if it cannot listen.
   static std::variant<PageSocket, std::string> open(const PageOptions& options);
 
-  /// A socket that another process has opened for `listen`, with its token. An error if `fd` is
-  /// none.
+  /// A socket that another process has opened for `listen`, with its token. An error if `fd` is no
+  /// such socket.
   static std::variant<PageSocket, std::string> inherited(int fd, const std::string& listen,
                                                          std::string token);
 
   int fd() const { return socket_.fd(); }  ///< non-blocking
   const std::string& address() const { return address_; }
   int port() const { return port_; }
-  /// Empty: none is needed, because only this host reaches the page.
+  /// The token; empty if only this host reaches the page, which then needs none.
   const std::string& token() const { return token_; }
-  /// What a person opens, with the token if there is one.
+  /// The address that a person opens, with the token if there is one.
   std::string url() const;
-  /// Whether a Host header means this server. Where only this host reaches the page, no name of the
-  /// network does: another host may answer for that name, and lead a browser here.
+  /// Whether a Host header names this server. If only this host reaches the page, no network name
+  /// is accepted: another host could resolve that name to this address.
   bool is_called(const std::string& host) const;
 
  private:

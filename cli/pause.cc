@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast pause` and `ergocast resume`: a team stands for a while, and goes on.
+// `ergocast pause` and `ergocast resume`: stop a team for a while and continue.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long to wait for the whole mission, which a large team says in turn.
+/// How long to wait for the whole mission; agents of a large team send it in turn.
 constexpr auto kMissionPatience = 20s;
 constexpr auto kPeriod = 100ms;
 
@@ -41,7 +41,7 @@ class Pausing : public TeamCommand {
 
   const MonitoredRun& team() const { return runs_.begin()->second; }
   std::string mission_time(Tick tick) const { return team().mission_time(tick); }
-  /// Whether the tick is named.
+  /// Whether a message names the tick.
   bool is_done() const { return is_open(team().holds()) == pauses_; }
   Tick named() const {
     const Hold& last = team().holds().back();
@@ -74,7 +74,7 @@ class Pausing : public TeamCommand {
     return kExitDone;
   }
 
-  /// Nothing depends on when it comes, so nobody waits for it.
+  /// Nothing depends on its time of arrival, so no process waits for it.
   int report_resumption() const {
     std::printf("the mission goes on at %s, in %.1f s\n", mission_time(named()).c_str(),
                 team().seconds_until(named()));
@@ -129,7 +129,7 @@ class Pausing : public TeamCommand {
 
   const bool pauses_;
   Header header_{0, kOperator, random_identity(), 0, 0};
-  std::int32_t changes_ = 0;  // as the team had made when it was heard first
+  std::int32_t changes_ = 0;  // as counted in the first MISSION
   Instant next_{};
 };
 

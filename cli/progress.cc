@@ -64,7 +64,7 @@ void ProgressDisplay::show(const MissionProgress& progress) {
   line_.show(static_cast<double>(progress.tick) / all, facts(progress, ticks_per_s));
 }
 
-/// Once: the line says it again and again.
+/// Reports it once; the progress line repeats it.
 void ProgressDisplay::warn_of_overload(const MissionProgress& at) {
   if (overload_reported_) return;
   const auto warning = overload_warning(at.missed_deadlines, at.world_tick, at.agents_expected);

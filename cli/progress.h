@@ -13,25 +13,25 @@ namespace ergocast::cli {
 
 struct MissionProgress {
   Tick tick = 0, tick_count = 0;  ///< of ticks that count
-  Tick world_tick = 0;            ///< goes on in a pause
+  Tick world_tick = 0;            ///< continues in a pause
   double dt_s = 0;
   double ergodic_metric = 0;
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0;
   AgentId silent_agent = kUnassigned;
   bool world_silent = false, coordinator_silent = false, paused = false;
-  bool free_domain = false;  ///< the metric is in its modes, not in cosines
+  bool free_domain = false;  ///< the metric is in modes of the free domain, not in cosines
 };
 
 class ProgressDisplay {
  public:
-  /// Shows it, if the last display was long enough ago.
+  /// Shows the progress, if the last display was long enough ago.
   void show(const MissionProgress& progress);
   void print(const std::string& line) {
     line_.print(line);
     if (also_) also_(line);
   }
-  /// Who gets the lines besides.
+  /// A second receiver of the lines.
   void also_to(std::function<void(const std::string&)> listener) { also_ = std::move(listener); }
   void end() { line_.end(); }
 

@@ -22,7 +22,7 @@ class ProgressLine {
   /// @param share  the completed share, 0 … 1
   /// @param facts  the most important first; as many as fit are shown
   void show(double share, const std::vector<std::string>& facts);
-  /// A line of its own, above the bar.
+  /// Prints a separate line above the bar.
   void print(const std::string& line);
   /// Leaves the bar's last state on the terminal; later output begins on a new line.
   void end();
@@ -39,7 +39,7 @@ class Rate {
  public:
   /// Counts per second; 0 until it is known.
   double measure(double count, ProgressLine::Clock::time_point now);
-  /// The same while the counting stands still on purpose: that time is left out.
+  /// The same during an intended pause of the count: the pause is left out.
   double interrupt(double count, ProgressLine::Clock::time_point now);
 
  private:
@@ -49,7 +49,7 @@ class Rate {
 
 /// "1:02", "1:02:03".
 std::string clock_text(double seconds);
-/// One number in printf's format.
+/// Formats one number with printf's format.
 std::string text_of(const char* format, double value);
 
 }  // namespace ergocast::cli

@@ -27,14 +27,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A recorded file may be longer than its source by so much, and is still read to show where.
+/// A recorded file that is longer than its source by at most this is read to show the difference.
 constexpr std::size_t kMostSurplusBytes = std::size_t{1} << 20;
 
 std::string why_left_out(const FileProblem& problem) {
   return problem.kind == FileProblem::Kind::kMissing ? "is not there" : problem.what;
 }
 
-/// Line `number`, from 1, of `text`; a text for people if `text` is shorter.
+/// Line `number` of `text`, counted from 1. If `text` is shorter, a text that states this.
 std::string line_of(const std::string& text, std::size_t number) {
   constexpr std::size_t kLongest = 160;
   std::istringstream lines(text);
@@ -158,7 +158,7 @@ Json expected_summary(const Json& recorded, const Mission& mission, const fs::pa
   return summary;
 }
 
-/// The file and the key of a value, for people.
+/// The file and the key of a value, as text for people.
 std::string place_of(const fs::path& file, const std::string& pointer) {
   return file.string() + ", " + pointer;
 }
@@ -232,7 +232,7 @@ FileComparison compare_metrics(const fs::path& run_dir, const Expectation& expec
   metrics.compared = std::to_string(rows) + " rows";
   if (!expectation.whole) {
     metrics.compared += ": tick, t_s, ergodic_metric";
-    metrics.left_out = "the other columns are what agents said of the network";
+    metrics.left_out = "the other columns are the agents' reports of the network";
   }
   return metrics;
 }

@@ -22,7 +22,7 @@ struct FileComparison {
   std::string difference;  ///< the first: place and both values, in lines; empty: none
 };
 
-/// What a record should contain, computed by a recorder that received the recorded trajectory.
+/// The expected contents of a record, computed by a recorder that received the recorded trajectory.
 struct Expectation {
   const Recorder& recorder;
   std::string metrics;      ///< what it wrote to metrics.csv
@@ -33,8 +33,8 @@ struct Expectation {
   std::int64_t clamped_commands = 0;  ///< of the simulation; counts if `complete`
 };
 
-/// Compares scenario.textproto, plan.binpb and target_density.csv with each other and the summary's
-/// hash.
+/// Compares scenario.textproto, plan.binpb and target_density.csv with each other and with the
+/// summary's hash.
 /// @param mission  read from plan.binpb
 /// @param summary  an object
 std::vector<FileComparison> compare_sources(const std::filesystem::path& run_dir,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plays the logged statuses to a LiveTeam, on a clock that stands still while the log pauses, and
-// keeps looks at it, fewer as the mission grows longer.
+// Passes the logged statuses to a LiveTeam, and keeps samples of it. The clock stops while the log
+// pauses. A longer mission has samples at longer intervals.
 #include "cli/recorded_team.h"
 
 #include <algorithm>
@@ -25,9 +25,9 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr auto kLook = 250ms;     // between two looks for incidents
-constexpr auto kShortest = 50ms;  // between two of the looks that are kept
-constexpr auto kPause = 1s;       // the statuses of a team come twice a second
+constexpr auto kLook = 250ms;          // between two searches for incidents
+constexpr auto kShortest = 50ms;       // between two samples that are kept
+constexpr auto kPause = 1s;            // the statuses of a team come twice a second
 /// Limit (Page): statuses on the page. Beyond it: a live page keeps no newer ones; the page of a
 /// record has fewer.
 constexpr std::size_t kMost = 20'000;  // rows of agents that are kept
@@ -40,8 +40,8 @@ struct Look {
   std::vector<AgentRow> agents;
 };
 
-/// The logger accepted it under the team's key, which a reader need not have. The plain tag in its
-/// place lets the codec check everything else.
+/// The logger accepted the message with the team's key, which a reader need not have. The tag is
+/// replaced by the keyless one, so that the codec can check everything else.
 std::optional<Message> accepted(std::span<const std::byte> bytes, std::vector<std::byte>& copy) {
   if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return {};
   copy.assign(bytes.begin(), bytes.end());
@@ -58,7 +58,7 @@ class Listener {
   bool wants(std::string_view channel, std::int64_t time_us) {
     advance(std::chrono::microseconds(time_us));
     if (is_channel_of(kTypes<AgentStatus, TeamStatus, MissionPart>, channel)) return true;
-    // Of the world's many states a few show that it lives.
+    // The world sends many states; a few are enough to show that it runs.
     if (!is_channel_of(kTypes<WorldState>, channel) || now_ < next_state_) return false;
     next_state_ = now_ + kShortest;
     return true;
@@ -118,7 +118,7 @@ void Listener::keep(const TeamPicture& picture) {
   period_ *= 2;
 }
 
-/// The lists of one agent, as long as those before the look at which it appears.
+/// The lists of one agent, padded up to the sample in which it appears.
 Json& lists_of(Json& agents, AgentId id, std::size_t looks) {
   Json& lists = agents[std::to_string(id)];
   for (const char* key :

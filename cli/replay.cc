@@ -25,11 +25,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A group of its own: what listens to teams does not even get the datagrams.
+/// A separate multicast group: programs that listen to teams do not even receive the datagrams.
 constexpr const char* kReplayGroup = "239.255.76.68";
-/// So often the newest states are sent again, for displays that come late.
+/// The period with which the newest states are sent again, for displays that start late.
 constexpr auto kRepeatPeriod = 1s;
-/// Longer than agents are silent.
+/// Longer than the interval between an agent's messages.
 constexpr auto kReplayLookAround = 3 * kAgentStatusPeriod / 2;
 constexpr double kSlowest = 0.01;
 /// Limit (Commands): rate of a replay [mission seconds a second]. Beyond it: the command is
@@ -43,7 +43,7 @@ struct ReplayOptions {
   double rate = 1, from_s = 0;
 };
 
-/// Whether anybody sends on the URL; an error if LCM cannot be used.
+/// Whether any process sends on the URL; an error if LCM cannot be used.
 std::variant<bool, std::string> is_taken(const LcmUrl& url, StopSignals& signals) {
   BusOptions bus;
   bus.url = url;
@@ -68,7 +68,7 @@ class Player {
         duration_s_(static_cast<double>(mission.timing.tick_count) * mission.timing.dt_s),
         options_(options) {}
 
-  /// Until the record's end, a problem or a signal. The number of messages sent.
+  /// Runs until the record's end, a problem or a signal. Returns the number of messages sent.
   std::int64_t play() {
     const Instant start = now();
     bool begun = false;
@@ -102,7 +102,7 @@ class Player {
     }
     writer_.flush();
   }
-  /// False if a signal came.
+  /// Returns false if a signal arrived.
   bool wait_until(Instant due) {
     while (true) {
       const Instant at = now();
@@ -136,7 +136,7 @@ class Player {
 
 void announce(const LcmUrl& url, const Mission& mission, const ReplayOptions& options) {
   std::printf(
-      "replay of %s from %s, %s times as fast as it flew in mission time\n"
+      "replay of %s from %s, %s times as fast as mission time\n"
       "  ergocast status --watch --lcm-url \"%s\"\n"
       "  ergocast watch --lcm-url \"%s\"\n"
       "  ergocast spy --lcm-url \"%s\"\n",

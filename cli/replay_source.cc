@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decodes each logged message for its kind and tick; its bytes stay as they were.
+// Decodes each logged message to get its kind and tick; its bytes stay unchanged.
 #include "cli/replay_source.h"
 
 #include <algorithm>

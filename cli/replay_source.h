@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The messages of a record in their order, each with its mission time and its buses. No clock.
+// The messages of a record in order, each with its mission time and its buses. No clock.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ namespace ergocast::cli {
 struct ReplayedMessage {
   double t_s = 0;  ///< mission time
   std::vector<Bus> buses;
-  std::string channel;  ///< the replay's own name of it
+  std::string channel;  ///< the channel's name in the replay
   std::vector<std::byte> bytes;
 };
 
 class ReplaySource {
  public:
-  /// @param seal  with the team's key, if the run had one
+  /// @param seal  has the team's key, if the run had one
   static std::variant<ReplaySource, std::string> open(const std::filesystem::path& run_dir,
                                                       const Mission& mission,
                                                       const MessageAuthenticator& authenticator);
@@ -37,8 +37,8 @@ class ReplaySource {
   const std::optional<std::string>& problem() const { return problem_; }
   RunId run() const { return run_; }
 
-  /// What a display needs that comes now: the mission, and the newest message of each process about
-  /// its state.
+  /// The messages for a display that starts now: the mission, and the newest state message of each
+  /// process.
   std::vector<const ReplayedMessage*> newest() const;
 
  private:

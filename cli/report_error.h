@@ -17,8 +17,8 @@ namespace ergocast::cli {
 /// Longer lists and lines are cut.
 inline constexpr std::size_t kMostLines = 50, kMostBytes = 2000;
 
-/// Writes one line for people. All errors of the command pass here: the text may contain bytes of a
-/// file or of another host, and printable() escapes those that would control the terminal.
+/// Writes one line for people. All errors of the command pass through here. The text may contain
+/// bytes of a file or another host; printable() escapes those that would control the terminal.
 inline void print_message(const std::string& text) {
   const std::string shown = printable(std::string_view(text).substr(0, kMostBytes));
   std::fprintf(stderr, "%s%s\n", shown.c_str(), text.size() > kMostBytes ? "…" : "");

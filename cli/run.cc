@@ -53,7 +53,7 @@ constexpr auto kNoteAfter = 500ms;
 constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
 
 /// Returns when all processes have ended.
-/// @param page  null: there is none
+/// @param page  may be null
 void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, PageProcess* page,
                StopSignals& signals, ProgressDisplay& display) {
   int asked = 0;
@@ -100,7 +100,7 @@ nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
           {"tick_count", timing.tick_count}};
 }
 
-/// The summary that this run's logger has written. Whatever else stands in the folder is none.
+/// The summary that this run's logger has written. Any other file of that name does not count.
 std::optional<nlohmann::ordered_json> loggers_summary(const Launcher::Setup& setup) {
   auto read = read_summary(setup.run_dir);
   auto* const summary = std::get_if<nlohmann::ordered_json>(&read);
@@ -152,7 +152,7 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
                 (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
 }
 
-/// What other commands of this user find out about the run.
+/// The registry's entry of this run, for other commands of this user.
 LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
   return {.run = setup.run,
           .scenario = scenario.name(),
@@ -192,7 +192,7 @@ void show_record(PageProcess& page, StopSignals& signals) {
   for (pollfd stop{signals.fd(), POLLIN, 0}; poll(&stop, 1, kAttend_ms) <= 0;) page.attend(now());
 }
 
-/// The program in the world's place; an error if there is none.
+/// The program that replaces the world; an error if it does not exist.
 std::variant<fs::path, std::string> world_program(const fs::path& wanted,
                                                   const fs::path& programs) {
   if (wanted.empty()) return programs / "ergocast-sim";
@@ -202,8 +202,8 @@ std::variant<fs::path, std::string> world_program(const fs::path& wanted,
          " (name one that takes --lcm-url and --run-id, with its folder)";
 }
 
-/// What the processes are handed, from what this process has read or computed; an error if there is
-/// no memory for it.
+/// Makes the sealed files that the processes inherit, from the data in this process. An error if
+/// memory is missing.
 /// @pre options.seal can sign
 std::optional<std::string> seal_files(const RunOptions& options, const Mission& mission,
                                       Launcher::Setup& setup) {

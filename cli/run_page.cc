@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast run-page`: what `ergocast run --watch` starts to serve its page (cli/page_process.h).
+// `ergocast run-page`: `ergocast run --watch` starts it to serve its page (cli/page_process.h).
 #include <poll.h>
 #include <sys/resource.h>
 
@@ -25,13 +25,13 @@ struct RunPageOptions : BusOptions {
   std::string listen;
 };
 
-/// As long as the mission runs, this process may allocate so much; then it ends, and the next one
-/// begins anew. What browsers and the network cause takes a small part of it.
+/// The memory limit of this process while the mission runs. Above it the process ends, and a new
+/// one replaces it. Browsers and the network can cause only a small part of it.
 /// Limit (Page): memory of the page's process while a mission runs [bytes]. Beyond it: it ends and
 /// is started again.
 constexpr rlim_t kMostMemory = rlim_t{512} << 20;
 
-/// What RLIMIT_DATA counts, in bytes.
+/// The memory that RLIMIT_DATA counts [bytes].
 rlim_t allocated() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -41,7 +41,7 @@ rlim_t allocated() {
   return 0;
 }
 
-/// The limit before.
+/// The previous limit.
 rlimit limit_memory() {
   rlimit former{};
   getrlimit(RLIMIT_DATA, &former);
@@ -79,7 +79,7 @@ int run_page(const RunPageOptions& options) {
     watch.listen(server->fd());
     if (over || !closed(kPageUntil)) return;
     over = true;
-    setrlimit(RLIMIT_DATA, &former);  // a long record may need more, and disturbs nobody now
+    setrlimit(RLIMIT_DATA, &former);  // a long record may need more; the mission is over
     watch.finish();
   });
   return kExitDone;
@@ -89,7 +89,7 @@ int run_page(const RunPageOptions& options) {
 
 void add_run_page(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("run-page", "The page's process of `run --watch`");
-  command->group("");  // nobody starts it by hand
+  command->group("");  // hidden: it is not started by hand
   auto options = std::make_shared<RunPageOptions>();
   command->add_option("RUN_DIR", options->run_dir, "Run directory")->required()->type_name("DIR");
   add_bus_options(*command, *options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads parents, start times and command lines from /proc: a process that was started again has
-// another id, so nothing is kept.
+// Reads parents, start times and command lines from /proc each time, because a restarted process
+// has another id.
 #include "cli/run_processes.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string contents_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The words of a command line, each of which ends with a zero.
+/// The words of a command line, each ended by a zero byte.
 std::vector<std::string> command_line_of(const fs::path& process) {
   std::istringstream text(contents_of(process / "cmdline"));
   std::vector<std::string> words;
@@ -30,7 +30,7 @@ std::vector<std::string> command_line_of(const fs::path& process) {
   return words;
 }
 
-/// As `ergocast run` calls it; a program in the place of the simulated world is the world.
+/// The name that `ergocast run` uses. A program that replaces the simulated world is "world".
 std::string name_in(const std::vector<std::string>& command) {
   const std::string program = fs::path(command.front()).filename();
   for (const char* name : {"logger", "sim", "coordinator"}) {
@@ -44,10 +44,10 @@ std::string name_in(const std::vector<std::string>& command) {
 struct Stat {
   char state = 'Z';
   int parent = 0;
-  unsigned long long started = 0;  // since the boot, in ticks of the kernel's clock
+  unsigned long long started = 0;  // since boot, in ticks of the kernel's clock
 };
 
-/// The fields after the name, which may have blanks and brackets.
+/// The fields after the name. The name may contain blanks and brackets.
 std::optional<Stat> stat_of(const fs::path& process) {
   const std::string text = contents_of(process / "stat");
   const std::size_t name_end = text.rfind(')');

@@ -8,9 +8,9 @@
 
 namespace ergocast::cli {
 
-/// Name and process id of each process that `launcher`, an `ergocast run`, has started and that has
-/// not ended, in the order in which they were started: "logger", "sim" or "world", "coordinator",
-/// "agent-0" …, as their logs are called. Empty if there is no such process.
+/// Name and process id of each running process that `launcher`, an `ergocast run`, has started, in
+/// order of their starts. The names are those of the logs: "logger", "sim" or "world",
+/// "coordinator", "agent-0" … Empty if there is no such process.
 std::vector<std::pair<std::string, int>> processes_of_run(int launcher);
 
 }  // namespace ergocast::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Works below one descriptor of the folder, whose owner and mode were checked, so that nobody can
-// exchange it meanwhile. A file gets its name when it is complete and locked.
+// Works with one descriptor of the folder, whose owner and mode were checked. So no other user can
+// replace the folder meanwhile. A file gets its name when it is complete and locked.
 #include "cli/run_registry.h"
 
 #include <dirent.h>
@@ -35,7 +35,7 @@ constexpr std::size_t kMostEntryBytes = std::size_t{1} << 15;
 /// Limit (Commands): live runs of a user that a command reads. Beyond it: others are not shown.
 constexpr std::size_t kMostEntries = 1000;
 
-/// A file descriptor that is closed.
+/// A file descriptor that is closed in the destructor.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -51,7 +51,7 @@ class Descriptor {
   int fd_;
 };
 
-/// Whether nobody else can look into the folder or write there.
+/// Whether no other user can read the folder or write there.
 bool is_ours_alone(const struct stat& folder) {
   return S_ISDIR(folder.st_mode) && folder.st_uid == geteuid() && (folder.st_mode & 077) == 0;
 }
@@ -88,7 +88,7 @@ std::string contents_of(int file) {
   return text;
 }
 
-/// The value of a key as text; nothing if it is missing or no text.
+/// The value of a key as text; nullopt if it is missing or no text.
 std::optional<std::string> text_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_string()) return std::nullopt;
@@ -128,7 +128,7 @@ void look_at(int folder, const std::string& name, const std::string& path, LiveR
     found.runs.push_back(run);
     return;
   }
-  // Who ends in order removes the name before the lock.
+  // A run that ends normally removes its name before it releases the lock.
   if (fstat(file.get(), &status) != 0 || status.st_nlink == 0) return;
   unlinkat(folder, name.c_str(), 0);
   found.warnings.push_back("run " + to_hex(run.run) + " of " + run.scenario + ", " +

@@ -3,7 +3,7 @@
 //
 // The folder is $XDG_RUNTIME_DIR/ergocast, or /tmp/ergocast-<user id> where XDG_RUNTIME_DIR names
 // no folder that is this user's alone. A run is live while its process holds the lock of its file,
-// so the kernel ends that, whatever ends the process.
+// so the kernel ends the entry, however the process ends.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@
 
 namespace ergocast::cli {
 
-/// What a run's file says.
+/// The contents of a run's file.
 struct LiveRun {
   RunId run = 0;
   std::string scenario, version;
@@ -29,17 +29,17 @@ struct LiveRun {
 };
 
 std::string to_json_text(const LiveRun& run);
-/// The run, or what is wrong with the text.
+/// The run, or the error in the text.
 std::variant<LiveRun, std::string> live_run_from(std::string_view text);
 
 /// The folder, whether it exists or not.
 std::filesystem::path run_registry();
 
-/// The file <run>.json of this process's run: readable by its owner only, removed at the end.
+/// The file <run>.json of this process's run: only its owner can read it; it is removed at the end.
 class RunEntry {
  public:
-  /// Makes the folder if it is missing. An error if that, or an existing folder, is not this user's
-  /// alone, or if nothing can be written there.
+  /// Makes the folder if it is missing. An error if the folder is not this user's alone, or if it
+  /// cannot be written.
   static std::variant<std::unique_ptr<RunEntry>, std::string> write(const LiveRun& run);
   RunEntry(const RunEntry&) = delete;
   RunEntry& operator=(const RunEntry&) = delete;
@@ -53,7 +53,7 @@ class RunEntry {
 
 struct LiveRuns {
   std::vector<LiveRun> runs;          ///< in the order in which they were started
-  std::vector<std::string> warnings;  ///< entries of no use, a sentence each
+  std::vector<std::string> warnings;  ///< one sentence for each unusable entry
 };
 
 /// Reads the folder. An entry whose run was killed is reported and removed; a file that is no entry

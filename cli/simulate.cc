@@ -27,7 +27,7 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
   display.show(at);
 }
 
-/// With the progress on the terminal, until a signal arrives.
+/// Shows the progress on the terminal; a signal ends the simulation.
 std::variant<SimulatedRecord, std::string> simulate_and_show(RunRecord& record,
                                                              const Scenario& scenario,
                                                              bool event_log) {

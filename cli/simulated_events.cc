@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Encodes what the simulated processes say, once for each message, into LCM's log format.
+// Encodes the simulated processes' messages, each once, in LCM's log format.
 #include "cli/simulated_events.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ void SimulatedEvents::sends(lab::NodeId, const Outbox& outbox) {
   for (const Outgoing& sent : outbox) {
     if (const auto* world = std::get_if<WorldState>(&sent.message))
       tick_ = std::max(tick_, world->header.tick);
-    // Those on the command bus only repeat another bus.
+    // Messages on the command bus only repeat those of another bus.
     const bool repeats = std::holds_alternative<MissionPart>(sent.message) ||
                          std::holds_alternative<Stop>(sent.message);
     if (sent.bus == Bus::kCommand && repeats) continue;

@@ -16,13 +16,13 @@
 namespace ergocast::cli {
 
 /// Observes a simulation and writes events-000.lcm, events-001.lcm, … Each message has the time of
-/// its tick, counted from when this object is made.
+/// its tick, counted from the construction of this object.
 class SimulatedEvents : public lab::SimulationObserver {
  public:
   SimulatedEvents(const std::filesystem::path& folder, const Mission& mission);
 
   void sends(lab::NodeId, const Outbox& outbox) override;
-  /// The write error, if there was one.
+  /// Returns the write error, if there was one.
   std::optional<std::string> flush() { return log_.flush(); }
   /// Segments removed because of the log's limit.
   int removed() const { return log_.removed(); }

@@ -12,7 +12,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// Turns between two looks, which cost time.
+/// Turns between two calls of `look`, which take time.
 constexpr int kTurnsBetweenLooks = 256;
 
 nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scenario,

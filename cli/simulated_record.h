@@ -14,7 +14,7 @@
 
 namespace ergocast::cli {
 
-/// What became of a simulated mission.
+/// The result of a simulated mission.
 struct SimulatedRecord {
   nlohmann::ordered_json summary;
   bool failed = false;  ///< the mission, not its record

@@ -2,8 +2,7 @@
 // `ergocast spy`: LCM's own viewer, lcm-spy, with Ergocast's message types and a view
 // of the team.
 //
-// Debian 12's script of that name does not start with Java 17, so the viewer's class is started
-// here.
+// Debian 12's script `lcm-spy` fails with Java 17, so the viewer's class is started directly.
 #include <unistd.h>
 
 #include <cerrno>
@@ -59,7 +58,7 @@ bool is_headless(const fs::path& java) {
   return fs::exists(libraries / "libawt_headless.so") && !fs::exists(libraries / "libawt_xawt.so");
 }
 
-/// The command to start, and what is missing for it.
+/// The command to start, and missing packages.
 struct Viewer {
   std::vector<std::string> command;
   std::string packages;  ///< Debian packages to be installed, each after a space

@@ -50,7 +50,7 @@ class Listener {
   }
 
   void listen(Instant until, int wake_fd) { transport_->deliver_until(until, wake_fd); }
-  /// To be called at intervals: continues to listen after the network interface was replaced.
+  /// Call it at intervals: continues to listen after the network interface was replaced.
   void follow_network() { transport_->renew_membership(); }
   /// From now on accepts only the run that was found.
   void stay_with_it() { transport_->set_run(runs_.begin()->first.first); }
@@ -91,7 +91,7 @@ int choose(const Listener& listener) {
   return report_error(kExitBadInput, text);
 }
 
-/// Returns when all expected messages have come, or after kPatience. False if a signal came.
+/// Returns when all expected messages have arrived, or after kPatience. False if a signal arrived.
 bool listen_around(Listener& listener, StopSignals& signals) {
   const auto complete = [&] {
     return listener.runs().size() == 1 && listener.runs().begin()->second.complete();

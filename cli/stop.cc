@@ -22,10 +22,10 @@ using namespace std::chrono_literals;
 
 /// How long the team may take to exit.
 constexpr auto kLongest = 15s;
-/// What has been obeyed is reported after so long at the latest.
+/// After this time the result so far is reported.
 constexpr auto kReportAfter = 250ms;
-/// Without a roster an emergency stop is repeated at least so long: a process that is not known may
-/// miss the first ones.
+/// Without a roster an emergency stop is repeated at least this long, because an unknown process
+/// may miss the first ones.
 constexpr auto kLeastInsistence = 1s;
 constexpr const char* kAtOnce = "stopped at once by `ergocast stop --now` on ";
 
@@ -33,7 +33,7 @@ struct StopOptions : BusOptions {
   bool at_once = false;
 };
 
-/// Stops one run on a URL in order, or all that are heard there at once.
+/// Ends one run on a URL in order, or stops all received runs at once.
 class Stopping : public TeamCommand {
  public:
   explicit Stopping(const StopOptions& options) : TeamCommand(options), options_(options) {}
@@ -44,7 +44,7 @@ class Stopping : public TeamCommand {
     for (const auto& [run, team] : runs_) send_stop_to(run, team);
     send_stop_to_the_crowd();
   }
-  /// Listens for a moment and judges; the exit code once all is known.
+  /// Listens for a moment and evaluates; returns the exit code once all is known.
   std::optional<int> judge_answers() {
     if (!listen()) return interrupted();
     for (auto& [run, request] : requests_) {
@@ -56,11 +56,11 @@ class Stopping : public TeamCommand {
   }
 
  private:
-  /// What one run is asked.
+  /// The request to one run.
   struct Request {
     StopRequest word;
     Instant since;
-    bool reported = false;  // what it has obeyed so far
+    bool reported = false;  // the result so far was reported
     std::optional<int> code = {};
   };
 
@@ -102,8 +102,7 @@ class Stopping : public TeamCommand {
     crowd_.clear();
   }
 
-  /// The exit code, or nothing while a run may still be heard for the first time, or has not
-  /// answered.
+  /// The exit code; nullopt while a new run may still appear, or a run has not answered.
   std::optional<int> result() const {
     if (options_.run == 0 && waited() < (runs_.empty() ? kListeningTime : kLookAround))
       return std::nullopt;
@@ -125,7 +124,7 @@ class Stopping : public TeamCommand {
     return options_.at_once ? team.still_moving(now()) : team.still_there(now());
   }
 
-  /// The exit code, or nothing while it is unknown.
+  /// The exit code; nullopt while it is unknown.
   std::optional<int> verdict(const Request& request, const MonitoredRun& team) const {
     const auto waited = now() - request.since;
     if (team.unheard()) return waited < kListeningTime ? std::nullopt : std::optional(nobody());
@@ -158,7 +157,7 @@ class Stopping : public TeamCommand {
     return std::nullopt;
   }
 
-  /// Says once what has been obeyed, where the rest takes longer.
+  /// Reports the result so far once, if the rest takes longer.
   void report_progress(Request& request, const MonitoredRun& team) const {
     if (request.reported || now() - request.since < kReportAfter) return;
     request.reported = true;
@@ -205,8 +204,8 @@ class Stopping : public TeamCommand {
   bool crowded_ = false;
 };
 
-/// Stops the teams on several URLs at the same time: no team waits for another one.
-/// @param code  of runs that cannot be stopped, after an error message each
+/// Stops the teams on several URLs at the same time; no team waits for another one.
+/// @param code  exit code for runs that cannot be stopped; an error was printed for each
 int stop_at_once(const std::vector<StopOptions>& teams, int code) {
   std::vector<std::unique_ptr<Stopping>> stoppings;
   for (const StopOptions& team : teams) {

@@ -21,7 +21,7 @@ StopRequest::StopRequest(RunId run, bool failed, std::string reason) {
 }
 
 void StopRequest::repeat(Transport& transport, Instant now, bool at_once, Tick newest) {
-  // The first tick that is heard may be the first that the team obeys.
+  // Sends at once when the tick becomes known, because a request without it may be ignored.
   const bool knows_now = stop_.header.tick == 0 && newest > 0;
   if (now < next_ && stop_.now == at_once && !knows_now) return;
   next_ = now + kPeriod;

@@ -31,7 +31,7 @@ constexpr std::size_t kMostFailuresNamed = 20;
 /// One run: a point and a seed.
 using Run = std::pair<std::size_t, std::uint64_t>;
 
-/// The runs that are not done, seed by seed, so that an incomplete table is comparable, too.
+/// The missing runs, seed by seed, so that an incomplete table allows comparisons, too.
 std::vector<Run> missing_runs(std::size_t points, const StudyOptions& options,
                               const std::vector<Run>& done) {
   const StudyShard shard = options.shard.value_or(StudyShard());
@@ -73,7 +73,7 @@ class StudyRunner {
   std::size_t completed() const { return completed_; }
   std::size_t failed() const { return failed_; }
   std::size_t missing() const { return missing_.size() - completed_; }
-  /// Why rows could not be written.
+  /// The reason why rows could not be written.
   const std::optional<std::string>& problem() const { return problem_; }
 
  private:
@@ -119,7 +119,7 @@ class StudyRunner {
   std::optional<std::string> problem_;
 };
 
-/// The command that makes this study, but for --out.
+/// The command that makes this study, without --out.
 std::string command_of(const StudyOptions& options) {
   std::string command = "ergocast study";
   for (const auto& file : options.scenarios) command += ' ' + shell_word(file.string());

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kIdentityFile = "study.json";
 constexpr const char* kTableFile = "study.csv";
 
-/// Far above any study: a row has some 400 bytes.
+/// The limit is far above any study: a row has some 400 bytes.
 /// Limit (Studies): length of `study.csv` [bytes]. Beyond it: `study` refuses the folder.
 constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
 /// Limit (Studies): length of `study.json` [bytes]. Beyond it: `study` refuses the folder.
@@ -75,7 +75,7 @@ StudyShard shard_from(const Json& json) {
   return shard;
 }
 
-/// The same.
+/// Throws like the function above.
 StudyIdentity identity_from(const Json& json) {
   StudyIdentity identity;
   identity.version = json.at("version").get<std::string>();
@@ -114,7 +114,7 @@ std::string name_of(const std::optional<StudyShard>& shard) {
   return shard ? shard->name() : "no shard";
 }
 
-/// Why this study cannot use the folder; nothing if it can.
+/// The reason why this study cannot use the folder; nullopt if it can.
 std::optional<std::string> objection(const fs::path& folder, const StudyIdentity& ours) {
   std::error_code error;
   const fs::path file = folder / kIdentityFile;
@@ -220,7 +220,7 @@ std::optional<std::string> StudyDirectory::read_rows() {
   const fs::path path = folder_ / kTableFile;
   auto read = read_whole(path, kMostTableBytes);
   const auto* problem = std::get_if<FileProblem>(&read);
-  // What cannot be read is not written over.
+  // A file that cannot be read is not overwritten.
   if (problem != nullptr && problem->kind != FileProblem::Kind::kMissing)
     return problem->sentence(path);
   std::string text = problem == nullptr ? std::get<std::string>(std::move(read)) : "";

@@ -21,9 +21,9 @@ inline constexpr std::uint64_t kMostStudyRuns = 1000000;
 
 /// A part of a study. Its runs are numbered seed by seed, and within a seed by point.
 struct StudyShard {
-  std::uint64_t index = 1, of = 1;  ///< from 1; every `of`-th run is of the shard
+  std::uint64_t index = 1, of = 1;  ///< from 1; every `of`-th run belongs to the shard
   std::uint64_t first_seed = 1, last_seed = 1;
-  std::string command;                ///< that makes the whole study, but for --out
+  std::string command;                ///< makes the whole study, without --out
   std::vector<std::string> missions;  ///< the command of one mission of each point
 
   bool has(std::uint64_t run) const { return run % of == index - 1; }
@@ -40,11 +40,11 @@ struct StudyIdentity {
   std::optional<StudyShard> shard{};    ///< nothing: the whole study
 };
 
-/// Why these are not shards of one study, or equal to one another without shards; empty if they
+/// The reason why these are not shards of one study, or not one study without shards; empty if they
 /// are.
 std::string difference(const StudyIdentity& ours, const StudyIdentity& theirs);
 
-/// The study in `folder`, or one sentence that tells why there is none. Checks what is read.
+/// Reads and checks the study in `folder`; an error is one sentence.
 std::variant<StudyIdentity, std::string> read_identity(const std::filesystem::path& folder);
 
 class StudyDirectory {
@@ -52,7 +52,7 @@ class StudyDirectory {
   /// Makes the folder, or continues the same study in it. An incomplete last line of its table is
   /// removed. An error if the folder belongs to another study, contains other files, or is in use
   /// by another process.
-  /// @param identity  outlives it
+  /// @param identity  outlives this object
   static std::variant<std::unique_ptr<StudyDirectory>, std::string> open(
       const std::filesystem::path& folder, const StudyIdentity& identity);
   StudyDirectory(const StudyDirectory&) = delete;

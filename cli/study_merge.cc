@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast study merge`: checks that the folders are all shards of one study, each complete and
-// once, and writes the folder that one command would have made.
+// `ergocast study merge`: checks that the folders are all shards of one study, complete and without
+// repetition. Writes the folder that one command would have made.
 #include <cstdio>
 #include <map>
 
@@ -15,14 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One folder that was named.
+/// One folder of the command line.
 struct Part {
   fs::path folder;
   StudyIdentity identity;
   const StudyShard& shard() const { return *identity.shard; }
 };
 
-/// The shards in the order of the command line, or what is wrong with the first that is none.
+/// The shards in the order of the command line, or the error of the first folder that is no shard.
 std::variant<std::vector<Part>, std::string> parts_of(const std::vector<fs::path>& folders) {
   std::vector<Part> parts;
   for (const fs::path& folder : folders) {
@@ -35,7 +35,7 @@ std::variant<std::vector<Part>, std::string> parts_of(const std::vector<fs::path
   return parts;
 }
 
-/// Why the parts are not all shards of one study, each once; nothing if they are.
+/// The reason why the parts are not all shards of one study, each once; nullopt if they are.
 std::optional<std::string> mismatch(const std::vector<Part>& parts) {
   const Part& first = parts.front();
   const StudyShard& one = first.shard();
@@ -66,7 +66,7 @@ std::optional<std::string> mismatch(const std::vector<Part>& parts) {
          std::to_string(one.of) + " (name its folder, too)";
 }
 
-/// The rows of a shard that is complete; otherwise what is wrong.
+/// The rows of a complete shard, or an error.
 std::variant<std::vector<studies::StudyRow>, std::string> rows_of(const Part& part) {
   const auto opened = StudyDirectory::open(part.folder, part.identity);
   if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;

@@ -16,10 +16,10 @@ namespace ergocast::cli {
 struct StudyPoints {
   StudyIdentity identity;
   std::vector<Scenario> scenarios;    ///< one for each point
-  std::vector<std::string> missions;  ///< `ergocast run` of each point, without a seed
+  std::vector<std::string> missions;  ///< the command `ergocast run` of each point, without a seed
 };
 
-/// All problems of all points, each once, if there are any.
+/// Returns the points, or all problems of all points, each once.
 std::variant<StudyPoints, std::vector<std::string>> study_points(const StudyOptions& options);
 
 }  // namespace ergocast::cli

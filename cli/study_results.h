@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a study shows when its runs are there, flown or merged.
+// The results of a study whose runs were simulated or merged.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace ergocast::cli {
 
 struct StudyResults {
   const studies::Study& study;
-  std::string command;                       ///< that makes it, but for --out
+  std::string command;                       ///< makes it, without --out
   const std::vector<std::string>& missions;  ///< the command of one mission of each point
   std::uint64_t first_seed;
   std::filesystem::path out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps a MonitoredRun for each run that is heard, up to a number.
+// Keeps a MonitoredRun for each received run, up to a limit.
 #include "cli/team_command.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace ergocast::cli {
 namespace {
 
 constexpr auto kTurnTime = std::chrono::milliseconds(20);
-/// Runs beyond kMostRuns that are kept.
+/// The number of runs beyond kMostRuns that are kept.
 constexpr std::size_t kMostInCrowd = 256;
 
 }  // namespace

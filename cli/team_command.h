@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `ergocast stop`, `pause` and `resume` share: they listen for the runs on a URL, speak to one
-// of them, and wait until they hear that it obeys.
+// The common part of `ergocast stop`, `pause` and `resume`. They listen for the runs on a URL and
+// send a request to one of them. Then they wait until its messages show that it obeys.
 #pragma once
 
 #include <chrono>
@@ -19,29 +19,31 @@ namespace ergocast::cli {
 
 class TeamCommand {
  public:
-  /// @param options  outlives it
+  /// @param options  outlives this object
   explicit TeamCommand(const BusOptions& options) : options_(options) {}
   virtual ~TeamCommand() = default;
 
-  /// Opens the buses and acts; returns the exit code, after an error message.
+  /// Opens the buses and acts. Prints errors; returns the exit code.
   int carry_out();
-  /// Opens the buses alone; the exit code, after an error message, if they cannot be used.
+  /// Only opens the buses. If they cannot be used, prints an error and returns the exit code.
   std::optional<int> open();
-  /// Whether a signal came while it listened.
+  /// Whether a signal arrived while it listened.
   bool was_interrupted() const { return interrupted_; }
 
  protected:
-  /// Finds the run, speaks to it and reports the result; returns the exit code.
+  /// Finds the run, sends the request and reports the result; returns the exit code.
   virtual int act() = 0;
 
-  /// How long to wait for any process, and for a coordinator; how long a coordinator may take.
+  /// How long to wait for the first process, for a coordinator, and for a coordinator's answer.
   static constexpr std::chrono::seconds kListeningTime{3}, kAnswerPatience{5};
-  /// Longer than any agent is silent, so that every other run on this URL is detected.
+  /// Longer than the interval between an agent's messages, so that every other run on this URL is
+  /// detected.
   static constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 
-  /// Listens until a run is heard, and any other on this URL would be. False if a signal came.
+  /// Listens until a run is received, and any other run on this URL would be. False if a signal
+  /// arrived.
   bool look_around();
-  /// Listens for one turn. False if a signal came.
+  /// Listens for one turn. False if a signal arrived.
   bool listen();
   auto waited() const { return now() - since_; }
 
@@ -53,7 +55,7 @@ class TeamCommand {
 
   std::unique_ptr<Transport> transport_;
   std::map<RunId, MonitoredRun> runs_;
-  /// Beyond kMostRuns, received since somebody cleared it, each with its newest tick.
+  /// Runs beyond kMostRuns since it was last cleared, each with its newest tick.
   std::map<RunId, Tick> crowd_;
   Instant since_{};
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sums the statuses of each look up in a row, and halves the rows when they are too many.
+// Summarises the statuses of each call in one row. Removes every second row when there are too
+// many.
 #include "cli/team_history.h"
 
 #include <algorithm>

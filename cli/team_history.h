@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the agents' statuses have told of the whole team over time, for a browser that comes late.
+// The whole team's values over time, from the agents' statuses, for a browser that connects late.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,14 @@
 
 namespace ergocast {
 
-/// Bounded: a history that grows too long loses every second row, and takes half as many from then
-/// on.
+/// Bounded: a history that is too long loses every second row, and takes half as many from then on.
 class TeamHistory {
  public:
   /// Limit (Page): rows of the curve for a browser that connects late. Beyond it: every second one
   /// is left out.
   static constexpr std::size_t kMostRows = 4000;
 
-  /// Takes a row if φ² is known and time has gone on.
+  /// Adds a row if φ² is known and time has advanced.
   void add(const TeamPicture& picture);
 
   /// {"t": [mission time, …], "phi": [median of the agents' φ², …], "spread", "age", "received",

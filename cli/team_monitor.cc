@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stores the last message of every process of a run, and detects by silence that a process has
-// ended.
+// Stores the last message of every process of a run. A process that is silent for long has ended.
 #include "cli/team_monitor.h"
 
 #include <algorithm>
@@ -60,7 +59,7 @@ void MonitoredRun::on(const AgentStatus& status, const Arrival& arrival) {
   agents_[author] = status.phase == AgentPhase::kFinished;
 }
 
-/// Each robot may have a driver of its own, which keeps its own ticks.
+/// Each robot may have its own driver, which has its own ticks.
 void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
   if (!arrival.fresh) return;
   note_end(arrival, world.last);
@@ -75,7 +74,7 @@ void MonitoredRun::on(const RecordAck& ack, const Arrival& arrival) {
   if (arrival.fresh) note_end(arrival, ack.last);
 }
 
-/// The last message may be read before others that were sent earlier on another bus.
+/// A process's last message may be read before earlier messages on another bus.
 void MonitoredRun::note_end(const Arrival& arrival, bool ended) {
   const Author author{arrival.from.sender, arrival.from.incarnation};
   if (processes_.size() >= kMaxIncarnations && !processes_.contains(author)) return;
@@ -98,8 +97,8 @@ bool MonitoredRun::silent(const Author& agent, Instant now) const {
   return me_.silent(agent, now) && now - since_ >= silence_of(agent.agent);
 }
 
-/// Whether it is heard and has not reported its end. A coordinator that has reported the mission's
-/// end leaves by itself.
+/// Whether it still sends and has not reported its end. A coordinator that has reported the
+/// mission's end exits by itself.
 bool MonitoredRun::there(AgentId process, Instant now) const {
   if (!seen(process) || me_.silent(process, now)) return false;
   if (process == kCoordinator) return !over_;

@@ -28,19 +28,19 @@ inline constexpr std::size_t kMostRuns = 16;
 /// Called with each message, its bus and its transmitter.
 using OnMessage = std::function<void(const Message&, Bus, AgentId transmitter)>;
 
-/// Receives all messages about the state of teams, and those of replays. An error tells why LCM
-/// cannot be used.
+/// Receives all messages about the state of teams, and those of replays. An error if LCM cannot be
+/// used.
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
                                                                       OnMessage on_message,
                                                                       OnMessage on_replayed);
 
-/// The messages received of one run.
+/// The messages received from one run.
 class MonitoredRun {
  public:
   static constexpr Role kRole = Role::kMonitor;
 
-  /// @param since  when the listening began: a member that was not heard yet counts as there for as
-  ///               long as it may be silent
+  /// @param since  when listening began: until the allowed silence is over, a member counts as
+  /// present although nothing was received from it
   MonitoredRun(RunId run, Instant since);
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
@@ -48,11 +48,11 @@ class MonitoredRun {
   /// Whether a MISSION, from the coordinator or repeated by an agent, reported the mission's end.
   bool over() const { return over_; }
   const std::string& reason() const { return reason_; }
-  /// The newest of the world's ticks, which go on in a pause.
+  /// The newest of the world's ticks, which continue in a pause.
   Tick tick() const { return tick_; }
-  /// "tick 517, t = 51.7 s": how many ticks before `tick` count, as people are told the time.
+  /// "tick 517, t = 51.7 s": the number of counted ticks before `tick`, and its time.
   std::string mission_time(Tick tick) const;
-  /// By the clock, until the world reaches `tick`; 0 in lockstep [s]. @pre knows_mission()
+  /// Wall time until the world reaches `tick`; 0 in lockstep [s]. @pre knows_mission()
   double seconds_until(Tick tick) const;
   RunId run() const { return me_.run(); }
   bool knows_mission() const { return me_.knows_mission(); }
@@ -98,7 +98,7 @@ class MonitoredRun {
 
   Participant me_;
   Instant since_;
-  std::map<Author, bool> agents_;            // whether it reported that it finished
+  std::map<Author, bool> agents_;            // whether the agent reported that it finished
   std::map<Author, bool> processes_;         // worlds and loggers: whether they reported their end
   std::map<AgentId, VehicleSeen> vehicles_;  // in the newest state that names it
   Tick tick_ = 0;

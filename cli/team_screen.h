@@ -8,7 +8,7 @@
 
 namespace ergocast::cli {
 
-/// Shows one picture after the other: in place on a terminal, one below the other elsewhere.
+/// Shows pictures in sequence: in place on a terminal, one below the other elsewhere.
 class TeamScreen {
  public:
   explicit TeamScreen(bool json);
@@ -16,7 +16,7 @@ class TeamScreen {
   /// Shows it until the next one replaces it; on a terminal only as much as fits.
   void show(const TeamPicture& picture);
   void show(const std::string& text);
-  /// Prints it in full, to stay.
+  /// Prints the picture in full; it is not replaced.
   void print(const TeamPicture& picture);
 
   /// The time between two calls of show().

@@ -12,7 +12,7 @@
 namespace ergocast {
 namespace {
 
-/// A shorter block is not worth a word: bodies that pass each other have some.
+/// A shorter block is not shown: bodies that pass each other block briefly.
 constexpr double kBlocked_s = 1;
 
 enum class Tint { kPlain, kFaint, kGood, kLook, kBad };

@@ -17,9 +17,9 @@ using namespace std::chrono_literals;
 constexpr PacingClock::duration kOverdue = 2 * kAgentStatusPeriod;
 /// In lockstep every agent waits now and then; a longer wait is reported.
 constexpr PacingClock::duration kStandstill = 750ms;
-/// An event loop blocked for so long, or an agent so far behind the world, is late.
+/// An agent is late if its event loop was blocked, or it is behind the world, by this time.
 constexpr double kLate_s = 0.5;
-/// In a replay: agents say their status each mission second.
+/// In a replay, the status of an agent comes each mission second.
 constexpr double kSilentInReplay_s = 6;
 
 double to_s(PacingClock::duration duration) {
@@ -141,7 +141,7 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
   return row;
 }
 
-/// By number: the newest incarnation, and whether it is a member.
+/// For each number: the newest incarnation, and whether it is a member.
 std::map<AgentId, std::pair<Author, bool>> TeamView::newest_incarnations() const {
   std::map<AgentId, std::pair<Author, bool>> incarnations;
   if (follower().revision() < 0) {
@@ -205,7 +205,7 @@ void TeamView::add_forgotten(TeamPicture& picture) const {
 bool TeamView::should_report(AgentId sender) const {
   if (over() || !follower().mission()) return sender == kCoordinator && !over();
   if (sender == kWorld) return follower().state() == MissionState::kRunning;
-  // A team that does not wait for a logger may fly without one.
+  // A team that does not wait for a logger may run without one.
   const bool heard = processes_.contains(sender);
   return sender == kCoordinator || heard || follower().mission()->wait_for_logger;
 }
@@ -278,7 +278,8 @@ bool TeamView::over() const {
     const auto seen = agents_.find(author);
     const bool finished =
         seen != agents_.end() && seen->second.status.phase == AgentPhase::kFinished;
-    // An incarnation removed from the roster, for example a dead one, does not report its end.
+    // An incarnation that was removed from the roster, for example after a crash, does not report
+    // its end.
     if (member && !finished) return false;
     anybody_finished |= finished;
   }

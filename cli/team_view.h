@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team as a listening process sees it: messages and time in, rows out. No clock, no I/O.
+// A team as seen by a listening process: messages and time in, rows out. No clock, no I/O.
 #pragma once
 
 #include <map>
@@ -52,12 +52,12 @@ struct ProcessRow {
 
 struct TeamPicture {
   RunId run = 0;
-  bool replay = false;                ///< sent by `ergocast replay`; nobody flies
+  bool replay = false;                ///< sent by `ergocast replay`; no team runs
   bool authenticated = false;         ///< else any host on the network may have sent it
   std::string scenario;               ///< empty: MISSION was not received
   std::optional<MissionState> state;  ///< nothing: not received
   std::string reason;                 ///< why it ended, or why its plan cannot be read
-  Tick tick = 0;                      ///< the world's, which goes on in a pause
+  Tick tick = 0;                      ///< the world's, which continues in a pause
   Tick counted = 0, tick_count = 0;   ///< its number among those that count; 0: not known
   bool paused = false;                ///< `tick` does not count
   std::vector<Hold> holds;            ///< all that MISSION names
@@ -67,7 +67,7 @@ struct TeamPicture {
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
-  /// In ascending order: agents whose coverage no longer counts or soon will not; see RosterEntry.
+  /// Agents whose coverage no longer counts or soon will not, ascending; see RosterEntry.
   std::vector<AgentId> forgotten;
   std::vector<ProcessRow> processes;
   bool trouble = false;
@@ -79,8 +79,8 @@ class TeamView {
   static constexpr Role kRole = Role::kMonitor;
 
   /// @param since  when the listening began
-  /// @param authenticated  whether what it receives was checked with the team's key
-  /// @param replay  whether `ergocast replay` sends it: then mission time tells who was silent
+  /// @param authenticated  whether messages are checked with the team's key
+  /// @param replay  whether `ergocast replay` sends it; then silence is measured in mission time
   TeamView(RunId run, Instant since, bool authenticated = false, bool replay = false);
 
   /// @pre the message is of this view's run

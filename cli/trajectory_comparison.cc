@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Walks along both tables in the order of their keys, so that a missing row does not shift the
+// Reads both tables in the order of their keys, so that a missing row does not shift the
 // comparison.
 #include "cli/trajectory_comparison.h"
 

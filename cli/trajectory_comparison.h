@@ -19,17 +19,16 @@ namespace ergocast::cli {
 std::string first_difference(std::string place, const std::string& header,
                              const std::string& recorded, const std::string& simulated);
 
-/// Missing rows of the record are counted and not a difference.
+/// Rows that the record lacks are counted; they are no difference.
 class TrajectoryComparison {
  public:
   explicit TrajectoryComparison(const std::filesystem::path& run_dir);
 
-  /// Expects an emergency stop: in the last tick the vehicles stand still, which no simulation
-  /// does.
+  /// Expects an emergency stop: in the last tick the vehicles stand still, unlike in a simulation.
   void expect_halt() { emergency_stop_expected_ = true; }
-  /// Why the record cannot be read; nothing if it can.
+  /// The reason why the record cannot be read; nullopt if it can.
   const std::optional<std::string>& problem() const { return lines_.problem(); }
-  /// Compares as many whole lines as there are; false at the first difference.
+  /// Compares all complete lines; returns false at the first difference.
   bool compare(std::istream& simulated);
 
   bool same() const { return same_; }
@@ -37,7 +36,7 @@ class TrajectoryComparison {
   bool recorded_over() const { return recorded_over_; }
   /// Whether the record continues after the simulation's end.
   bool has_more() const { return recorded_.has_value(); }
-  /// Whether its last tick has rows that stand still.
+  /// Whether its last tick has rows of standing vehicles.
   bool emergency_stopped() const { return emergency_stopped_; }
   /// Whether the record ends within a line, or within the rows of a tick.
   bool torn() const { return lines_.torn() || amid_tick_; }

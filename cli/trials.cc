@@ -27,7 +27,7 @@ namespace {
 
 constexpr const char* kSwarm = "swarm";
 constexpr std::int64_t kMostFailuresShown = 20;
-/// A trial takes some hundredths of a second; one that takes so long hangs.
+/// A trial takes some hundredths of a second; above this time it hangs.
 constexpr unsigned kPatience_s = 120;
 
 /// Faults by seed: from a file, or drawn. Nothing, after an error message, if the file is invalid.
@@ -173,7 +173,8 @@ int trials(const TrialsOptions& options) {
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const TrialTotals& totals = desk.close();
-  std::printf("%lld of %llu missions flown in %.1f s\n%s", static_cast<long long>(totals.trials),
+  std::printf("%lld of %llu missions simulated in %.1f s\n%s",
+              static_cast<long long>(totals.trials),
               static_cast<unsigned long long>(options.seeds.count()), wall_s,
               totals.describe(wall_s, basis).c_str());
   if (!path.empty() && !csv)

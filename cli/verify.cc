@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Simulates the mission of a record again and compares every file that the simulation determines:
-// first the sources of the plan, then the trajectory, then what follows from both.
+// Simulates the mission of a record again and compares every file that the simulation determines.
+// The order is: the sources of the plan, the trajectory, and the files that follow from both.
 #include <cstdio>
 #include <memory>
 #include <sstream>
@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kTurnsBetweenComparisons = 256;
 
-/// The simulation of a plan, as the recorder in it writes it.
+/// The simulation of a plan, as its recorder writes it.
 struct Repetition {
   Repetition(const Mission& mission, std::vector<Hold> holds)
       : simulation({.plan = encode_plan(mission), .version = version(), .holds = std::move(holds)},
@@ -67,8 +67,7 @@ bool is_simulated(const Json& summary, const Recorder& simulated) {
   return summary.value("run_id", Json()) == to_hex(simulated.run());
 }
 
-/// Why a run over LCM contains more than a simulation of its plan can reproduce; empty if it does
-/// not.
+/// The reason why a simulation cannot reproduce everything in a run over LCM; empty if it can.
 std::string what_cannot_be_repeated(const Json& summary, const Mission& mission) {
   if (mission.timing.pace == Pace::kRealtime) {
     return "it ran in real time, where what an agent knew depended on the network";
@@ -111,7 +110,7 @@ std::string why_not_repeatable(const Json& summary, const Mission& mission) {
   }
 }
 
-/// What is wrong with the trajectory as a whole; empty if nothing is.
+/// The error of the trajectory as a whole; empty if there is none.
 std::string difference_of(const TrajectoryComparison& comparison, const fs::path& run_dir,
                           const Json& summary) {
   const std::string file = (run_dir / kTrajectoryFile).string();

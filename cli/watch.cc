@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast watch`: a page for browsers, of a record or of a team that flies.
+// `ergocast watch`: serves a page of a record or of a running team.
 #include <poll.h>
 #include <sys/resource.h>
 
@@ -24,9 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Deadlines of the page's clients need a look so often.
+/// The period with which deadlines of the page's clients are checked.
 constexpr int kServeMs = 50;
-/// The team's processes are always preferred.
+/// The priority is low, so that the team's processes run first.
 constexpr int kPagePriority = 10;
 
 struct WatchOptions : BusOptions {
@@ -60,7 +60,7 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
   return kExitDone;
 }
 
-/// @param run_dir  of the team's run; empty: not known here
+/// @param run_dir  the team's run directory; empty: not known here
 int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals& signals) {
   auto opened = LiveWatch::open({options, run_dir, {}, {}});
   if (const auto* problem = std::get_if<std::string>(&opened)) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forks workers that do a range of jobs each and send fixed-size results, each through its own
-// pipe.
+// Forks workers. Each does a range of jobs and sends results of fixed size through its own pipe.
 #include "cli/workers.h"
 
 #include <poll.h>
@@ -21,7 +20,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// A worker process is replaced after so many jobs.
+/// A worker process is replaced after this many jobs.
 constexpr std::uint64_t kMostJobsPerWorker = 64;
 constexpr int kIdlePeriod_ms = 100;
 
@@ -45,7 +44,8 @@ struct Worker {
   const std::size_t size = sizeof(std::uint64_t) + jobs.result_bytes;
   for (std::uint64_t job = range.first; job <= range.last; ++job) {
     const itimerval patience{{0, 0}, {static_cast<time_t>(jobs.patience_s), 0}};
-    setitimer(ITIMER_PROF, &patience, nullptr);  // processor time: a busy machine is no hang
+    setitimer(ITIMER_PROF, &patience,
+              nullptr);  // processor time, because a busy machine is no hang
     std::memcpy(parcel.data(), &job, sizeof job);
     jobs.work(job, parcel.data() + sizeof job);
     if (write(pipe, parcel.data(), size) != static_cast<ssize_t>(size)) _exit(1);
@@ -76,7 +76,7 @@ std::string how_it_died(int status, unsigned patience_s) {
   return std::string("its process died of SIG") + signal_name(WTERMSIG(status));
 }
 
-/// Whether `size` bytes came before the end of the pipe.
+/// Whether `size` bytes arrived before the end of the pipe.
 bool read_whole(int pipe, std::byte* to, std::size_t size) {
   while (size > 0) {
     const ssize_t got = read(pipe, to, size);
@@ -117,7 +117,7 @@ class Pool {
     }
   }
 
-  /// Waits a short time at most for a result or a signal.
+  /// Waits for a result or a signal, at most a short time.
   void wait(int signal_fd) {
     std::vector<pollfd> polled{{signal_fd, POLLIN, 0}};
     for (const Worker& worker : workers_) polled.push_back({worker.pipe, POLLIN, 0});
@@ -130,7 +130,7 @@ class Pool {
   }
 
  private:
-  /// False once the worker has ended.
+  /// Returns false once the worker has ended.
   bool listen(Worker& worker) {
     Parcel parcel;
     const std::size_t size = sizeof(std::uint64_t) + jobs_.result_bytes;

@@ -13,11 +13,11 @@
 
 namespace ergocast::cli {
 
-/// The maximum size of a result. Each worker has a pipe of its own, so a long one is read in
+/// The maximum size of a result. Each worker has a pipe of its own, so a long result may arrive in
 /// pieces.
 inline constexpr std::size_t kMostResultBytes = 16000;
 
-/// What to do with each of the jobs 0 … count − 1.
+/// The functions for the jobs 0 … count − 1.
 struct Jobs {
   std::uint64_t count = 0;
   int processes = 1;
@@ -33,10 +33,10 @@ struct Jobs {
   std::function<bool()> go_on;
 };
 
-/// Does all jobs, unless a signal arrives.
+/// Does all jobs, or stops at a signal.
 void work_in_processes(const Jobs& jobs, StopSignals& signals);
 
-/// Jobs whose results are values.
+/// Makes Jobs whose results have the type Result.
 template <class Result, class Work, class Take>
 Jobs jobs_with_results(Work work, Take take) {
   static_assert(std::is_trivially_copyable_v<Result> && sizeof(Result) <= kMostResultBytes);

@@ -1,4 +1,4 @@
-# The libraries that other programs build on: what libergocast-dev installs (find_package(Ergocast)).
+# The libraries for other programs, which libergocast-dev installs (find_package(Ergocast)).
 include(GNUInstallDirs)
 if(CMAKE_LIBRARY_ARCHITECTURE)
   set(ERGOCAST_LIBDIR lib/${CMAKE_LIBRARY_ARCHITECTURE})
@@ -7,12 +7,12 @@ else()
 endif()
 set(ERGOCAST_CMAKEDIR ${ERGOCAST_LIBDIR}/cmake/Ergocast)
 
-# Who has ergocast_agent also wants messages as bytes.
+# A program with ergocast_agent also needs messages as bytes.
 add_library(ergocast_agent_and_codec INTERFACE)
 target_link_libraries(ergocast_agent_and_codec INTERFACE ergocast_agent ergocast_codec)
 set(INSTALLED ergocast_text ergocast_core ergocast_modes ergocast_target ergocast_team ergocast_codec ergocast_agent)
 
-# They may become part of a shared library, as of a robot's plug-in or of a Python module.
+# They may be linked into a shared library, such as a robot's plug-in or a Python module.
 set(SHAREABLE ${INSTALLED} ergocast_coordinator ergocast_event_log ergocast_geo ergocast_lab ergocast_logger
   ergocast_report ergocast_run_directory ergocast_runtime ergocast_scenario ergocast_scenario_messages ergocast_sim
   ergocast_status ergocast_watch ergocast_web_page)
@@ -22,7 +22,8 @@ foreach(library ${SHAREABLE})
 endforeach()
 
 target_compile_features(ergocast_core PUBLIC cxx_std_20)
-# Eigen lays values out by the vector instructions of its user; here they are those of our build.
+# Eigen's memory layout depends on the vector instructions of the user's build; this fixes those of
+# our build.
 target_compile_definitions(ergocast_core INTERFACE
   $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16>
   $<INSTALL_INTERFACE:ERGOCAST_VERSION="${PROJECT_VERSION}">)
@@ -42,7 +43,7 @@ install(FILES ${CMAKE_SOURCE_DIR}/cmake/ErgocastConfig.cmake
     ${CMAKE_BINARY_DIR}/ErgocastConfigVersion.cmake
   DESTINATION ${ERGOCAST_CMAKEDIR} COMPONENT dev)
 
-# Their headers. Here they include "core/basis.h", there "ergocast/core/basis.h".
+# Their headers. Our sources include "core/basis.h", others "ergocast/core/basis.h".
 file(GLOB HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
   ${CMAKE_SOURCE_DIR}/core/*.h ${CMAKE_SOURCE_DIR}/target/*.h ${CMAKE_SOURCE_DIR}/team/*.h
   ${CMAKE_SOURCE_DIR}/agent/*.h)

@@ -1,6 +1,6 @@
-# ergocast_messages(<target> <proto>): a library of the C++ that protoc makes of <proto>, a path below the source
-# folder. It is a library of its own, because protoc's code does not pass our warnings, and in a unity build its Message
-# would clash with ours. <target>_generated makes the files alone.
+# ergocast_messages(<target> <proto>): a library of the C++ that protoc makes from <proto>, a path
+# below the source folder. It is a separate library, because protoc's code causes warnings, and in a
+# unity build its Message would clash with ours. <target>_generated only makes the files.
 find_package(Protobuf REQUIRED)
 
 function(ergocast_messages target proto)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A record in the formats of other people's tools; docs/export.md describes each file.
+// Writes a record in the formats of other tools; docs/export.md describes each file.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,8 @@
 
 namespace ergocast {
 
-/// One MCAP file with poses, densities, metrics and log lines. Nothing on success, else the error.
+/// One MCAP file with poses, densities, metrics and log lines. Returns nullopt on success, else the
+/// error.
 std::optional<std::string> write_mcap(const ExportRecord& record,
                                       const std::filesystem::path& file);
 

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFrame = "ergocast";
-constexpr int kFloat32 = 7;  // of Foxglove's numeric types
+constexpr int kFloat32 = 7;  // one of Foxglove's numeric types
 
 Json time_of(std::uint64_t time_ns) {
   constexpr std::uint64_t kSecond_ns = 1'000'000'000;
@@ -49,7 +49,7 @@ const Json kPose = object_of(
     {{"position", object_of({{"x", kNumber}, {"y", kNumber}, {"z", kNumber}})},
      {"orientation", object_of({{"x", kNumber}, {"y", kNumber}, {"z", kNumber}, {"w", kNumber}})}});
 
-/// With a time stamp before these properties.
+/// A schema with a time stamp before these properties.
 Schema schema_of(const char* name, const Json& properties) {
   Json all = {{"timestamp", object_of({{"sec", kInteger}, {"nsec", kInteger}})}};
   all.update(properties);
@@ -58,7 +58,7 @@ Schema schema_of(const char* name, const Json& properties) {
   return {name, text_of(schema)};
 }
 
-/// Little-endian, row by row from the south, each from the west.
+/// Little-endian; rows from south to north, each from west to east.
 std::string bytes_of(const DensityCells& cells) {
   std::string bytes;
   for (Eigen::Index j = 0; j < cells.cols(); ++j) {

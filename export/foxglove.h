@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages in JSON as Foxglove's well-known schemas name and shape them. The texts of the schemas
-// are ours; they have the fields that we write.
+// JSON messages with the names and fields of Foxglove's well-known schemas. The texts of the
+// schemas are ours; they have the fields that we write.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ std::string pose(std::uint64_t time_ns, const TrackPoint& point);
 std::string location(std::uint64_t time_ns, const GeoPlace& place, double height_m);
 std::string grid(std::uint64_t time_ns, const DensityCells& cells, const Mission& mission);
 std::string log(const ExportedLine& line);
-/// @param basis  what φ² is in
+/// @param basis  the basis of φ²
 std::string metrics(std::uint64_t time_ns, const MetricsRow& row, const std::string& basis);
 
 }  // namespace ergocast::foxglove

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the messages of all topics in the order of their times.
+// Writes the messages of all topics in order of time.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@
 namespace ergocast {
 namespace {
 
-/// Pictures of the coverage in a mission, evenly spaced, the last at its end.
+/// The number of pictures of the coverage: evenly spaced in time, the last at the mission's end.
 constexpr int kCoveragePictures = 20;
 
 struct Waiting {
@@ -45,7 +45,7 @@ class McapExport {
     return writer_.add_channel(topic, schema.name, schema.text);
   }
 
-  /// The top level of the summary.
+  /// The top-level values of the summary.
   void metadata() {
     std::map<std::string, std::string> entries;
     if (record_.summary.is_object()) {
@@ -84,7 +84,7 @@ class McapExport {
     const auto cells_along = coverage_cells(mission_);
     Coefficients sums = Coefficients::Zero(mission_.basis.mode_count());
     const Sensors sensors(mission_);
-    double samples = 0;  // each with its quality
+    double samples = 0;  // each weighted by its quality
     int shown = 0;
     const double end_s = record_.run.end_s();
     const auto show = [&](double t_s) {
@@ -128,7 +128,7 @@ class McapExport {
     });
   }
 
-  /// What is due before the next pose.
+  /// Writes the messages that are due before the next pose.
   void send_until(std::uint64_t time_ns) {
     for (; next_ < waiting_.size() && waiting_[next_].time_ns <= time_ns; ++next_) {
       const Waiting& one = waiting_[next_];

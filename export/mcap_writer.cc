@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A record of the format is an opcode, a length and a content of little-endian fields.
+// A record of the format is an opcode, a length and little-endian fields.
 #include "export/mcap_writer.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class Fields {
     text_ += bytes;
     return *this;
   }
-  /// With its length before it.
+  /// Appends a text with its length before it.
   Fields& text(std::string_view bytes) {
     return number(static_cast<std::uint32_t>(bytes.size())).raw(bytes);
   }

@@ -15,30 +15,30 @@
 
 namespace ergocast {
 
-/// CRC-32 as in zip files; `before` is that of the bytes in front.
+/// CRC-32 as in zip files; `before` is the value of the preceding bytes.
 std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
 
-/// All messages are JSON, with JSON Schemas. The file is complete after finish() alone.
+/// All messages are JSON, with JSON Schemas. The file is complete only after finish().
 class McapWriter {
  public:
   using Channel = std::uint16_t;
 
   explicit McapWriter(const std::filesystem::path& file);
 
-  /// @param schema  its name; the same name has the same text
+  /// @param schema  equal names have equal texts
   Channel add_channel(const std::string& topic, const std::string& schema,
                       std::string_view schema_text);
-  /// @param time_ns  since 1970; in any order, but readers like ascending ones
+  /// @param time_ns  since 1970; in any order, but readers work best with ascending times
   void add_message(Channel channel, std::uint64_t time_ns, std::string_view json);
   void add_metadata(const std::string& name, const std::map<std::string, std::string>& entries);
 
-  /// Writes the indexes. The write error, if there was any.
+  /// Writes the indexes. Returns the write error, if there was any.
   std::optional<std::string> finish();
 
  private:
   struct Chunk {
     std::uint64_t start_ns = 0, end_ns = 0, at = 0, bytes = 0, index_bytes = 0, content_bytes = 0;
-    std::map<Channel, std::uint64_t> indexes;  // where those of its channels begin
+    std::map<Channel, std::uint64_t> indexes;  // where the channels' indexes begin
   };
   struct MetadataPlace {
     std::uint64_t at = 0, bytes = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the tables, the target's table and the logs. Log lines tell local time, the summary UTC:
-// the zone is what lies between the first line and the start, in quarters of an hour.
+// Reads the tables, the target's table and the logs. Log lines have local time, the summary has
+// UTC. The zone is the difference between the first line and the start, in quarters of an hour.
 #include "export/record.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ std::optional<std::int64_t> time_in(std::string_view text) {
   return seconds * kSecond_ns + milliseconds * (kSecond_ns / 1000);
 }
 
-/// "time level process: text"; other lines continue the one before.
+/// "time level process: text"; other lines continue the previous one.
 void add_line(std::string_view line, std::vector<ExportedLine>& log) {
   const auto time = time_in(line);
   const std::size_t level = line.find(' ');
@@ -95,7 +95,7 @@ std::variant<ExportRecord, std::string> read_export_record(const fs::path& run_d
                                                            const Mission& mission,
                                                            const std::optional<GeoPlace>& origin) {
   ExportRecord record;
-  record.mission = in_cosines(mission);  // its maps; φ² over time is as it was recorded
+  record.mission = in_cosines(mission);  // for the maps; φ² over time stays as recorded
   record.metric_basis = name_of_basis(mission.basis);
   record.origin = origin;
   auto run = read_run(run_dir);
@@ -137,7 +137,7 @@ Eigen::Vector2d center_of(Eigen::Index column, Eigen::Index row, const DensityCe
 
 DensityCells density_of(const Coefficients& coefficients, const Mission& mission,
                         Eigen::Index columns, Eigen::Index rows) {
-  // Along z the density is averaged: that leaves the modes l = 0.
+  // The average of the density along z has only the modes l = 0.
   Basis seen = mission.basis;
   seen.modes_z = 1;
   Coefficients scaled = coefficients.head(seen.mode_count());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tables of the record as one file each, with longitude and latitude where an origin is known.
+// Writes each table of the record to a file, with longitude and latitude if the origin is known.
 #include <cerrno>
 #include <cstring>
 #include <fstream>

@@ -59,7 +59,7 @@ Json ring_json(const LocalPlane& plane, Ring ring, bool is_hole) {
   return places;
 }
 
-/// A polygon for each wall, with the rooms in it as its holes.
+/// A polygon for each wall, with the rooms inside as its holes.
 void add_walls(const LocalPlane& plane, const Rings& walls, Json& features) {
   const std::vector<int> depth = depths(walls);
   for (std::size_t outer = 0; outer < walls.size(); ++outer) {

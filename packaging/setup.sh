@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by ./run, ./test and others (bash): installs what is missing of the packages in the lists
-# $packages of this folder (default packages.txt), and builds $target, if any, of build/release. After it,
+# Sourced by ./run, ./test and others (bash): installs the missing packages of the lists $packages
+# in this folder (default packages.txt). Builds $target, if it is set, in build/release. Afterwards
 # `build_preset PRESET TARGET…` builds other presets.
 #   ERGOCAST_NO_INSTALL=1   never install anything
 #   ERGOCAST_CMAKE_ARGS     more arguments for the configuration, separated by spaces
@@ -15,7 +15,7 @@ build=$root/build/release
 
 say() { printf '%s\n' "$*" >&2; }
 
-# Runs a command in silence, and shows what it said only when it fails.
+# Runs a command silently, and shows its output only if it fails.
 quietly() {
   local output status=0
   output=$("$@" 2>&1) || status=$?
@@ -27,7 +27,7 @@ missing_packages() {
   local package
   cat "${packages[@]/#/$root/packaging/}" | sed 's/#.*//' | while read -r package; do
     [ -n "$package" ] || continue
-    # A command of that name stands for its package, such as the npm that other nodejs bring.
+    # A command of that name counts as its package; for example, other nodejs packages contain npm.
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       command -v "$package" >/dev/null || printf '%s\n' "$package"
   done
@@ -71,7 +71,7 @@ install_packages() {
   fi
 }
 
-# What of all that is optional was there when something was configured, in one word.
+# The optional packages that were present at configuration time, as one word.
 optional_packages() {
   dpkg-query -W -f '${Package} ${db:Status-Status}\n' 2>/dev/null |
     grep -xF -f <(sed 's/#.*//; /^$/d; s/$/ installed/' "$root/packaging/packages-test.txt") | cksum
@@ -83,8 +83,8 @@ build_preset() {
   read -r -a arguments <<<"${ERGOCAST_CMAKE_ARGS:-}"
   wanted="$root ${arguments[*]}; $(optional_packages); presets $(cksum <"$root/CMakePresets.json")"
 
-  # Other arguments or presets, a moved checkout, or packages that came or went: start from an empty
-  # cache, so that no old option lingers, and nothing stays unseen.
+  # After a change of arguments, presets, packages or the checkout's path, start from an empty
+  # cache: no old setting remains.
   if [ ! -f "$folder/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
     say "Configuring $folder"
     rm -f "$stamp"

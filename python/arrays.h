@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numpy arrays in and out: coefficients as modes_x × modes_y, places as rows (x, y); in a box as
-// modes_z × modes_x × modes_y, and (x, y, z).
+// Converts numpy arrays. Coefficients are modes_x × modes_y, positions are rows (x, y). In a box
+// they are modes_z × modes_x × modes_y and (x, y, z).
 //
-// Each function checks the numbers that it is given: a wrong shape or a number that is not finite
-// is Python's ValueError, so that no precondition of the cores breaks.
+// Each function checks its numbers. A wrong shape or a number that is not finite raises Python's
+// ValueError, so that no precondition of core/ is broken.
 #pragma once
 
 #include <pybind11/eigen.h>
@@ -51,7 +51,7 @@ inline std::vector<py::ssize_t> shape_of(const Basis& basis) {
   return {basis.modes_z, basis.modes_x, basis.modes_y};
 }
 
-/// How many coordinates a place has.
+/// The number of a position's coordinates.
 inline py::ssize_t axes_of(const Box& domain) { return domain.planar() ? 2 : 3; }
 
 inline Numbers array_of(const Coefficients& coefficients, const Basis& basis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binds the basis and the mission. In a plane coefficients have two indices, in a box three.
+// Binds the basis and the mission. Coefficients have two indices in a plane, three in a box.
 #include "core/mission.h"
 #include "core/mission_limits.h"
 #include "core/station.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module itself; python/ergocast/ is what people import.
+// The native module; people import python/ergocast/.
 #include "python/module.h"
 
 #include "runtime/node.h"

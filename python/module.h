@@ -6,7 +6,7 @@
 
 namespace ergocast::python {
 
-/// Domain, Basis, Mission, ControlLaw, and what is computed with them: core/basis.h.
+/// Domain, Basis, Mission, ControlLaw, and functions of them: core/basis.h.
 void add_method(pybind11::module_& module);
 /// Controller, CoverageTable, IdealTeam: core/control.h, core/coverage_table.h, core/ideal_team.h.
 void add_team(pybind11::module_& module);

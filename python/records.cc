@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binds records and simulations: plain arrays and texts, which python/ergocast/ makes frames of.
+// Binds records and simulations as plain arrays and texts; python/ergocast/ makes frames of them.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -60,7 +60,7 @@ Record read_record(const fs::path& folder) {
   return record;
 }
 
-/// A column of so many rows.
+/// Copies a column into a numpy array.
 template <class Number>
 py::array_t<Number> column(const std::vector<Number>& values) {
   return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
@@ -112,7 +112,8 @@ py::dict metrics(const Record& record) {
                   "blocked_share"_a = numbers(&MetricsRow::blocked_share));
 }
 
-/// c after each of `ticks`, as the recorder's φ² sees it: in the order of the file, members only.
+/// c after each of `ticks`, from the same data as the recorder's φ²: in the order of the file,
+/// members only.
 Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
                  const std::optional<std::vector<std::tuple<AgentId, Tick, Tick>>>& members) {
   check(std::is_sorted(ticks.begin(), ticks.end()), "ticks: must ascend");
@@ -150,7 +151,7 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
   return result;
 }
 
-/// The text of summary.json; nothing if there is none.
+/// The text of summary.json; nullopt if there is none.
 std::optional<std::string> summary(const Record& record) {
   const auto read = value_or_throw(read_summary(record.folder));
   if (read.is_null()) return std::nullopt;
@@ -168,7 +169,7 @@ std::optional<Eigen::MatrixXd> target_density(const Record& record) {
 /// (path, value, how the error calls it).
 using Fields = std::vector<std::tuple<std::string, std::string, std::string>>;
 
-/// Throws the problems, one a line.
+/// Throws the problems, one on each line.
 Scenario load(const fs::path& file, std::optional<std::uint64_t> seed, const Fields& fields) {
   const py::gil_scoped_release others_may_run;
   std::string name = file.string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binds target densities, and holds what people write against their preconditions.
+// Binds target densities, and checks arguments against their preconditions.
 #include "target/target.h"
 
 #include <pybind11/stl.h>

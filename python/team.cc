@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binds what agents do: the controller, the coverage table, and the team with perfect
+// Binds the parts of agents: the controller, the coverage table, and the team with perfect
 // communication.
 #include "core/control.h"
 #include "core/coverage_table.h"
@@ -18,7 +18,7 @@ AgentId agent_in(int agent) {
   return agent;
 }
 
-/// A controller, with the basis that its arrays have the shape of.
+/// A controller, and the basis that determines the shape of its arrays.
 struct Steering {
   explicit Steering(const Mission& plan)
       : domain(plan.domain), basis(plan.basis), controller(plan) {}
@@ -27,7 +27,7 @@ struct Steering {
   Controller controller;
 };
 
-/// A coverage table, and where its holder is.
+/// A coverage table, and the position of its owner.
 struct Coverage {
   Coverage(const Basis& modes, const Box& where, double step_s)
       : basis(modes), domain(where), dt_s(step_s), table(modes, step_s) {}
@@ -91,7 +91,7 @@ void add_sample(Coverage& coverage, int agent, const Numbers& x_m, Incarnation i
   coverage.table.add_sample(author, BasisAt(place, coverage.domain, coverage.basis));
 }
 
-/// How many blocks were news.
+/// The number of blocks that were new.
 int merge(Coverage& mine, const Coverage& theirs) {
   check(shape_of(mine.basis) == shape_of(theirs.basis) && mine.dt_s == theirs.dt_s,
         "theirs: has other modes or another dt_s");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as text.
+// Encodes bytes as text.
 #pragma once
 
 #include <string>

@@ -27,7 +27,7 @@ void trim_zeros(std::string& digits) {
   if (digits.back() == '.') digits.pop_back();
 }
 
-/// Groups of three before the point from 10 000 on, and a real minus sign.
+/// Groups of three digits before the point from 10 000 on, and a real minus sign.
 std::string typeset(std::string digits) {
   const bool negative = digits.front() == '-';
   if (negative) digits.erase(0, 1);

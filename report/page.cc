@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Chooses what the page needs of mission and record, with as few digits as it shows.
+// Selects the values of mission and record that the page needs, with no more digits than it shows.
 #include "report/page.h"
 
 #include <algorithm>
@@ -82,7 +82,7 @@ std::string weights_text(const Basis& basis) {
          readable(basis.sobolev_exponent) + ", |k|² = m² + n²" + (basis.planar() ? "" : " + l²");
 }
 
-/// What a φ² depends on, and what the page draws; of a mission that is drawn in cosines.
+/// The values that determine φ² and the page's drawing, for a mission in cosines.
 Json conventions(const Mission& mission, bool free_domain) {
   const Basis& basis = mission.basis;
   Json list = Json::array();
@@ -125,8 +125,8 @@ Json conventions(const Mission& mission, bool free_domain) {
   return list;
 }
 
-/// The scale ends where 0.2 % of the cells are above it, so that one peak does not make all else
-/// white; never below twice the uniform density.
+/// The end of the colour scale. 0.2 % of the cells are above it, so that one peak does not make all
+/// other cells white. It is at least twice the uniform density.
 Json encoded_density(const Field& density) {
   if (density.size() == 0) return nullptr;
   std::vector<double> cells(density.data(), density.data() + density.size());
@@ -138,7 +138,7 @@ Json encoded_density(const Field& density) {
   for (Eigen::Index j = density.cols(); j-- > 0;) {
     for (Eigen::Index i = 0; i < density.rows(); ++i) {
       const double level = density(i, j) > 0 ? std::min(density(i, j) / full, 1.0) : 0.0;
-      // 0 is only what is 0: nobody is wanted there.
+      // only a density of 0 becomes 0: no agent is wanted there
       bytes += static_cast<char>(level > 0 ? std::max(1L, std::lround(level * 255)) : 0);
     }
   }
@@ -148,7 +148,7 @@ Json encoded_density(const Field& density) {
           {"data", base64(bytes)}};
 }
 
-/// All rows of a short mission; of a long one the first, and then every few.
+/// All rows of a short mission; the first and then every few rows of a long one.
 Json metrics(const RunData& run) {
   constexpr std::size_t kFirst = 500, kMost = 4000;
   const std::size_t every = run.metrics.size() / kMost + 1;
@@ -168,7 +168,7 @@ Json metrics(const RunData& run) {
           {"age", std::move(age)}, {"received", std::move(received)}, {"lost", std::move(lost)}};
 }
 
-/// What a place of each kind adds to the sums: quality and q g.
+/// The values that a position of each kind adds to the sums: quality and q g.
 Json seen(const Mission& mission, const Sensors& sensors) {
   Json list = Json::array();
   for (std::size_t i = 0; i < mission.kinds.size(); ++i) {
@@ -182,7 +182,7 @@ Json seen(const Mission& mission, const Sensors& sensors) {
   return list;
 }
 
-/// The walls' corners, from the domain's corner.
+/// The walls' corners, relative to the domain's corner.
 Json rings_of(const Mission& mission) {
   Json rings = Json::array();
   for (const Ring& ring : mission.walls) {
@@ -194,7 +194,7 @@ Json rings_of(const Mission& mission) {
   return rings;
 }
 
-/// Where agents are to be at the end, and from when on they rest there.
+/// The agents' stations at the end, and the ticks from which they rest there.
 Json stations_of(const Mission& mission) {
   Json list = Json::array();
   const int axes = mission.domain.planar() ? 2 : 3;
@@ -209,7 +209,7 @@ Json stations_of(const Mission& mission) {
   return list;
 }
 
-/// The first tick at which the track's places send the agent home; nothing if none does.
+/// The first tick at which the track's positions send the agent home; nullopt if there is none.
 std::optional<Tick> home_from(const RunData& run, const Mission& mission, AgentId id,
                               const Track& track) {
   WayHome way(mission, id);
@@ -236,7 +236,7 @@ std::string title_of(const Mission& mission) {
 }
 
 Json page_mission(const Mission& flown, const Field& density) {
-  // The page computes cosines; it has no table of other modes.
+  // The page computes only cosines; it has no table of other modes.
   const Mission mission = in_cosines(flown);
   const Basis& basis = mission.basis;
   const Box& domain = mission.domain;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the page of a run shows, as JSON, and report.html with it inside.
+// Makes the data of a run's page as JSON, and report.html with these data.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,23 +15,23 @@ namespace ergocast {
 /// h_k², "dt_s", "tick_count", "agents", "radio_range_m", "free_domain", "conventions": [[name,
 /// text], …], "density": null or {"width", "height", "full", "data"}, "body_radius_m": half the
 /// distance that bodies keep, "stations": [{"id", "at_m" from the domain's corner, "rest_from" in
-/// ticks that count}, …]}, the last two only if there are any. Origin, size and modes have
-/// two numbers, in a box three. With "free_domain" μ and λ are those of cosines all the same, by
-/// which the page draws; φ² over time is in the modes of the free domain. `density` has a byte a
-/// cell, the north-west first; 255 is `full` times the uniform density or more. In a box it is the
-/// average along z.
+/// ticks that count}, …]}. The last two are present only if there are any. Origin, size and modes
+/// have two numbers, in a box three. With "free_domain" μ and λ are still those of cosines, with
+/// which the page draws; φ² over time is in the modes of the free domain. `density` has a byte for
+/// each cell, the north-west first; 255 is `full` times the uniform density or more. In a box it is
+/// the average along z.
 /// @param density  in multiples of the uniform density; if empty, the page draws the sum of the μ_k
 nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
 
-/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from"}: what the
-/// page needs of a record. "home_from", {"0": tick, …}, is there only without a `team` to tell it:
-/// when agents with a station went home by their rule, core/way_home.h.
-/// @param team  how the agents were over time (cli/recorded_team.h), or null
+/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from"}: the record's
+/// data for the page. "home_from", {"0": tick, …}, is present only without `team`: the ticks at
+/// which agents with a station went home by the rule of core/way_home.h.
+/// @param team  the agents' states over time (cli/recorded_team.h), or null
 nlohmann::ordered_json page_record(const RunData& run, const Mission& mission,
                                    const nlohmann::ordered_json& summary, const Field& density,
                                    const nlohmann::ordered_json& team);
 
-/// report.html. Keys that are missing in `summary`, or have another type, are left out.
+/// Makes report.html. Keys that are missing in `summary`, or have another type, are left out.
 std::string report_page(const RunData& run, const Mission& mission,
                         const nlohmann::ordered_json& summary, const Field& density,
                         const nlohmann::ordered_json& team);

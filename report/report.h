@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes the report of a run, for people.
+// Makes the report of a run.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +28,7 @@ std::variant<ReportPage, std::string> draw_report(const std::filesystem::path& r
                                                   const Mission& mission,
                                                   const nlohmann::ordered_json& team);
 
-/// What the page shows of a record, or the error; see page.h.
+/// The page's data of a record, or the error; see page.h.
 std::variant<nlohmann::ordered_json, std::string> read_page_record(
     const std::filesystem::path& run_dir, const Mission& mission,
     const nlohmann::ordered_json& team);

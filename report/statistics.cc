@@ -21,7 +21,7 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The mean of a resample: as many values as there are, each drawn again.
+/// The mean of a resample, which draws n of the n values with replacement.
 double resampled_mean(const std::vector<double>& values, std::uint64_t seed,
                       std::uint32_t resample) {
   double sum = 0;

@@ -20,7 +20,7 @@ inline constexpr const char* kTargetDensityFile = "target_density.csv";
 /// The content of the file.
 std::string target_density_text(const Field& density);
 
-/// Nothing on success, otherwise the error.
+/// Writes the file; returns nullopt on success, otherwise the error.
 std::optional<std::string> write_target_density(const std::filesystem::path& file,
                                                 const Field& density);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quantises positions as they come, and codes the runs between gaps as second differences.
+// Quantises positions on arrival, and codes the runs between gaps as second differences.
 #include "report/track_grid.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void TrackGrid::coarsen() {
 void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
   if (tick < 0) return;
   const auto agents = static_cast<std::int64_t>(tracks_.size() + (tracks_.contains(agent) ? 0 : 1));
-  // Before the tracks grow: a damaged record may name any tick.
+  // Checked before the tracks grow, because a damaged record may name any tick.
   while (tick / stride_ >= kMostPositions / agents) coarsen();
   if (tick % stride_ != 0) return;
   const std::int64_t row = tick / stride_, full = (1 << bits_) - 1;
@@ -47,7 +47,7 @@ void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
   if (std::ssize(track) <= row) track.resize(static_cast<std::size_t>(row) + 1, {kNothing, 0, 0});
   Cell& cell = track[static_cast<std::size_t>(row)];
   for (int axis = 0; axis < axes_of(domain_); ++axis) {
-    // A record may say anything; what is far outside is drawn at the edge of twice the domain.
+    // A record may contain any position; one far outside is drawn at the edge of twice the domain.
     const double share = (x_m[axis] - domain_.origin_m[axis]) / domain_.size_m[axis];
     cell[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(
         std::lround(std::clamp(share, -1.0, 2.0) * static_cast<double>(full)));

@@ -22,7 +22,7 @@ class TrackGrid {
   /// from then on only every second tick is added.
   static constexpr std::int64_t kMostPositions = 400'000;
 
-  /// @param agents  as many as are planned; others may come
+  /// @param agents  the planned number; more may join
   TrackGrid(const Box& domain, std::size_t agents);
 
   Tick stride() const { return stride_; }
@@ -34,10 +34,10 @@ class TrackGrid {
   /// The rows [from, to) for the page, which reads them in web/tracks.js:
   ///   {"bits": b, "agents": [{"id": i, "runs": [first row, number of rows, …]}, …], "data":
   ///   base64}
-  /// A coordinate is a whole number, from 0 at the domain's origin to 2^b − 1 at its end. `data`
-  /// has for each agent and each of its runs all x, then all y, in a box then all z: second
-  /// differences, the first two of them as if zeros preceded, in zigzag order as variable-length
-  /// bytes, the lowest seven bits first.
+  /// A coordinate is a whole number, from 0 at the domain's origin to 2^b − 1 at its end. For each
+  /// agent and each of its runs, `data` has all x, then all y, and in a box then all z. They are
+  /// second differences; the first two assume preceding zeros. Each is zigzag coded as
+  /// variable-length bytes, the lowest seven bits first.
   nlohmann::ordered_json encode(std::int64_t from, std::int64_t to) const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace ergocast {
 
-extern const WebPage k_run_page, k_study_page;  // which the build writes, web/embed.cmake
+extern const WebPage k_run_page, k_study_page;  // written by the build, web/embed.cmake
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One HTML file from a page of report/web/ and its data; it loads nothing from anywhere.
+// Makes one HTML file from a page of report/web/ and its data; the file loads no other resource.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,15 +19,15 @@ struct WebPage {
 const WebPage& run_web_page();
 const WebPage& study_web_page();
 
-/// A number with so many digits as JSON; null if it is not finite.
+/// A number with that many digits as JSON; null if it is not finite.
 nlohmann::ordered_json page_number(double value, int digits = 6);
 
-/// What the page may do, for the header Content-Security-Policy and for the file: run this one
-/// script and style, show pictures that it has made, and ask its own origin.
+/// The page's Content-Security-Policy, for the header and the file. It allows this one script and
+/// style, pictures that the page makes, and requests to its own origin.
 std::string content_security_policy(const WebPage& page);
 
-/// The file. `data` is in an element that is not executed; no text in it can end this element.
-/// Bytes that are not UTF-8 are replaced.
+/// Makes the file. `data` is in an element that is not executed, and no text in it can end this
+/// element. Bytes that are not UTF-8 are replaced.
 /// @param title  plain text
 std::string html_file(const WebPage& page, const std::string& title,
                       const nlohmann::ordered_json& data);

@@ -57,7 +57,7 @@ const std::vector<Rule> kRules = {
     {"core", {"core"}, {kGenerator}},
     {"target", {"text", "core", "target"}, {kPng, kFiles}},
     {"target/netcdf_library.cc", {"target"}, {kLoader}},
-    // Modes of a free domain: computed by whoever lacks their table.
+    // Modes of a free domain: a process without their table computes them.
     {"modes", {"core", "modes"}, {}},
     {"modes/eigen_modes.cc", {"core", "modes"}, {kSpectra}},
     {"modes/table.cc", {"core", "modes"}, {kHash}},
@@ -67,7 +67,7 @@ const std::vector<Rule> kRules = {
     {"team", {"core", "team"}, {}},
     {"team/plan.cc", {"core", "modes", "team"}, {kHash}},
     {"lcmtypes", {"text", "core", "team", "lcmtypes"}, {kLcmTypes, kHash, kCrypto}},
-    // Places on the earth, and drawings: for scenarios and exports, not for those who fly.
+    // Places on the earth, and drawings: for scenarios and exports, not for participants.
     {"geo", {"text", "core", "geo"}, {kEarth, kFiles, kJson, kXml}},
     {"scenario",
      {"text", "core", "modes", "target", "geo", "scenario"},
@@ -106,7 +106,7 @@ const std::vector<Rule> kRules = {
      {"text", "core", "modes", "target", "team", "lcmtypes", "scenario", "runtime", "logger",
       "report", "geo", "export", "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
-    // What is Python's: of the command, only how it writes a run directory.
+    // The Python module: it uses only the command's part that writes a run directory.
     {"python",
      {"text", "core", "target", "scenario", "runtime", "logger", "report", "lab", "cli", "python"},
      {kPython, kFiles}},

@@ -72,7 +72,7 @@ ergocast_test(NAME lcmtypes_tests LABELS unit OWN_FLAGS
     lcmtypes/message_authenticator_test.cc
     lcmtypes/subscriptions_test.cc
   LIBS ergocast::codec ${XXHASH_LIBRARY} ${SODIUM_LIBRARY})
-# lcm-gen's types read our bytes, too; they need the codec's include folders.
+# lcm-gen's types read our bytes as well; they need the codec's include folders.
 target_include_directories(lcmtypes_tests SYSTEM PRIVATE
   $<TARGET_PROPERTY:ergocast_codec,BINARY_DIR>/generated ${LCM_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR}
   ${SODIUM_INCLUDE_DIR})
@@ -168,7 +168,7 @@ ergocast_test(NAME logger_tests LABELS unit
     logger/summary_test.cc
   LIBS ergocast::report ergocast::scenario)
 
-# team/plan.proto is for other programs; ours need no code of it.
+# team/plan.proto is for other programs; ours do not need its code.
 ergocast_messages(ergocast_plan_message team/plan.proto)
 
 ergocast_test(NAME geo_tests LABELS unit

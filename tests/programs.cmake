@@ -1,15 +1,15 @@
-# Tests of the programs as people use them, which ./test builds without sanitizers; of memory; and of what
-# takes long to compute, which sanitizers would make twelve times as long.
+# Tests of the programs, which ./test builds without sanitizers; tests of memory; and long
+# computations, which sanitizers would make twelve times as long.
 add_dependencies(all_lab ergocast)
 
-# Replaces the program's allocator, so it stays alone.
+# Replaces the program's allocator, so it is a separate program.
 ergocast_test(NAME allocation_tests LABELS unit
   SOURCES core/allocation_test.cc
   LIBS ergocast::core ergocast::modes ergocast::team)
 target_link_options(allocation_tests PRIVATE
   -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=posix_memalign)
 
-# How much memory a map takes.
+# The memory that a map takes.
 ergocast_test(NAME memory_tests LABELS unit
   SOURCES target/map_memory_test.cc
   LIBS ergocast::target PNG::PNG)
@@ -38,8 +38,8 @@ ergocast_test(NAME paper_tests LABELS paper
     paper/uniform_square_test.cc
   LIBS ergocast_lab ergocast_theorems ergocast::scenario)
 
-# Missions under faults, an entry of the table for each scenario and pace. With ERGOCAST_TRIALS=nightly in
-# the environment an entry flies up to 2200 of them.
+# Missions under faults, an entry of the table for each scenario and pace. With
+# ERGOCAST_TRIALS=nightly in the environment an entry runs up to 2200 of them.
 function(ergocast_trials NAME PROGRAM ENTRY)
   add_test(NAME ${NAME}
     COMMAND ${CMAKE_COMMAND} -DERGOCAST=$<TARGET_FILE:${PROGRAM}> -DSOURCE_DIR=${CMAKE_SOURCE_DIR}
@@ -54,7 +54,7 @@ foreach(entry ${entries})
   ergocast_trials(${entry} ergocast ${entry})
 endforeach()
 
-# What tests preload into the programs they start.
+# Libraries that tests preload into the programs that they start.
 add_library(hold_at SHARED support/hold_at.cc)
 add_library(no_number SHARED support/no_number.cc)
 add_library(no_socket_filter SHARED support/no_socket_filter.cc)
@@ -164,8 +164,8 @@ function(ergocast_script_test NAME LABEL SCRIPT)
   add_test(NAME ${NAME} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/${SCRIPT} ${ARGN})
   set_tests_properties(${NAME} PROPERTIES LABELS ${LABEL} SKIP_RETURN_CODE 77 TIMEOUT 900)
 endfunction()
-# With `ctest -C nightly` only. They take turns with the bare Debian that they keep, and a test that waits for
-# its turn has not begun.
+# With `ctest -C nightly` only. They use the kept bare Debian in turn; a test that waits for its
+# turn has not started.
 function(ergocast_nightly_script_test NAME LABEL SCRIPT)
   add_test(NAME ${NAME} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/${SCRIPT} ${ARGN} CONFIGURATIONS nightly)
   set_tests_properties(${NAME} PROPERTIES LABELS ${LABEL} SKIP_RETURN_CODE 77 TIMEOUT 900
@@ -182,7 +182,7 @@ add_test(NAME mcap_reference_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/export/m
   $<TARGET_FILE:ergocast> ${CMAKE_BINARY_DIR}/mcap_reader)
 set_tests_properties(mcap_reference_reader PROPERTIES LABELS process TIMEOUT 300)
 ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
-# Slurm starts services where it is installed, so ./test does not install it.
+# Installing Slurm starts services, so ./test does not install it.
 find_program(SLURMCTLD slurmctld PATHS /usr/sbin)
 if(SLURMCTLD)
   ergocast_script_test(slurm_job_array hosts slurm/study_test.sh

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# ./test, with its own tests in the place of ours, ends as they do, and not well when it skips what it
-# should not.
+# ./test with other tests ends with their result, and fails if a test is skipped that should run.
 #   verdict_test.sh SOURCE_DIR
 set -euo pipefail
 source=$1
@@ -10,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 
 fail() { echo "FAILED: $*" >&2; cat "$work/said" >&2; exit 1; }
 
-# A tree whose set-up has nothing to do.
+# A tree whose set-up does nothing.
 mkdir -p "$work/packaging" "$work/tests" "$work/build/release" "$work/build/asan"
 cp "$source/test" "$work"
 cp "$source/tests/verdict" "$work/tests"
@@ -55,7 +54,7 @@ says() { grep -qF -- "$1" "$work/said" || fail "no word of: $1"; }
 
 expect 0 '2 passed, 0 failed, 0 skipped' -L good
 expect 0 '1 passed, 0 failed, 0 skipped' -R Two
-expect 0 '3 passed, 0 failed, 0 skipped' -L '^good$|^part$'  # of both folders
+expect 0 '3 passed, 0 failed, 0 skipped' -L '^good$|^part$'  # from both folders
 expect 0 '0 passed, 0 failed, 2 skipped' -L lacks
 says 'skipped: Lacks.Netem: this kernel has no netem'
 says 'skipped: lacks_root: skipped: networks of several hosts need root'

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Publishes where the robots are at each tick, passes commands on to them, and stops robots that
-// get none.
+// Publishes the robots' positions at each tick, passes commands to them, and stops robots that get
+// none.
 #include "examples/driver/driver.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace ergocast::example {
 namespace {
 
-/// A driver of one robot listens for so long whether another one drives it.
+/// How long the driver of one robot listens for another driver of that robot.
 constexpr std::chrono::nanoseconds kListening = std::chrono::seconds(1);
 
 void halt_robot(auto& slot) {
@@ -32,7 +32,7 @@ void Driver::receive(const Message& message, Bus bus, AgentId transmitter, Insta
 }
 
 void Driver::on(const Stop& over, const Arrival&) {
-  if (!over.now || me_.run() == 0) return;  // in order, the coordinator ends the mission
+  if (!over.now || me_.run() == 0) return;  // if in order, the coordinator ends the mission
   stop(over.reason);
   emergency_stopped_ = running_;
 }
@@ -53,7 +53,7 @@ void Driver::on(const MissionPart& part, const Arrival& arrival) {
   begun_ = next_tick_ = arrival.now + (only_ ? kListening : std::chrono::nanoseconds(0));
 }
 
-/// Why it cannot take part.
+/// The reason why it cannot take part.
 std::optional<std::string> Driver::why_not() const {
   if (follower().plan_problem()) return follower().plan_problem();
   const Mission& mission = me_.mission();
@@ -64,20 +64,21 @@ std::optional<std::string> Driver::why_not() const {
            "most the robots' 2 rad/s";
   if (only_ && mission.separation.distance_m > 0 && !uses_beacons(mission))
     return "a driver of one robot does not know where the others are: give the mission separation "
-           "{ lease_s }, so that agents tell each other, or drive all robots without --id";
+           "{ lease_s }, so that agents send each other their positions, or drive all robots "
+           "without --id";
   return std::nullopt;
 }
 
-/// The tick of another driver may be one ahead, because it began at another moment. More means that
-/// ours were late.
+/// Another driver may be one tick ahead, because it started at another moment. A larger difference
+/// means that our ticks were late.
 void Driver::catch_up(Tick team_tick) {
   if (team_tick <= tick_ + 1) return;
   skipped_ticks_ += team_tick - tick_;
   tick_ = std::min(team_tick, me_.end_tick());
 }
 
-/// Whoever drives it already goes on. Of two that began together, the one with the greater identity
-/// gives way; later nobody does, because that may be a recording.
+/// A driver that already drives the robot continues. If two began together, the one with the
+/// greater identity stops. Later no driver stops, because the other one may be a recording.
 void Driver::on(const WorldState& other, const Arrival& arrival) {
   const bool begins = !running_ || arrival.now < begun_ + kListening;
   if (!arrival.fresh || !begins) return;
@@ -92,7 +93,7 @@ void Driver::on(const WorldState& other, const Arrival& arrival) {
   }
 }
 
-/// Whether the robots can move as all kinds of agents expect it.
+/// Whether the robots can move as all kinds of agents expect.
 bool Driver::has_vehicles_for(const Mission& mission) {
   bool all = true;
   for (int kind = 0; kind < std::max<int>(1, static_cast<int>(mission.kinds.size())); ++kind) {
@@ -103,8 +104,8 @@ bool Driver::has_vehicles_for(const Mission& mission) {
   return all;
 }
 
-/// Every member gets a robot. Here they are made where the plan says that they begin; yours stand
-/// somewhere already.
+/// Every member gets a robot. Here they are made at the plan's starts; real robots already stand
+/// somewhere.
 void Driver::take_roster() {
   std::map<AgentId, Author> members;
   for (const RosterEntry& entry : follower().roster()) {
@@ -126,7 +127,7 @@ void Driver::on(const Command& command, const Arrival&) {
   const auto at = drives_.find(command.header.sender);
   if (at == drives_.end() || at->second.author.incarnation != command.header.incarnation) return;
   VehicleSlot& drive = at->second;
-  // Standing still is the one second thought that an agent may have of a tick.
+  // An agent may replace its command of a tick only by a stop.
   const bool halt = command.header.tick == drive.answered && command.velocity_mps.isZero(0);
   if (halt) halt_robot(drive);
   if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
@@ -138,11 +139,11 @@ void Driver::on(const Command& command, const Arrival&) {
       within_speed_limit(motion_of(me_.mission(), command.header.sender), command.velocity_mps);
   if (allowed_mps != command.velocity_mps) ++clamped_commands_;
   drive.commanded_mps = allowed_mps;
-  // Where a distance is kept, no other way than the commanded one is safe.
+  // If distances are kept, only the commanded direction is safe.
   if (!guard_) drive.robot.drive(allowed_mps, me_.mission().separation.distance_m > 0);
 }
 
-/// With all places known, once a tick: what one robot may do depends on where the others are.
+/// Runs once a tick with all positions, because the motion of one robot may depend on the others.
 void Driver::hold_apart() {
   const auto limit_of = [&](AgentId id) { return motion_of(me_.mission(), id).speed_limit_mps; };
   std::vector<Neighbour> bodies;
@@ -160,7 +161,7 @@ void Driver::hold_apart() {
 }
 
 void Driver::advance(Instant now, Outbox& out) {
-  if (emergency_stopped_) {  // the last state: no robot is driven any more
+  if (emergency_stopped_) {  // the last state: no robot moves any more
     emergency_stopped_ = false;
     pass_tick();
     return publish_position(out);
@@ -172,10 +173,10 @@ void Driver::advance(Instant now, Outbox& out) {
   published_ = true;
   // At the end the last state is repeated until the coordinator has ended the mission.
   const auto period = seconds(timing.dt_s / timing.realtime_factor);
-  next_tick_ = std::max(next_tick_ + period, now);  // what was missed is not made up for
+  next_tick_ = std::max(next_tick_ + period, now);  // missed ticks are not repeated
 }
 
-/// A robot never goes on for long without being told to.
+/// A robot never moves for long without a command.
 void Driver::pass_tick() {
   const Timing& timing = me_.mission().timing;
   for (auto& [id, drive] : drives_) {
@@ -199,7 +200,7 @@ void Driver::publish_position(Outbox& out) {
   const Box& domain = me_.mission().domain;
   const bool apart = me_.mission().separation.distance_m > 0;
   const auto parts = (drives_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;
-  // Each robot's driver says one part of what together is the state.
+  // Each robot's driver sends one part of the state.
   auto robots = static_cast<std::int32_t>(me_.mission().starts_m.size());
   for (const RosterEntry& entry : follower().roster())
     robots = std::max(robots, entry.author.agent + 1);
@@ -218,8 +219,8 @@ void Driver::publish_position(Outbox& out) {
       const auto& [id, one] = *drive;
       vehicle.id = id;
       vehicle.answered_tick = one.answered;
-      // Agents refuse a place outside of the domain, unless they keep a distance: then they need
-      // the true one.
+      // Agents refuse a position outside the domain. But agents that keep distances need the true
+      // position.
       vehicle.position_m = apart ? one.robot.position_m() : domain.nearest(one.robot.position_m());
       vehicle.velocity_mps = one.robot.velocity_mps();
     }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A driver in the place of the simulated world: it says where the robots are, and has them do what
-// the agents command. Copy this folder and replace robot.h; the rest may stay.
+// A driver replaces the simulated world: it sends the robots' positions and makes them execute the
+// agents' commands. Copy this folder and replace robot.h; the rest may stay.
 //
-//   MISSION    → which robots take part, the tick's length, when the mission ends
-//   WORLD_STATE ← every dt: the tick, and where each robot is
+//   MISSION     → the robots that take part, the tick's length, the mission's end
+//   WORLD_STATE ← every dt: the tick, and each robot's position
 //   COMMAND_<id> → a velocity for one robot; it is held for `command_hold_s`, then the robot stops
 //
-// One driver speaks for all robots, from motion capture or from a gateway that collects their
-// positions; or each robot has its own driver, which knows the place of that one alone. If it is
-// started again it goes on at the tick that the coordinator names.
+// One driver can drive all robots, with motion capture or a gateway that collects their positions.
+// Or each robot has its own driver, which knows only that robot's position. A restarted driver
+// continues at the tick that the coordinator names.
 #pragma once
 
 #include <map>
@@ -27,9 +27,9 @@ class Driver {
  public:
   static constexpr Role kRole = Role::kDriver;
 
-  /// @param run              0: the first mission heard
+  /// @param run              0: the first mission received
   /// @param speed_limit_mps  of the robots
-  /// @param only  the one robot that it drives; nothing: all
+  /// @param only  the one robot that it drives; nullopt: all
   Driver(RunId run, Incarnation incarnation, double speed_limit_mps,
          std::optional<AgentId> only = {});
 
@@ -45,7 +45,7 @@ class Driver {
   const std::string& reason() const { return reason_; }
   RunId run() const { return me_.run(); }
   Tick tick() const { return tick_; }
-  /// Ticks at which some robot had no command of that tick in time, summed over robots.
+  /// Ticks in which a robot had no command in time, summed over robots.
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
   /// Commands that were faster than the scenario's speed limit.
   std::int64_t clamped_commands() const { return clamped_commands_; }
@@ -83,7 +83,7 @@ class Driver {
   std::map<AgentId, VehicleSlot> drives_;
   std::optional<SeparationFilter> guard_;
   bool running_ = false, published_ = false, finished_ = false, failed_ = false;
-  bool emergency_stopped_ = false;  // by a STOP at once: the last state is still to be said
+  bool emergency_stopped_ = false;  // by a STOP at once; the last state must still be sent
   std::string reason_;
   Tick tick_ = 0;
   Instant next_tick_{}, begun_{};

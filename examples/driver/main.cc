@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast-example-driver: robots instead of the simulated world.
+// ergocast-example-driver: drives robots instead of the simulated world.
 #include <spdlog/spdlog.h>
 
 #include <optional>
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   double speed_limit_mps = 30;
   std::optional<AgentId> only;
   add_node_options(app, node);
-  app.add_option("--speed-limit", speed_limit_mps, "Of the robots [m/s]")
+  app.add_option("--speed-limit", speed_limit_mps, "The robots' greatest speed [m/s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option(

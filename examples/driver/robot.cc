@@ -16,7 +16,7 @@ void Robot::move(double dt_s) {
   const double error_rad = std::remainder(wanted_heading_rad - heading_rad_, 2 * M_PI);
   const double turn_limit_rad = kTurnLimit_radps * dt_s;
   heading_rad_ += std::clamp(error_rad, -turn_limit_rad, turn_limit_rad);
-  // Forwards only as far as it already looks where it is to go.
+  // The forward speed is the wanted velocity's component along the heading, never backwards.
   const bool looks_there = std::abs(error_rad) <= turn_limit_rad;
   const double share = exactly_ ? (looks_there ? 1 : 0) : std::max(0.0, std::cos(error_rad));
   const double speed_mps = std::min(wanted_mps_.norm(), speed_limit_mps_) * share;

@@ -10,14 +10,15 @@
 namespace ergocast::example {
 
 /// Stays on its plane, turns on the spot at most at kTurnLimit_radps and drives forwards at most at
-/// `speed_limit_mps`. Unlike a vehicle of ergocast-sim it cannot do at once what it is told.
+/// `speed_limit_mps`. Unlike a vehicle of ergocast-sim, it cannot change its velocity at once.
 class Robot {
  public:
   Robot(const Eigen::Vector3d& position_m, double speed_limit_mps)
       : position_m_(position_m), speed_limit_mps_(speed_limit_mps) {}
 
-  /// The velocity to drive at from now on; zero: stop.
-  /// @param exactly  it turns on the spot until it looks there: no other way is safe
+  /// Sets the velocity to drive at from now on; zero: stop.
+  /// @param exactly  whether it turns on the spot until it points there, because no other direction
+  /// is safe
   void drive(const Eigen::Vector3d& velocity_mps, bool exactly = false) {
     wanted_mps_ = velocity_mps;
     exactly_ = exactly;
@@ -26,10 +27,10 @@ class Robot {
   Eigen::Vector3d position_m() const { return position_m_; }
   Eigen::Vector3d velocity_mps() const { return velocity_mps_; }
 
-  /// Lets `dt_s` pass. A real robot moves by itself.
+  /// Simulates `dt_s`. A real robot moves by itself.
   void move(double dt_s);
 
-  /// Lets a tick pass as agents of unicycles expect it, core/vehicle.h.
+  /// Simulates a tick with the unicycle model of core/vehicle.h, which the agents expect.
   /// @pre the mission's unicycles turn no faster than kTurnLimit_radps
   void move_as_unicycle(const Motion& motion);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast-example-mujoco-film: flies a scenario in one process and writes what a camera above the
-// room sees, as raw RGB to the standard output, or one frame of it as a PPM file:
+// ergocast-example-mujoco-film: simulates a scenario in one process and writes the pictures of a
+// camera above the room. They go to the standard output as raw RGB, or one frame goes to a PPM
+// file:
 //   ergocast-example-mujoco-film examples/mujoco/discs.textproto discs 720 720 |
 //     ffmpeg -f rawvideo -pixel_format rgb24 -video_size 720x720 -framerate 20 -i - film.webm
 #include <EGL/egl.h>
@@ -24,7 +25,7 @@
 namespace ergocast::mujoco {
 namespace {
 
-/// A context of OpenGL without a window.
+/// An OpenGL context without a window.
 bool open_egl() {
   setenv("EGL_PLATFORM", "surfaceless", 0);
   const EGLDisplay display = eglGetDisplay(EGL_DEFAULT_DISPLAY);
@@ -66,7 +67,7 @@ class Camera {
   Camera& operator=(const Camera&) = delete;
   ~Camera() { forget(); }
 
-  /// What it sees, from the upper left corner.
+  /// The picture's pixels, from the upper left corner.
   std::vector<unsigned char> picture(const mjModel* model, mjData* data) {
     if (model != model_) look_at(model);
     mjv_updateScene(model, data, &option_, nullptr, &camera_, mjCAT_ALL, &scene_);

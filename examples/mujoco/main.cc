@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast-example-mujoco: robots in a physics engine instead of the simulated world.
+// ergocast-example-mujoco: moves robots in a physics engine instead of the simulated world.
 #include <map>
 #include <optional>
 #include <string>
@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
   app.add_option("--robots", kind, "discs that roll on two wheels, or quadrotors")
       ->transform(CLI::CheckedTransformer(std::map<std::string, RobotKind>{
           {"discs", RobotKind::kDisc}, {"quadrotors", RobotKind::kQuadrotor}}));
-  app.add_option("--radius", radius_m, "Of a robot [m], default 0.2")->check(CLI::Range(0.1, 1.0));
+  app.add_option("--radius", radius_m, "A robot's radius [m], default 0.2")
+      ->check(CLI::Range(0.1, 1.0));
   app.add_option("--lag", lag_s,
                  "Time constant of wheels, default 0.1, or rotors, default 0.03 [s]")
       ->check(CLI::Range(0.01, 1.0));

@@ -80,7 +80,7 @@ void MujocoPhysics::pass_tick(std::span<PhysicalBody> bodies) {
   }
 }
 
-/// Of all robots in the model, what the next model is to know.
+/// Saves the state of all robots in the model for the next model.
 void MujocoPhysics::save() {
   const int acts = rolls() ? 2 : 4, qpos = rolls() ? kQpos + 2 : kQpos, qvel = qpos - 1;
   for (auto& [id, robot] : robots_) {
@@ -105,7 +105,7 @@ void MujocoPhysics::build() {
     robot.body = named(model_.get(), mjOBJ_BODY, "robot" + number);
     robot.qpos_at = model_->jnt_qposadr[joint];
     robot.dof_at = model_->jnt_dofadr[joint];
-    // Each actuator has one number of its own.
+    // Each actuator has one activation value.
     robot.act_at = named(model_.get(), mjOBJ_ACTUATOR, actuator);
     std::copy(robot.qpos.begin(), robot.qpos.end(), data_->qpos + robot.qpos_at);
     std::copy(robot.qvel.begin(), robot.qvel.end(), data_->qvel + robot.dof_at);
@@ -128,7 +128,7 @@ void MujocoPhysics::find_owners() {
   }
 }
 
-/// It looks where it moves, or stands and looks at the middle of the room.
+/// It points along its motion; a standing robot points at the middle of the room.
 void MujocoPhysics::put_in_place(Robot& robot) {
   robot.to_place = false;
   const Eigen::Vector3d middle_m = domain_.origin_m + domain_.size_m / 2;

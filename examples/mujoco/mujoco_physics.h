@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Robots in the physics engine MuJoCo, in the place of the simulated world's vehicles. The engine
-// steps with the ticks and knows no clock, so equal missions give equal numbers.
+// Robots in the physics engine MuJoCo, which replace the simulated world's vehicles. The engine
+// steps with the ticks and uses no clock, so equal missions give equal numbers.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -20,7 +20,7 @@
 
 namespace ergocast::mujoco {
 
-/// What touched what. One pair that touches in one tick, however often, counts once.
+/// Counts contacts. A pair that touches in one tick, however often, counts once.
 struct Contacts {
   std::int64_t robots = 0;  ///< two robots
   std::int64_t walls = 0;   ///< a robot and a wall
@@ -43,14 +43,13 @@ class MujocoPhysics : public Physics {
   mjData* data() { return data_.get(); }
 
  private:
-  /// Everything about a robot. Its numbers outlive the engine's model, which is made again for each
-  /// new robot.
+  /// The state of a robot. It outlives the engine's model, which is made again for each new robot.
   struct Robot {
     Robot(const RobotDesign& design) : disc(design), quadrotor(design) {}
     Eigen::Vector3d place_m{0, 0, 0}, velocity_mps{0, 0, 0};
     bool to_place = true;
     std::vector<double> qpos, qvel, act;                // kept while the model is made again
-    int body = 0, qpos_at = 0, dof_at = 0, act_at = 0;  // where they are in the model
+    int body = 0, qpos_at = 0, dof_at = 0, act_at = 0;  // indices in the model
     DiscPilot disc;
     QuadrotorPilot quadrotor;
   };
@@ -82,8 +81,8 @@ class MujocoPhysics : public Physics {
   Contacts contacts_;
 };
 
-/// For a world whose missions these robots can fly: in a plane, as points.
-/// @param made  null, or where the address of the newest physics goes; the world owns it
+/// For a world whose missions suit these robots: in a plane, with point vehicles.
+/// @param made  set to the newest physics, which the world owns; may be null
 PhysicsMaker mujoco_physics(const RobotDesign& design, MujocoPhysics** made = nullptr);
 
 }  // namespace ergocast::mujoco

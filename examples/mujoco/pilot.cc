@@ -9,10 +9,9 @@
 namespace ergocast::mujoco {
 namespace {
 
-/// A disc that looks further away than this from where it is to go turns on the spot.
+/// A disc whose heading differs from the wanted direction by more than this turns on the spot.
 constexpr double kLooksThere = 0.8;  // a cosine
-/// It turns round for another way, forwards or backwards, only if the other one is this much
-/// better.
+/// It changes between forwards and backwards only if the other direction is better by this much.
 constexpr double kUndecided = 0.2;
 
 // A quadrotor's loops, each slow enough for the one inside.
@@ -49,7 +48,7 @@ std::array<double, 4> QuadrotorPilot::thrusts_n(const RobotState& state,
   push.z() = kGravity_mps2 + kHeightGain * (kHoverHeight_m - state.position_m.z()) -
              kClimbGain * state.velocity_mps.z();
   const Eigen::Matrix3d to_own = state.attitude.transpose();
-  const Eigen::Vector3d up = to_own * push.normalized();  // where its own z is to be
+  const Eigen::Vector3d up = to_own * push.normalized();  // the wanted direction of its own z
   const double thrust_n = kQuadrotorMass_kg * std::max(0.0, (to_own * push).z());
   const double heading_rad = std::atan2(state.attitude(1, 0), state.attitude(0, 0));
   const Eigen::Vector3d& turning = state.turning_radps;

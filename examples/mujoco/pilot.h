@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What runs on a robot: it turns a velocity that the robot is to have into wheel speeds or thrusts.
-// It knows only what its own sensors tell.
+// The controller on a robot: it turns a wanted velocity into wheel speeds or thrusts. It uses only
+// the robot's own sensors.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,15 +10,15 @@
 
 namespace ergocast::mujoco {
 
-/// What a robot knows of itself.
+/// A robot's measurements of itself.
 struct RobotState {
   Eigen::Vector3d position_m{0, 0, 0}, velocity_mps{0, 0, 0};
   Eigen::Matrix3d attitude = Eigen::Matrix3d::Identity();  ///< from its axes to those of the room
   Eigen::Vector3d turning_radps{0, 0, 0};                  ///< in its own axes
 };
 
-/// A disc turns until it looks along the line of the wanted velocity, at most at kTurnLimit_radps,
-/// and rolls along it, forwards or backwards, the slower the less it looks there.
+/// A disc turns towards the line of the wanted velocity, at most at kTurnLimit_radps. It rolls
+/// along that line, forwards or backwards, and more slowly the less it is aligned.
 class DiscPilot {
  public:
   static constexpr double kTurnLimit_radps = 4;
@@ -32,8 +32,7 @@ class DiscPilot {
   bool backwards_ = false;
 };
 
-/// A quadrotor leans into the direction in which it is to become faster, and keeps height and
-/// heading.
+/// A quadrotor tilts towards the wanted acceleration, and keeps height and heading.
 class QuadrotorPilot {
  public:
   explicit QuadrotorPilot(const RobotDesign& design) : design_(design) {}

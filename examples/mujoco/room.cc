@@ -20,8 +20,8 @@ std::string text(const char* format, Values... values) {
   return out;
 }
 
-// Bodies touch each other and walls (1); wheels and casters touch the floor alone (2). Of two that
-// touch, the greater friction counts: that of the wheels is their own.
+// Bodies touch each other and walls (1); wheels and casters touch only the floor (2). A contact has
+// the greater friction of its two geoms, which is that of the wheels.
 constexpr const char* kHead = R"(<mujoco model="ergocast">
 <compiler angle="radian" inertiafromgeom="auto"/>
 <option timestep="%.17g" cone="elliptic" gravity="0 0 -9.81"/>
@@ -50,7 +50,7 @@ std::string wall(int number, double x_m, double y_m, double half_x_m, double hal
       number, x_m, y_m, height_m / 2, half_x_m, half_y_m, height_m / 2);
 }
 
-/// Edge by edge: a plank just inside of what is solid.
+/// For each edge, a thin box just inside the solid side.
 std::string planks(const Rings& walls, int number, double height_m) {
   constexpr double kHalf_m = 0.02;
   std::string out;
@@ -89,7 +89,7 @@ std::string floor_and_walls(const RobotDesign& design, const Box& domain, const 
   return out + planks(walls, 4, height_m);
 }
 
-/// Sixteen colours that differ, then again.
+/// Sixteen different colours, repeated.
 std::string colour(AgentId id) {
   constexpr std::array kColours = {"0.12 0.47 0.71", "1 0.5 0.05",     "0.17 0.63 0.17",
                                    "0.84 0.15 0.16", "0.58 0.4 0.74",  "0.55 0.34 0.29",

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the physics engine is told: a walled room with robots in it, as MuJoCo's MJCF text.
+// The physics engine's model as MuJoCo's MJCF text: a walled room with robots in it.
 //
-// A robot's place is its centre. The domain is where centres may be, so the room's walls stand a
-// robot's radius outside of its edges: whose centre leaves the domain touches a wall. The mission's
-// own walls stand where they are; bodies keep wall_clearance_m from them.
+// A robot's position is its centre. Centres may be anywhere in the domain. So the room's walls
+// stand a robot's radius outside the domain's edges: a robot whose centre leaves the domain touches
+// a wall. The mission's own walls keep their places; bodies keep wall_clearance_m from them.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,22 +22,23 @@ enum class RobotKind { kDisc, kQuadrotor };
 struct RobotDesign {
   RobotKind kind = RobotKind::kDisc;
   double radius_m = 0.2;  ///< of the disc that a robot takes up
-  double lag_s = 0.1;     ///< time constant with which wheels or rotors follow what is set
+  double lag_s = 0.1;     ///< time constant with which wheels or rotors follow their set value
 };
 inline constexpr RobotDesign kDiscs, kQuadrotors{RobotKind::kQuadrotor, 0.2, 0.03};
 
-// Of all discs:
+// All discs:
 inline constexpr double kWheelRadius_m = 0.05;
 /// Half of the distance between the wheels, as a share of the robot's radius.
 inline constexpr double kTrackShare = 0.7;
 inline constexpr double kWheelSpeedLimit_radps = 30, kWheelTorqueLimit_nm = 0.5;
-// Of all quadrotors:
+// All quadrotors:
 inline constexpr double kQuadrotorMass_kg = 0.8;
 inline constexpr double kHoverHeight_m = 1;
-/// Rotors from the centre, as a share of the robot's radius; and torque for each newton of thrust.
+/// The rotors' distance from the centre, as a share of the robot's radius; and torque for each
+/// newton of thrust.
 inline constexpr double kArmShare = 0.6, kRotorTorque_m = 0.02;
 inline constexpr double kThrustLimit_n = 6;
-/// Of the part that all but the rotors weighs: a flat box, about its centre.
+/// The moments of inertia of the body without rotors: a flat box, about its centre.
 inline constexpr double kInertiaX_kgm2 = 0.006, kInertiaZ_kgm2 = 0.011;
 
 /// One step of the engine. A tick is a whole number of steps, none of which is longer.

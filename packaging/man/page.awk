@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Turns what "PROGRAM [COMMAND] --help" prints (CLI11's form) into a manual page, or into a command's
-# sub-section of its program's page.
+# Turns the output of "PROGRAM [COMMAND] --help" (CLI11's form) into a manual page, or into a
+# command's sub-section of its program's page.
 #   -v program=NAME -v command=NAME or "" -v version=X
 
 function escape(text) {
@@ -10,7 +10,7 @@ function escape(text) {
   return text
 }
 
-# "-h,--help" or "--out DIR": the flag bold, what belongs to it in italics.
+# "-h,--help" or "--out DIR": the flag bold, its argument in italics.
 function term(text,    space) {
   sub(/ (Excludes|Needs):.*/, "", text)
   sub(/ REQUIRED/, "", text)
@@ -55,7 +55,7 @@ section != "" && /^  [^ ]/ {
   next
 }
 section != "" { sub(/^ +/, ""); if (!hidden) print escape($0); next }
-# What stands below all options.
+# The text below all options.
 {
   if (!noted++) print command == "" ? ".SH NOTES" : ".PP"
   print escape($0)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Ergodic coverage by teams of agents: records, simulations, and the method.
 
-load() reads a run directory, simulate() flies a mission. The classes of the method are those of
-the C++ code, and compute the same bits. docs/python.md is the introduction.
+load() reads a run directory, simulate() simulates a mission. The classes of the method are those
+of the C++ code, and compute the same bits. docs/python.md is the introduction.
 """
 
 from ergocast._errors import ErgocastError, RecordError, ScenarioError

@@ -10,13 +10,13 @@ from ergocast import _native
 
 
 class ErgocastError(ValueError):
-    """Something that was given cannot be used; the text says what, where and the remedy."""
+    """An argument or a file cannot be used; the text has the error, the place and the remedy."""
 
 
 class RecordError(ErgocastError):
     """A run directory that cannot be read, or cannot be written.
 
-    The text names the file, the line and the field, and says what to do.
+    The text names the file, the line, the field and the remedy.
     """
 
 

@@ -23,11 +23,11 @@ _END = 2**62
 
 
 class Run:
-    """The record of a mission: what its run directory holds.
+    """The record of a mission: the contents of its run directory.
 
     Frames have the columns of the files, as docs/run_directory.md describes them. Arrays of
-    coefficients have the shape (modes_x, modes_y), in a box (modes_z, modes_x, modes_y). Everything was read when the run was loaded,
-    so its directory may go.
+    coefficients have the shape (modes_x, modes_y), in a box (modes_z, modes_x, modes_y). All files
+    are read when the run is loaded, so its directory may be removed afterwards.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -44,7 +44,7 @@ class Run:
 
     @property
     def mission(self) -> _native.Mission:
-        """The mission that was flown: domain, basis, law, seed."""
+        """The recorded mission: domain, basis, law, seed."""
         return self._record.mission
 
     @property
@@ -82,7 +82,7 @@ class Run:
 
     @property
     def positions_m(self) -> Floats:
-        """Where agents() were: shape (ticks, agents, d) [m], index 0 is tick 0; nan without row.
+        """The positions of agents(): shape (ticks, agents, d) [m]; index 0 is tick 0; nan: no row.
 
         d is 2, in a box 3.
         """
@@ -104,7 +104,7 @@ class Run:
         tick: one number (default: the last recorded), or several that ascend.
         Returns (modes_x, modes_y), or (len(tick), modes_x, modes_y); 0 before the first row.
         metrics.ergodic_metric is φ² of these numbers, bit for bit, in a record of one membership.
-        Raises ValueError for ticks that descend.
+        Raises ValueError if ticks descend.
         """
         one = tick is None or np.ndim(tick) == 0
         last = _END if tick is None else tick
@@ -116,7 +116,7 @@ class Run:
     def ergodic_metric(self, tick: int | None = None) -> float:
         """φ² of coverage(tick) against the target, in mission.basis.
 
-        That is in modes of the free domain if mission.basis.free_domain, else in cosines;
+        It uses modes of the free domain if mission.basis.free_domain, else cosines;
         summary["ergodic_metric_in_cosines"] compares missions with either basis.
         """
         mission = self.mission
@@ -145,7 +145,7 @@ class Run:
         return summary
 
     def _members(self) -> list[tuple[int, int, int]] | None:
-        """(agent, first tick, first tick without it), as the summary says; None: all count."""
+        """(agent, first tick, first tick without it), from the summary; None: all count."""
         agents = self.summary.get("agents")
         if agents is None:
             return None
@@ -169,7 +169,8 @@ class Run:
 def load(run_dir: str | os.PathLike[str]) -> Run:
     """Reads the run directory that `ergocast run`, `simulate` or simulate() wrote.
 
-    Raises RecordError, which names file, line and field, for a directory that is damaged or is
-    none; a last line without its line break comes from a killed process and does not count.
+    Raises RecordError, which names file, line and field, for a damaged directory or one
+    of another kind. A last line without its line break comes from a killed process and does not
+    count.
     """
     return Run(run_dir)

@@ -33,10 +33,10 @@ def simulate(
     seed: other random numbers.
     set: fields and their values, such as {"law.epsilon": 0.2, "agents.starts[0].x_m": 3}; the
         paths and values of `ergocast study --vary`.
-    out: a new folder, which becomes the run directory with its report; without it nothing stays
-        on the disk.
+    out: a new folder, which becomes the run directory with its report; without it no file
+        remains.
 
-    Other threads run meanwhile. Ctrl-C ends the mission in order, and raises KeyboardInterrupt.
+    Other threads can run meanwhile. Ctrl-C ends the mission in order, and raises KeyboardInterrupt.
     Raises ScenarioError with all problems at once, RecordError if `out` cannot be used.
     """
     compiled = _compile(scenario, seed, set)
@@ -56,7 +56,7 @@ def compile_mission(
     seed: int | None = None,
     set: Mapping[str, Value] | None = None,
 ) -> _native.Mission:
-    """The mission that simulate() would fly: for IdealTeam, Controller and others.
+    """The mission that simulate() would run: for IdealTeam, Controller and others.
 
     Parameters and errors as for simulate().
     """
@@ -86,7 +86,7 @@ def _file(scenario: str | os.PathLike[str]) -> str:
 
 
 def _fields(values: Mapping[str, Value] | None) -> list[tuple[str, str, str]]:
-    """(path, value as a scenario writes it, how errors call it)."""
+    """(path, value in a scenario's format, name in errors)."""
     fields = []
     for path, value in (values or {}).items():
         text = _text(value)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times what a mission key costs each message: protecting and verifying datagrams with and without
-// one, beside the hash alone over as many bytes.
+// Times the cost of a mission key per message: protecting and verifying datagrams with and without
+// a key. The lower bound is only the hash over as many bytes.
 #include <benchmark/benchmark.h>
 #include <sodium.h>
 
@@ -63,7 +63,7 @@ void Open(benchmark::State& state) {
   }
 }
 
-/// A forgery, which costs its receiver only the tag.
+/// A forgery: its receiver computes only the tag.
 void Refuse(benchmark::State& state) {
   const Message message = message_of(state.range(0));
   const std::string& channel = channel_of(message);
@@ -76,7 +76,7 @@ void Refuse(benchmark::State& state) {
   }
 }
 
-/// The lower bound: libsodium's hash of these bytes, and nothing else.
+/// The lower bound: only libsodium's hash of these bytes.
 void KeyedHashAlone(benchmark::State& state) {
   std::vector<std::byte> bytes;
   encode(message_of(state.range(0)), bytes);

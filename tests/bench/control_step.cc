@@ -2,10 +2,10 @@
 // Times one agent's control step, its lower bound, and the merging of teammates' contributions.
 //
 // Every timed step comes directly after the merges of the teammates' messages of that tick, as in a
-// lockstep mission. Pausing the benchmark's timer there would cost as much as the step itself, so
+// lockstep mission. Pausing the benchmark's timer there would take as long as the step itself, so
 // each step is timed between two readings of the clock. An iteration is a round of many ticks. Its
-// time is their median less that of an empty interval: other load on the machine affects few of
-// them. Teammates take turns within ten ticks at most, so it is the mean of ten medians, one for
+// time is their median minus that of an empty interval; other load on the machine affects only few
+// of them. Teammates take turns within ten ticks at most, so it is the mean of ten medians, one for
 // each tick of the turn.
 #include <benchmark/benchmark.h>
 
@@ -87,7 +87,7 @@ void ControlStep(benchmark::State& state, Sight sight) {
   state.counters["step/floor"] = step_s / floor_s;
 }
 
-/// The step with the modes of a free domain beside that with as many cosines.
+/// The step with the modes of a free domain, compared with as many cosines.
 void FreeDomainStep(benchmark::State& state, Sight sight) {
   const auto modes = static_cast<int>(state.range(0)), agents = static_cast<int>(state.range(1));
   StepTeam cosines(modes, agents, sight), free(modes, agents, sight, true);

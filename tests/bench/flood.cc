@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures what a flood of repeats costs a keyed team in real time: a process without the key
-// records the team's messages and sends them again, unchanged, so many times a second.
+// Measures the cost of a flood of repeats for a keyed team in real time. A process without the key
+// records the team's messages and sends them again, unchanged, at a given rate.
 //
-// Lateness depends on the machine and its load, so a person reads it here and no test depends on
-// it. tests/process/flood_test.cc counts what must hold on any machine.
+// Lateness depends on the machine and its load, so no test depends on it.
+// tests/process/flood_test.cc checks the properties that hold on any machine.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -42,7 +42,7 @@ constexpr auto kRecording = 12s, kFlood = 22s, kPause = 1s;
 
 constexpr std::array<const char*, 4> kKinds = {"MISSION", "WORLD_STATE", "COMMAND", ""};
 
-/// A keyed team in real time, in a folder that is removed with it.
+/// A keyed team in real time; its folder is removed with it.
 class KeyedTeam {
  public:
   KeyedTeam() : key_(make_mission_key()) {
@@ -96,7 +96,7 @@ class KeyedTeam {
   std::optional<Child> mission_;
 };
 
-/// Sends at that rate for so long, in bursts of a millisecond; returns the rate it reached.
+/// Sends at that rate for that time, in bursts of a millisecond; returns the reached rate.
 double flood(test::Replayer& replayer, double per_second, std::chrono::duration<double> time) {
   const auto start = Clock::now();
   std::size_t sent = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forks a process that dies with its parent, and kills it when the handle is destroyed.
+// Forks a process that is killed when its parent ends or the handle is destroyed.
 #include "tests/bench/forked.h"
 
 #include <sys/prctl.h>

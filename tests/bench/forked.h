@@ -11,7 +11,7 @@ namespace ergocast::bench {
 
 class Forked {
  public:
-  /// Runs `life` in a child. To be created while this process has one thread.
+  /// Runs `life` in a child. Create it while this process has only one thread.
   explicit Forked(const std::function<void()>& life);
   Forked(Forked&& other) noexcept : pid_(std::exchange(other.pid_, -1)) {}
   Forked& operator=(Forked&&) = delete;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times a whole team as processes over LCM, beside a ping-pong of datagrams of the same number and
-// size between as many processes, without our codec and without mathematics: straight over UDP,
-// which is the lower bound, and over LCM.
+// Times a whole team as processes over LCM. For comparison it times a ping-pong of datagrams of the
+// same number and size between as many processes, without our codec and mathematics: directly over
+// UDP, which is the lower bound, and over LCM.
 //
 // The real programs are started as a user starts them; the record has their speed.
 #include <benchmark/benchmark.h>
@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// About as many datagrams whatever the team.
+/// About equally many datagrams for each team size.
 double duration_s(int agents) { return std::max(20.0, 16000.0 / (agents * agents)); }
 const fs::path kScenario = fs::path(ERGOCAST_SCENARIO_DIR) / "paper_fig1a.textproto";
 
@@ -81,7 +81,7 @@ void Lockstep(benchmark::State& state) {
   state.counters["of_lcm"] = ticks_per_s / lcm_ticks_per_s;
 }
 
-// Each mission shows its figures; the time is that of one tick.
+// Each mission reports its figures; the time is per tick.
 BENCHMARK(Lockstep)
     ->ArgName("agents")
     ->Arg(4)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times the transform of a map against its size, beside reading as many doubles from memory once,
-// which any method with a map in memory must do.
+// Times the transform of a map against its size. The lower bound is reading as many doubles from
+// memory once.
 #include <benchmark/benchmark.h>
 
 #include <vector>

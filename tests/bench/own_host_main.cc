@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs the benchmarks of a program in a network of its own, where the system allows one.
+// Runs the benchmarks of a program in a separate network, if the system allows it.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

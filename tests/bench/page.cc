@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures the page in Chromium: how soon any tick of a long record is on the screen, and how long
-// a frame of a live team keeps the browser's main thread. `cpu_ms` is processor time of that
-// thread, from reading a message to drawing, a seek or a frame; it depends less on what else the
-// machine does.
+// Measures the page in Chromium: the time until any tick of a long record is on the screen, and the
+// main thread's time for a frame of a live team. `cpu_ms` is processor time of that thread for a
+// seek or a frame, from reading a message to drawing; it depends less on other load.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
 
@@ -96,7 +95,7 @@ BENCHMARK(Seek)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 
-/// A team that flies ten ticks a second, for 20 s.
+/// A team that runs ten ticks a second for 20 s.
 void LiveFrame(benchmark::State& state) {
   Folder folder;
   Child mission =

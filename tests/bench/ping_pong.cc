@@ -18,7 +18,7 @@
 namespace ergocast::bench {
 namespace {
 
-/// What a real world, agent and logger do when a datagram was lost: they send it again.
+/// Like a real world, agent and logger, sends a lost datagram again.
 constexpr int kRepeat_ms = 20;
 constexpr int kRepeatAck_ms = 100;
 constexpr Tick kAckEveryTicks = 16;

@@ -25,7 +25,7 @@ Traffic traffic_of(const Mission& mission);
 /// Forks every agent and the logger, is the world itself, and plays `ticks` ticks. The messages
 /// have the right size, number, order and recipients, but no content: nothing is encoded, checked
 /// or computed. Every process has ended when it returns.
-/// @return ticks per second, the start left out; nothing if LCM cannot be used
+/// @return ticks per second without the start; nullopt if LCM cannot be used
 std::optional<double> ping_pong(Carrier carrier, const Traffic& traffic, Tick ticks);
 
 }  // namespace ergocast::bench

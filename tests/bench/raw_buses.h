@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The three buses without our transport, with meaningless bytes: over LCM, or straight over UDP.
+// The three buses without our transport, with meaningless bytes: over LCM, or directly over UDP.
 #pragma once
 
 #include <functional>
@@ -22,15 +22,14 @@ struct Stamp {
 
 enum class Carrier {
   kLcm,  ///< liblcm, as any program uses it
-  kUdp,  ///< one multicast socket a bus, read many datagrams at a time: no thread, no queue, no
-         ///< names
+  kUdp,  ///< one multicast socket for each bus, many datagrams a read: no thread, queue or names
 };
 
 class RawBuses {
  public:
   using Handler = std::function<void(Bus, const Stamp&)>;
 
-  /// @param listening  buses to hear
+  /// @param listening  buses to receive from
   static std::unique_ptr<RawBuses> open(Carrier carrier, const LcmUrl& url,
                                         const std::vector<Bus>& listening, Handler handler);
   virtual ~RawBuses() = default;
@@ -38,7 +37,7 @@ class RawBuses {
   /// Sends a datagram of one size by any carrier: a name and `bytes` bytes.
   virtual void publish(Bus bus, const std::string& channel, const Stamp& stamp,
                        std::size_t bytes) = 0;
-  /// Handles all waiting datagrams, once there is one. False if none came for so long.
+  /// Waits for a datagram and handles all waiting ones. Returns false after a timeout.
   virtual bool wait(int timeout_ms) = 0;
 };
 

@@ -3,8 +3,8 @@
 // a message that is received, late commands, and losses.
 //
 // A delivery is a message that an agent has received. Its cost is the processor time of all
-// processes of the team, their mathematics included, by the number of deliveries; of a mission's
-// first two seconds neither counts.
+// processes of the team, with their mathematics, divided by the number of deliveries. The first two
+// seconds of a mission do not count.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// What only the longer mission does, without the start of so many processes.
+/// The work of only the longer mission, without the start of the processes.
 constexpr int kShort_s = 2, kLong_s = 22;
 
 std::string scenario_text(int agents, int period_ticks, int duration_s) {
@@ -53,7 +53,7 @@ struct Measured {
   double used_s = 0, deliveries = 0, lost = 0, late = 0, drops = 0, commands = 0;
 };
 
-/// A mission by the real programs, or why there is none.
+/// A mission by the real programs, or the error.
 std::variant<Measured, std::string> measure(int agents, int period_ticks, int duration_s) {
   const TemporaryFolder folder;
   const fs::path scenario = folder.path() / "team.textproto", log = folder.path() / "log";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times the last step of a command where bodies keep a distance, beside the control step of
-// control_step.cc: with so many teammates, all or none of them so near that they count.
+// Times the last step of a command if bodies keep distances, for comparison with the control step
+// of control_step.cc. All or none of the teammates are near enough to matter.
 #include "core/separation.h"
 
 #include <benchmark/benchmark.h>
@@ -23,7 +23,7 @@ Mission mission_with(double error_m) {
   return mission;
 }
 
-/// Each within the 8 m in which two bodies have to slow down; many such situations, because their
+/// Teammates within the 8 m in which two bodies must slow down; many situations, because their
 /// costs differ.
 void KeepApart(benchmark::State& state) {
   constexpr std::size_t kSituations = 997;
@@ -51,7 +51,7 @@ void KeepApart(benchmark::State& state) {
 }
 BENCHMARK(KeepApart)->ArgNames({"near", "error_m"})->ArgsProduct({{0, 6, 63}, {0, 2}});
 
-/// Vehicles of up to 20 m/s whose ways to brake, up to 40 m, are near each other; or which are
+/// Vehicles of up to 20 m/s. Their braking paths, up to 40 m, are near each other, or they are
 /// within 4 m of contact.
 void KeepWaysApart(benchmark::State& state, const VehicleLimits& vehicle) {
   Mission mission = mission_with(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole team in one process, messages as bytes: the speed of the laboratory on one core.
+// Times a whole team in one process with encoded messages: the speed of the laboratory on one core.
 //
 // An iteration is one mission from the first HELLO to the last row of its record. The record is
 // written as in a run, but discarded.
@@ -29,7 +29,7 @@ void Simulation(benchmark::State& state, const std::string& name) {
   NullBuffer nowhere;
   std::int64_t messages = 0, agent_steps = 0;
   for (auto _ : state) {
-    state.PauseTiming();  // reading the plan and integrating the target are no steps
+    state.PauseTiming();  // reading the plan and integrating the target do not count
     std::optional<lab::Simulation> simulation;
     simulation.emplace(lab::SimulationOptions{.plan = encode_plan(scenario->mission())}, nowhere,
                        nowhere);

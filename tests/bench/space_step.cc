@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times one agent's control step in a box, alone and with its coverage known, beside a kernel
-// written by hand: raw arrays, one pass over the modes, with AVX2 and fused multiply-add. Each is
-// timed between two readings of the clock, in turns; an iteration is a round of many ticks and its
-// time the median.
+// Times one agent's control step in a box, alone and with known coverage. For comparison it times a
+// kernel written by hand: raw arrays, one pass over the modes, AVX2 and fused multiply-add. Each is
+// timed between two readings of the clock, in turns. An iteration is a round of many ticks; its
+// time is the median.
 #include <benchmark/benchmark.h>
 #include <immintrin.h>
 

@@ -131,7 +131,7 @@ ERGOCAST_AVX2 inline __m256d add_mate(__m256d team, const Tables& tables, int ma
   return _mm256_fmadd_pd(share, wave, _mm256_add_pd(team, sums));
 }
 
-/// Processes so many vectors of columns at once, over all rows: the sums stay in registers.
+/// Processes several vectors of columns at once over all rows, so that the sums stay in registers.
 template <Ahead kAhead, int kVectors>
 ERGOCAST_AVX2 inline void add_columns(const Tables& tables, const Waves& along_x,
                                       const Waves& along_y, double dt_s, double per_second,
@@ -259,7 +259,7 @@ void StepFloor::take(const std::vector<Contribution>& news) {
   }
 }
 
-/// Where teammates are in this tick.
+/// The teammates' positions in this tick.
 void StepFloor::see(Tick tick, const std::vector<Eigen::Vector3d>& places_m) {
   const Eigen::Vector2d wave_numbers =
       std::numbers::pi * mission_.domain.size_m.head<2>().cwiseInverse();
@@ -299,7 +299,7 @@ Totals StepFloor::totals(const Eigen::Vector3d& x_m, double per_second) {
       std::numbers::pi * mission_.domain.size_m.head<2>().cwiseInverse();
   const Tables tables{agents_,        modes_,         stride_,        sums_.data(), gains_.data(),
                       target_.data(), weight_.data(), energy_.data(), mates_.data()};
-  // Also after the last mode, where the weights are zero and nothing counts.
+  // Includes the padding after the last mode, where the weights are zero.
   Waves along_x, along_y;
   waves(x_m.x(), wave_numbers.x(), stride_, along_x);
   waves(x_m.y(), wave_numbers.y(), stride_, along_y);
@@ -322,7 +322,7 @@ Eigen::Vector3d StepFloor::step(Tick tick, const std::vector<Eigen::Vector3d>& p
   const double length = std::sqrt(field.gradient.squaredNorm() + epsilon * epsilon);
   const Eigen::Vector3d xi = normal_in(mission_.domain, mission_.seed, Purpose::kPerturbation, 0,
                                        static_cast<std::uint64_t>(tick));
-  if (const Tick push = tick / push_ticks_; push != push_) {  // held meanwhile
+  if (const Tick push = tick / push_ticks_; push != push_) {  // constant in between
     push_ = push;
     eta_ = normal_in(mission_.domain, mission_.seed, Purpose::kPush, 0,
                      static_cast<std::uint64_t>(push));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The control step as a minimal kernel written by hand: raw arrays, no blocks, no authors, no
-// checks, everything in one pass over the modes, with AVX2 and fused multiply-add where the
-// processor has them. Its time is that of the mathematics.
+// checks. It makes one pass over the modes, with AVX2 and fused multiply-add if the processor has
+// them. Its time is that of the mathematics.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ class StepFloor {
   /// The teammates' messages: all blocks of some of them, agent after agent.
   void take(const std::vector<Contribution>& news);
 
-  /// Agent 0's command, everybody's places [m] known if the mission says so; the same as Agent's
-  /// but for rounding.
+  /// Agent 0's command; all positions [m] are known if the mission requires it. Equals Agent's
+  /// command except for rounding.
   Eigen::Vector3d step(Tick tick, const std::vector<Eigen::Vector3d>& places_m);
 
   /// One axis: cos(m·k·x) for every mode m, its first derivative and its second.
@@ -34,8 +34,8 @@ class StepFloor {
   enum class Ahead { kNothing, kGains, kPlaces };
   /// One agent of the team.
   struct Mate {
-    Waves along_x, along_y;  ///< where it is, if places are known
-    double step_s = 0;       ///< the gain of its sums there
+    Waves along_x, along_y;  ///< at its position, if positions are known
+    double step_s = 0;       ///< the gain of its sums at that position
     double share = 0;        ///< of the forecast
     std::int64_t steps = 0, gained_steps = 0;
     Tick tick = -1, period = 1;
@@ -48,7 +48,7 @@ class StepFloor {
     const double *target, *weight, *energy;
     const Mate* mates;  ///< the own one first
   };
-  /// What one pass over the modes yields: Σ of the residual over the modes with its derivatives.
+  /// The result of one pass over the modes: Σ of the residual over the modes with its derivatives.
   struct Totals {
     double power = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   };

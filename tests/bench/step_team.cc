@@ -10,7 +10,7 @@
 namespace ergocast::bench {
 namespace {
 
-/// The law that scenarios get by default: relative ε, contraction and adaptive noise.
+/// The default law of scenarios: relative ε, contraction and adaptive noise.
 Mission full_mission(int modes_per_axis, Sight sight, bool free_domain) {
   Mission mission;
   mission.seed = 7;

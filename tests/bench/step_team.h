@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agent 0 of a team, with its teammates' messages prepared, for timing how it processes them.
+// Agent 0 of a team with prepared messages of its teammates, to time how it processes them.
 #pragma once
 
 #include <vector>
@@ -21,21 +21,21 @@ enum class Sight {
 
 class StepTeam {
  public:
-  /// @param free_domain  steers by the modes of a free domain without walls, as many as of cosines
+  /// @param free_domain  uses the modes of a free domain without walls, as many as cosines
   StepTeam(int modes_per_axis, int agents, Sight sight, bool free_domain = false);
 
   const Mission& mission() const { return mission_; }
   Tick tick() const { return tick_; }
-  /// Where everybody is at tick(), agent 0 first.
+  /// The positions of all agents at tick(), agent 0 first.
   const std::vector<Eigen::Vector3d>& places_m() const { return places_m_; }
-  /// Every block that teammates say at tick().
+  /// Every block that teammates send at tick().
   const std::vector<Contribution>& news() const { return news_; }
 
   /// The next tick: all agents move; the teammates add their samples and prepare their messages.
   void teammates_step();
-  /// Agent 0 takes in the teammates' messages and the places of all agents.
+  /// Agent 0 receives the teammates' messages and the positions of all agents.
   void merge_news();
-  /// What agent 0 does between knowing where it is and saying how it moves.
+  /// Agent 0's work between receiving its position and sending its command.
   Eigen::Vector3d step();
 
  private:

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times a study on one core: missions without messages, and the numbers recorded of them.
+// Times a study on one core: missions without messages, and their recorded numbers.
 //
-// An iteration is one mission. Two threads represent the two worker processes of a study, which
-// share nothing either. The lower bound is the same number of bare control steps, each of an agent
-// by itself.
+// An iteration is one mission. Two threads represent the two worker processes of a study; they
+// share no data. The lower bound is the same number of plain control steps, each of a single agent.
 #include <benchmark/benchmark.h>
 
 #include <string>

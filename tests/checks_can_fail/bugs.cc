@@ -100,17 +100,17 @@ Eigen::Vector3d bug_reflect(const Eigen::Vector3d& x_m, const Box& domain) {
 
 namespace {
 
-/// What a filter was made for, and what it was told before.
+/// A filter's settings and its earlier neighbours.
 struct Filtered {
   Mission mission;
   std::map<AgentId, std::map<Tick, std::vector<Neighbour>>> sent;  // of each body
 };
 std::map<const SeparationFilter*, Filtered> filtered;
 
-/// Old enough that a body may have gone a small distance.
+/// An age at which a body may have moved a small distance.
 constexpr Tick kOld = 8;
 
-/// What a body was told kOld ticks ago.
+/// The neighbours that a body got kOld ticks ago.
 std::vector<Neighbour> old_news(SeparationFilter* self, const Mover& mover,
                                 std::span<const Neighbour> others) {
   auto& sent = filtered.at(self).sent[mover.id];
@@ -119,12 +119,12 @@ std::vector<Neighbour> old_news(SeparationFilter* self, const Mover& mover,
   return sent.begin()->second;
 }
 
-/// A number of a pair of bodies that holds for a second.
+/// A number for a pair of bodies that stays constant for a second.
 Tick draw_of(const Mover& mover, const Neighbour& other) {
   return mover.tick / 10 * 7 + mover.id * 5 + other.id * 3;
 }
 
-/// What the filter is told of another kind of body than its own.
+/// The filter's data on a body of another kind.
 Neighbour misjudged_kind(const Mission& mission, const Mover& mover, const Neighbour& other) {
   const Motion motion = motion_of(mission, other.id);
   Neighbour sent = other;
@@ -141,7 +141,7 @@ Neighbour misjudged_kind(const Mission& mission, const Mover& mover, const Neigh
   return sent;
 }
 
-/// What the filter is told of the others instead.
+/// The changed neighbours that the filter gets.
 std::vector<Neighbour> misjudged(SeparationFilter* self, const Mover& mover,
                                  std::span<const Neighbour> others) {
   const Filtered& made = filtered.at(self);
@@ -212,9 +212,9 @@ SafeVelocity bug_safe(SeparationFilter* self, const Mover& mover, const Eigen::V
 
 namespace {
 
-/// What a book's owner has been told.
+/// The messages that a book's owner has received.
 struct Overheard {
-  std::map<AgentId, Tick> heard;  // when the newest beacon came
+  std::map<AgentId, Tick> heard;  // tick of the newest beacon
   std::map<AgentId, bool> known;  // ever
   std::vector<Neighbour> sent;
 };
@@ -224,7 +224,7 @@ std::map<const BeaconBook*, Overheard> overheard;
 
 void bug_make_book(BeaconBook* self, const Mission& mission, const Author& author,
                    std::int64_t revision) {
-  overheard[self] = {};  // the book of another mission may have stood here
+  overheard[self] = {};  // clears the book of another mission
   real_make_book(self, mission, author, revision);
 }
 
@@ -256,7 +256,7 @@ bool bug_filters_again(const Mission& mission) {
 
 namespace {
 
-/// Whether the agent acts that takes pauses for something else.
+/// Whether the current agent misinterprets pauses.
 bool one_agent_acts = false;
 class Acting {
  public:
@@ -264,10 +264,10 @@ class Acting {
   ~Acting() { one_agent_acts = false; }
 };
 
-/// How much later it goes on than the others.
+/// The delay after which it continues, relative to the others.
 constexpr Tick kLate = 3;
 
-/// The ticks that do not count, as the one who acts takes them.
+/// The pauses as the current agent interprets them.
 std::vector<Hold> misread(std::span<const Hold> holds) {
   std::vector<Hold> taken(holds.begin(), holds.end());
   if (!one_agent_acts) return taken;
@@ -528,7 +528,7 @@ void bug_advance(Agent* self, Instant now, Outbox& out) {
     }
   }
   if (bug("an agent repeats unasked")) relay(*self, out);
-  // As an answer to the messages since its last one, although no block was missing.
+  // Answers the messages since its last one, although no block was missing.
   if (bug("an agent repeats what all have") && std::any_of(out.begin(), out.end(), speaks_digest)) {
     relay(*self, out);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each finding of `ergocast check` for a scenario that has it: small edits to a good one, and every
-// field outside its limits, which are read from the program's own table of fields.
+// Each finding of `ergocast check` for a scenario that has it. The scenarios are small edits to a
+// good one, and every field outside its limits, which come from the program's own table of fields.
 #include <google/protobuf/text_format.h>
 
 #include <cmath>
@@ -143,7 +143,7 @@ class Scenarios : public OwnHost {
                        << output().substr(0, 2000);
   }
 
-  /// Keeps the output, line by line.
+  /// Stores the output line by line.
   std::vector<std::string> note(const std::string& text) {
     std::istringstream lines(text);
     std::vector<std::string> all;
@@ -195,7 +195,7 @@ vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
 separation { distance_m: 2 lease_s: 0 }
 )";
 
-/// What its kind of vehicles does not have.
+/// The fields that its kind of vehicles does not have.
 constexpr const char* kWinged = R"(
 domain { size_x_m: 100 size_y_m: 50 }
 target {
@@ -237,7 +237,7 @@ class CheckCanFail : public Scenarios {
  protected:
   const char* rich_ = kRich;
 
-  /// rich_ with the defaults of what it leaves out.
+  /// rich_ with the defaults of omitted fields.
   proto::Scenario rich_scenario() const {
     proto::Scenario scenario;
     EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(rich_, &scenario));
@@ -278,7 +278,7 @@ class CheckCanFail : public Scenarios {
   void expect_limits(const FieldDescriptor& field, const std::string& path, const FieldRule& rule) {
     const bool whole = field.cpp_type() != FieldDescriptor::CPPTYPE_DOUBLE;
     const Range& range = rule.range;
-    // The domain's origin is no place in the domain.
+    // The domain's origin is not inside the domain.
     const bool in_domain = range.coordinate && !path.starts_with("domain.");
     const std::string above = in_domain ? " is far outside the domain" : " is above the limit ";
     const std::string too_low = in_domain ? above : " is below the limit ";
@@ -449,7 +449,7 @@ class CheckCanFail : public Scenarios {
         << output();
   }
 
-  /// Of two agents with these stations 2 m apart.
+  /// The warning for two agents with these stations, 2 m apart.
   void expect_warning_of_homes(const std::string& stations, const std::string& what) {
     std::string text = kGood;
     text.replace(text.find("} }\n", text.find("agents {")), 4,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each finding of `ergocast doctor` on a host that has it: some thirty hosts on one network, each
-// with a fault of its own, are examined at once.
+// Each finding of `ergocast doctor` on a host that has it. Some thirty hosts on one network, each
+// with another fault, are examined at once.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -40,7 +40,7 @@ class PretendedPeer {
     std::uint32_t most = doctor::kMaxProbes;  ///< probes it sends
     std::function<bool(std::uint32_t)> leaves_out = [](auto) { return false; };  ///< by sequence
     bool twice = false;
-    bool gossips = false;  ///< of a peer that the doctor never receives
+    bool gossips = false;  ///< about a peer that the doctor never receives
   };
   PretendedPeer(int port, Manners manners)
       : manners_(std::move(manners)),
@@ -101,7 +101,7 @@ struct Plant {
   std::vector<std::string> arguments = {};
   std::string wrapper = "";                       ///< a shell's command before the program's
   std::vector<int> held_ports = {};               ///< by a socket of the test, after the URL's port
-  bool alone = false;                             ///< which has them for itself
+  bool alone = false;                             ///< which uses the ports exclusively
   std::function<Speaker(int port)> speaker = {};  ///< made on another host
   int agents = 0;                                 ///< ours, at the same ports, without a mission
   bool as_nobody = false, on_a_terminal = false;
@@ -204,7 +204,7 @@ class DoctorCanFail : public OnHosts {
     for (const std::size_t i : pending) said_.push_back(text_of(doctors_.at(i).log));
   }
 
-  /// Whether the doctor found what `plant` has planted, and ended with its exit code.
+  /// Whether the doctor found the fault of `plant`, and ended with its exit code.
   bool has_found(std::size_t i, const Plant& plant) {
     const json report = json::parse(text_of(doctors_.at(i).log), nullptr, false);
     const bool as_expected = doctors_.at(i).child.exit_code().value_or(-1) == plant.exit_code;
@@ -220,8 +220,8 @@ class DoctorCanFail : public OnHosts {
     return as_expected && found;
   }
 
-  /// The doctor listens for a stated time, and a busy machine may not let a sender speak within it.
-  /// Therefore a host is examined again if its fault was not found.
+  /// The doctor listens for a given time; on a busy machine a sender may miss it. So a host is
+  /// examined again if its fault was not found.
   void expect_each_to_be_found(const std::vector<Plant>& plants) {
     constexpr int kExaminations = 5;
     std::set<std::size_t> pending;

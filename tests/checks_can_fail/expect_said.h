@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The register's rule: the program has produced every text in its sources, each in reply to a
-// plant.
+// The register's rule: the program has printed every text in its sources, each after a planted
+// fault.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ struct Unsayable {
 /// Whether two statements may use the same text, so that one plant serves both.
 enum class Words { kAreTheirOwn, kMayBeShared };
 
-/// Fails for each text of `files` that is in none of `said`, except the unsayable ones, and for
-/// each unsayable one that was produced.
+/// Fails for each text of `files` that is in none of `said`, unless it is listed as unsayable. Also
+/// fails for each unsayable text that was printed.
 inline void expect_all_said(const std::vector<std::string>& files,
                             const std::vector<std::string>& said,
                             const std::vector<Unsayable>& unsayable,

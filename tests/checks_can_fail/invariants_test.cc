@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each invariant of the laboratory, and each goal, against a bug that breaks it: the real program
-// flies the same seeds with the bug (bugs.cc) and without.
+// Tests each invariant and goal of the laboratory with a bug that breaks it: the real program
+// simulates the same seeds with the bug (bugs.cc) and without.
 #include "lab/invariants.h"
 
 #include <iterator>
@@ -25,7 +25,7 @@ struct Plant {
   const char* pace = "--realtime";
 };
 
-// To the mission's end, so that effects of few blocks appear, too.
+// Runs to the mission's end, so that effects of few blocks appear, too.
 const char* const kLateBlocks =
     "loss = 0.5\nreordering = 0.5\nreordering_max_s = 3\nswarm_bus_only = 1\nlasting_share = 1";
 const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20";
@@ -34,7 +34,7 @@ const char* const kByRowsAlone = "agents { dead_reckoning: false }";
 
 const char* const kCrowd =
     "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1";
-/// Bodies as fast as their limit, so that nothing spare hides what they do not know.
+/// Bodies at their speed limit, so that no spare distance hides missing knowledge.
 const char* const kFastCrowd =
     "separation { distance_m: 20 }\nworld { speed_limit_mps: 10 }\ngoal_ergodic_metric: 1";
 const char* const kCrowdInACorner =
@@ -44,7 +44,7 @@ const char* const kUnguardedCrowd =
     "separation { distance_m: 12 guard: false }\nworld { speed_limit_mps: 10 }\n"
     "goal_ergodic_metric: 1\ntime { command_hold_s: 0.3 }\n"
     "target { gaussians { mean_x_m: 0 mean_y_m: 0 sigma_m: 3 weight: 20 } }";
-/// Each of them knows its own place alone, and may not be heard.
+/// Each knows only its own position, and its beacons may be lost.
 #define HEARSAY(lease)                                          \
   "separation { distance_m: 6 lease_s: " lease                  \
   " }\nworld { speed_limit_mps: 10 }\ngoal_ergodic_metric: 1\n" \
@@ -67,7 +67,7 @@ const char* const kCrowdWithWings =
     "separation { distance_m: 15 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
     "vehicle { kind: FIXED_WING max_turn_radps: 1.5 min_speed_mps: 5 }\n"
     "target { gaussians { mean_x_m: 50 mean_y_m: 50 sigma_m: 3 weight: 20 } }";
-/// A block on the way between the two Gaussians, and where many want to be.
+/// A solid block between the two Gaussians, in a place that many agents want.
 #define WALLED                                                                                  \
   "goal_ergodic_metric: 1\ntarget { gaussians { mean_x_m: 50 mean_y_m: 47 sigma_m: 10 weight: " \
   "5 } }\n"                                                                                     \
@@ -85,7 +85,7 @@ const char* const kUnsureCrowd =
     "separation { distance_m: 20 position_error_m: 1 }\nworld { speed_limit_mps: 20 }\n"
     "goal_ergodic_metric: 1";
 
-/// Every kind of vehicle, each as fast as it likes.
+/// Every kind of vehicle, each with its own speed.
 const char* const kMixedCrowd =
     "separation { distance_m: 12 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
     "agents { kind { name: \"a\" count: 1 vehicle { kind: FIXED_WING max_turn_radps: 1 "
@@ -100,7 +100,7 @@ const char* const kTwoKinds =
     "agents { kind { name: \"a\" count: 2 footprint_sigma_m: 20 quality: 0.5 } "
     "kind { name: \"b\" count: 2 footprint_sigma_m: 5 } }";
 
-/// Two of them, for whom the last 20 s are a reserve.
+/// Two of them; the last 20 s of the mission are a reserve.
 const char* const kStations =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 20 } "
     "kind { name: \"b\" count: 2 } }";
@@ -254,8 +254,8 @@ TEST_F(InvariantsCanFail, EachOfThem) {
   }
 }
 
-/// Plants with the same report reach one place; another place with the same report needs its own
-/// plant.
+/// Plants with one report trigger one place in the code; another place with this report needs its
+/// own plant.
 TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
   std::string sources;
   for (const std::string& file : sources_in("lab")) {

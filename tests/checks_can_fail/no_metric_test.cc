@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Simulations whose φ² is no number fail, and say so; a real mission is in
-// tests/process/no_metric_test.cc.
+// Simulations whose φ² is no number fail and report it; tests/process/no_metric_test.cc has a real
+// mission.
 #include "tests/process/programs.h"
 
 namespace ergocast::test {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# .ci/prose finds each sentence that is planted, and passes over those beside it; .ci/checks fails with it.
+# .ci/prose finds each planted sentence and no correct one; .ci/checks fails with it.
 #   prose_test.sh SOURCE_DIR
 set -euo pipefail
 source=$1
@@ -16,7 +16,7 @@ run() {
 }
 finds() { grep -qF -- "$1" "$work/output" || fail "nothing found: $1"; }
 
-# A tree whose set-up has nothing to do, and whose formatter finds nothing.
+# A tree whose set-up does nothing and whose formatter finds nothing.
 mkdir -p "$work/tree/.ci" "$work/tree/packaging" "$work/tree/core" "$work/tree/docs" "$work/bin"
 cp "$source/.ci/checks" "$source/.ci/prose" "$work/tree/.ci"
 echo 'say() { echo "$*"; }' >"$work/tree/packaging/setup.sh"
@@ -82,7 +82,7 @@ finds 'core/bad.py:1: opening: So much'
 finds 'prose: 6 of opening, 1 of who, 4 of verb, 2 of banner'
 run 1 .ci/checks format
 
-# What is allowed is not printed, one more is, and the counts only shrink.
+# Allowed findings are not printed, an additional one is, and the counts only shrink.
 cat >"$work/tree/.ci/prose_allowed" <<'ALLOWED'
 9 opening core
 1 who core

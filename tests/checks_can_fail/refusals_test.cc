@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each reason for a refusal: a test process sends such a message to a flying team. The agents count
-// it by name, and `ergocast status` and their logs show it.
+// Each reason for a refusal: a test process sends such a message to a running team. The agents
+// count it by name; `ergocast status` and their logs show it.
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
@@ -64,7 +64,7 @@ class RefusalsCanBeSeen : public RunningMission {
     AgentStatus status;
     status.header = from(3, run());
     status.host = "stranger";
-    // Not all at once: what exceeds the agents' socket buffers is lost, not refused.
+    // Not all at once: messages beyond the agents' socket buffers are lost, not refused.
     for (int turn = 0; turn < 200; ++turn) {
       for (int i = 0; i < 20; ++i) rate_offender_->send(Bus::kSwarm, status);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -130,7 +130,7 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
          send(authenticator(team_), Stop{from(kOperator, run()), false, "no key"});
        }},
       {Refusal::kRun, [this] { send(authenticator(team_), hello(run() + 1)); }},
-      // An agent that sends the places of all vehicles.
+      // An agent that sends the positions of all vehicles.
       {Refusal::kRange, [this] { send(authenticator(team_), world_of(3), Bus::kWorld); }},
       {Refusal::kEncoding,
        [this] {
@@ -175,7 +175,7 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
   for (const Refusal reason : order) {
     if (reason == Refusal::kLimit) continue;
     const std::string name = to_string(reason);
-    const bool by_table = reason == Refusal::kEncoding;  // which says a sentence of its own
+    const bool by_table = reason == Refusal::kEncoding;  // which has its own sentence
     const std::string printed = by_table ? "another contribution_encoding" : " " + name + "=";
     EXPECT_TRUE(logs("agent-0", printed)) << name << ":\n" << log_of("agent-0");
   }

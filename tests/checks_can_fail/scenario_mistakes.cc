@@ -56,7 +56,7 @@ std::vector<Mistake> mistakes_of_the_text() {
   };
 }
 
-/// A distance among vehicles of 20 m/s; then, unless it says otherwise, the law.
+/// A distance among vehicles of 20 m/s; then the law, unless the text has its own.
 std::string keeping(const std::string& separation, const std::string& world,
                     const std::string& then = kLaw) {
   return "separation { " + separation + " } world { speed_limit_mps: 20 " + world + " } " + then;
@@ -251,7 +251,7 @@ std::vector<Mistake> mistakes_of_maps() {
   return all;
 }
 
-/// One mistake put into a scenario of a box; the scenario stands in the place of kGood.
+/// One mistake in a scenario of a box, which replaces kGood.
 Mistake in_space(const std::string& from, const std::string& to, const std::string& said) {
   std::string box = R"(domain { size_x_m: 800 size_y_m: 600 origin_z_m: -60 size_z_m: 60 }
 target { uniform_weight: 1 }
@@ -370,7 +370,7 @@ std::vector<Mistake> mistakes_of_walls() {
   };
 }
 
-/// Stations where nobody can stay, or come in time.
+/// Stations where no agent can stay, or which it cannot reach in time.
 std::vector<Mistake> mistakes_of_stations() {
   const std::string start = "starts { x_m: 10 y_m: 20 }", second = " random_count: 1";
   const auto home = [&](const std::string& kind, const std::string& said,
@@ -381,7 +381,7 @@ std::vector<Mistake> mistakes_of_stations() {
   const std::string near = "station { x_m: 12 y_m: 20 } ";
   const std::string block = "world { speed_limit_mps: 1000 wall_clearance_m: 2 " +
                             wall("60 10 80 10 80 30 60 30", hole("65 15 75 15 75 25 65 25")) + "}";
-  // A slot in which a body just fits, too narrow for a way that a table of cells can lead.
+  // A slot in which a body just fits; it is too narrow for a path over a table of cells.
   const std::string slot = "world { speed_limit_mps: 1000 wall_clearance_m: 2 " +
                            wall("60 10 80 10 80 40 72.3 40 72.3 15 68.2 15 68.2 40 60 40") + "}";
   const std::string one = start + second + " kind { name: \"a\" count: 2 ";
@@ -407,7 +407,7 @@ std::vector<Mistake> mistakes_of_stations() {
   };
 }
 
-/// What the modes of a free domain do not go with.
+/// Fields that exclude the modes of a free domain.
 std::vector<Mistake> mistakes_of_free_domains() {
   const std::string few = "basis { modes_x: 5 modes_y: 4 free_domain: true";
   const std::string start = "starts { x_m: 10 y_m: 20 }";

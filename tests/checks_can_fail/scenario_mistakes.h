@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A good scenario, and the mistakes that people make in one, each with what is said of it.
+// A good scenario, and the mistakes that people make in one, each with its error text.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each result that `ergocast verify` can report, produced by a record that was falsified for it.
+// Each result that `ergocast verify` can report, from a record that was falsified for it.
 #include <functional>
 #include <span>
 #include <sstream>
@@ -42,7 +42,8 @@ void edit_summary(const fs::path& run, const std::function<void(Json&)>& change)
   write(run / "summary.json", summary.dump(2));
 }
 
-/// Makes it look like a run over LCM, which `verify` then checks for what it cannot repeat.
+/// Makes the record look like a run over LCM, which `verify` checks for events that it cannot
+/// repeat.
 void call_it_a_run(
     const fs::path& run, const std::function<void(Json&)>& change = [](Json&) {}) {
   edit_summary(run, [&](Json& summary) {
@@ -62,7 +63,7 @@ struct Lie {
   std::function<void(const fs::path& run)> falsify;
 };
 
-/// Falsifications of the summary and of what makes a run unrepeatable.
+/// Falsifies the summary and the events that make a run unrepeatable.
 std::vector<Lie> lies_of_the_summary() {
   const auto agent = [](const char* key, const Json& value) {
     return [key, value](Json& summary) { summary["agents"][0][key] = value; };
@@ -207,7 +208,7 @@ std::vector<Lie> lies_of_the_sources() {
        }},
       {"scenario.textproto           is not there", 0,
        [](const fs::path& run) { fs::remove(run / "scenario.textproto"); }},
-      // As a manually started logger leaves it, which has received only the plan.
+      // The record of a manually started logger that has received only the plan.
       {"all but the target, which it lacks", 0,
        [](const fs::path& run) {
          write(run / "scenario.textproto", mission_text(plan_in(run)));

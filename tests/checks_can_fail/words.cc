@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small tokenizer of C++ collects the texts that a function puts together, and searches for them
-// in the output.
+// A small C++ tokenizer collects the texts that a function composes, and searches for them in the
+// output.
 #include "tests/checks_can_fail/words.h"
 
 #include <algorithm>
@@ -108,8 +108,8 @@ bool is_words(const std::string& text) {
                      [](const std::string& piece) { return std::regex_search(piece, kWords); });
 }
 
-/// The begin and end of `condition ? one : other`; the branches of a nested one are branches of
-/// their own.
+/// The begin and end of `condition ? one : other`; the branches of a nested condition are separate
+/// branches.
 class Branches {
  public:
   void pass(const std::string& sign, std::vector<std::vector<std::string>>& alternatives) {
@@ -123,15 +123,15 @@ class Branches {
   bool inside() const { return begun_ >= 0; }
 
  private:
-  int depth_ = 1000, begun_ = -1;  // a statement may end in more blocks than it began in
+  int depth_ = 1000, begun_ = -1;  // a statement may end at a greater depth than it began
 };
 
 /// One file, and the texts of each function in it.
 struct Reader {
   std::string path;
   Tokens tokens;
-  std::vector<std::size_t> opened;    // for each token: the "(" it stands in, or npos
-  std::vector<std::string> function;  // for each token: the function it stands in
+  std::vector<std::size_t> opened;    // for each token: the enclosing "(", or npos
+  std::vector<std::string> function;  // for each token: its function
   std::vector<std::pair<std::string, Saying>> statements;  // with their functions
   static constexpr std::size_t kNone = std::string::npos;
 
@@ -257,7 +257,7 @@ std::map<std::string, std::vector<Saying>> words_by_function(const std::vector<R
   return lists;
 }
 
-/// Calls that pass only a name to a function with texts: the name must be in its output.
+/// Calls that only pass a name to a function with texts: the name must be in its output.
 std::vector<Saying> sayings_of_calls(const Reader& reader,
                                      const std::map<std::string, std::vector<Saying>>& words) {
   std::vector<Saying> sayings;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads from the sources of a part of the program all texts that it can print. So every new check
-// needs a plant, even if its author does not know this register.
+// Reads from a part of the program's sources all texts that it can print. So every new check needs
+// a planted fault, even if its author does not know this register.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct Saying {
   /// For a call without a text of its own: the texts of the called function, besides the parts.
   std::vector<Saying> or_else;
 
-  /// Whether `text` contains it, in one of its alternatives.
+  /// Whether `text` contains it in one of its alternatives.
   bool in(const std::string& text) const;
 };
 
@@ -34,8 +34,8 @@ std::vector<std::string> sources_in(const std::string& folder,
 std::vector<std::string> never_said(const std::vector<Saying>& sayings,
                                     std::vector<std::string> said);
 
-/// "place and place: text" where two statements have the same text of two words or more, so that
-/// the output does not tell them apart.
+/// "place and place: text" for two statements with the same text of two words or more, which the
+/// output cannot distinguish.
 std::vector<std::string> said_twice(const std::vector<Saying>& sayings);
 
 /// For the test of the reader itself.

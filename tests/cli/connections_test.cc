@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page's connections on a clock that the test sets: what a client can cost, and whose place a
-// newcomer gets.
+// The page's connections on a clock that the test sets: the cost of a client, and the connection
+// that a new one replaces.
 #include "cli/connections.h"
 
 #include <arpa/inet.h>
@@ -26,11 +26,11 @@ sockaddr_in at(const char* address, std::uint16_t port = 0) {
   return place;
 }
 
-/// The kernel holds less than this for a client that takes nothing.
+/// The kernel buffers less than this for a client that reads nothing.
 constexpr int kBuffer = 64 << 10;
 constexpr std::size_t kLong = 2 << 20;
 
-/// What a client has received, whenever it looks.
+/// A client, which records all received data.
 class Client {
  public:
   Client(std::uint16_t port, const char* from) : socket_(AF_INET, SOCK_STREAM | SOCK_NONBLOCK) {
@@ -99,8 +99,8 @@ class PageConnections : public ::testing::Test {
     one.send(request);
     return one;
   }
-  /// Serves until `condition` holds. The wait decides nothing: what the test expects needs no time
-  /// but the server's.
+  /// Serves until `condition` holds. The wait decides no result: the expected event needs only the
+  /// server's time.
   template <class Condition>
   bool comes(Condition condition, std::chrono::milliseconds step = 0ms) {
     const auto patience = std::chrono::steady_clock::now() + kPatience;
@@ -156,7 +156,7 @@ TEST_F(PageConnections, ALongHeadIsRefused) {
   longer.send(std::string(Connections::kLongestHead - 22, 'x') + "\r\n\r\n");
   EXPECT_TRUE(gets(longer, "HTTP/1.1 431 "));
   EXPECT_TRUE(ends(longer));
-  EXPECT_TRUE(comes([&] { return !longer.send("x"); }, 100ms));  // it is not read for ever
+  EXPECT_TRUE(comes([&] { return !longer.send("x"); }, 100ms));  // the server stops reading
 }
 
 TEST_F(PageConnections, AHeadThatTricklesInIsNotWaitedFor) {
@@ -196,7 +196,7 @@ TEST_F(PageConnections, AClientThatTakesNothingIsLetGo) {
   Client& page = client(kPage);
   Client& events = client(kEvents);
   const auto closed = [this](Client& one) {
-    // Not read before: it takes nothing.
+    // It was not read before, because this client takes nothing.
     return comes([&] { return now_ > Instant(1h) + 20s; }, 100ms) && (one.look(), ends(one, 100ms));
   };
   EXPECT_TRUE(closed(page));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team's frames: what a browser gets, once, however late it asks.
+// A team's frames: a browser gets each once, however late it asks.
 #include "cli/live_team.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST_F(LiveTeamFrames, ComeOnceAndWithAllThatIsNew) {
   EXPECT_NE(all.find(R"("runs":[0,4])"), std::string::npos);
 }
 
-// A browser that comes late gets the curve up to its coming.
+// A browser that connects late gets the curve up to that time.
 TEST_F(LiveTeamFrames, BeginWithWhatTheStatusesHaveTold) {
   test::announce(test::small_mission(2));
   LiveTeam live_team(test::kRun, kListening, false);
@@ -131,7 +131,7 @@ TEST_F(LiveTeamFrames, KeepTheNewestLinesAndEscapeThem) {
   const std::string text = frame(cursor);
   EXPECT_EQ(text.find("\"line 600\""), std::string::npos);
   EXPECT_NE(text.find("\"line 999\""), std::string::npos);
-  EXPECT_EQ(text.find("\nevent: end"), std::string::npos);  // a line break would begin an event
+  EXPECT_EQ(text.find("\nevent: end"), std::string::npos);  // a line break would start a new event
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a recorded event log says of a team: when an agent was silent, and when only the logger was.
+// A recorded event log shows when an agent was silent, and when only the logger was absent.
 #include "cli/recorded_team.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class RecordedTeam : public ::testing::Test {
                big_endian(channel.size(), 4) + big_endian(bytes.size(), 4) + channel;
     for (const std::byte byte : bytes) events_ += static_cast<char>(byte);
   }
-  /// Half seconds of a team whose agents of `ids` are alive.
+  /// Adds half seconds of a team in which the agents of `ids` run.
   void record_ticks(std::chrono::microseconds duration, const std::vector<AgentId>& ids) {
     for (const auto end = now_ + duration; now_ < end; now_ += 500ms) {
       tick_ += 5;

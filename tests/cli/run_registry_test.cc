@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The registry of live runs: what is written, what is stale, and whose folder is trusted.
+// The registry of live runs: its entries, stale entries, and the owner of a trusted folder.
 #include "cli/run_registry.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is kept of the statuses: the columns of metrics.csv, within bounds.
+// The history of the statuses: the columns of metrics.csv, within bounds.
 #include "cli/team_history.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Two agents that answer, and one that has said nothing yet.
+/// Two agents that answer, and one without a status yet.
 TeamPicture picture_at(Tick tick) {
   TeamPicture picture;
   picture.tick = tick;
@@ -34,7 +34,7 @@ TEST(TeamHistory, HasTheColumnsOfTheMetrics) {
   TeamHistory history;
   history.add(picture_at(0));
   history.add(picture_at(20));
-  history.add(picture_at(20));  // no time has gone on
+  history.add(picture_at(20));  // the time has not advanced
   TeamPicture unknown = picture_at(30);
   unknown.ergodic_metric.reset();
   history.add(unknown);

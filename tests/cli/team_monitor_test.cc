@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which processes of a run are still there, as a command that has just begun to listen knows it.
+// The processes of a run that still run, as known to a command that has just started to listen.
 #include "cli/team_monitor.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST_F(Monitored, AProcessThatHasReportedItsEndIsNotAwaited) {
   farewell.last = true;
   receive(farewell, at(3ms));
   EXPECT_EQ(run_.still_there(at(3ms)), (Names{"the logger", "the coordinator"}));
-  // On the world's bus; an earlier word on another bus may be read later.
+  // On the world's bus; an earlier message on another bus may be read later.
   const RecordAck before{{kRun, kLogger, kLoggerLife, next_sequence(), 5}};
   run_.receive(RecordAck{{kRun, kLogger, kLoggerLife, next_sequence(), 5}, true}, Bus::kWorld,
                kLogger, at(4ms));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The state of a team as a listening process knows it: which agents have trouble, and since when.
+// The state of a team as a listening process knows it: agents with trouble, and its start.
 #include "cli/team_view.h"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ TEST_F(TeamViewTest, NamesWhoseCoverageIsForgottenAndCallsThatTrouble) {
   hear_mission(at(200ms), roster, 1);
   EXPECT_TRUE(view_.picture(at(200ms)).forgotten.empty());
   EXPECT_FALSE(view_.picture(at(200ms)).trouble);
-  // An incarnation that has a successor is missed no more.
+  // An incarnation that has a successor is not reported as missing.
   RosterEntry former{{2, 7}, 0, 1};
   former.forgotten = true;
   roster.insert(roster.begin() + 2, former);
@@ -115,8 +115,8 @@ TEST_F(TeamViewTest, OfATeamThatIsWellHasNoTrouble) {
 TEST_F(TeamViewTest, IsCompleteOnceTheMissionAndEveryMemberAreKnown) {
   EXPECT_FALSE(view_.complete());
   hear_all(at(0s), 0, 2);
-  EXPECT_FALSE(view_.complete()) << "without the mission nobody knows who is missing";
-  EXPECT_EQ(view_.picture(at(0s)).state, MissionState::kRunning) << "its coordinator says so";
+  EXPECT_FALSE(view_.complete()) << "without the mission it is unknown which agents are missing";
+  EXPECT_EQ(view_.picture(at(0s)).state, MissionState::kRunning) << "its coordinator reports it";
   hear_mission(at(0s));
   EXPECT_FALSE(view_.complete());
   EXPECT_EQ(condition(2, at(1s)), Condition::kUnheard);
@@ -171,7 +171,7 @@ TEST_F(TeamViewTest, WhoWaitsAndStandsStillIsNamedWithWhomItWaitsFor) {
   waiting.waiting_for = kWorld;
   give(view_, waiting, at(1s));
   EXPECT_EQ(condition(1, at(1s)), Condition::kWaiting)
-      << "an agent says so only after a while itself";
+      << "an agent itself reports it only after a while";
 }
 
 TEST_F(TeamViewTest, ASlowLoopIsLate) {
@@ -263,7 +263,7 @@ TEST_F(TeamViewTest, WithoutACoordinatorTheAgentsThemselvesAreTheTeam) {
   const TeamPicture picture = view_.picture(at(1s));
   EXPECT_EQ(picture.state, std::nullopt);
   EXPECT_EQ(picture.agents.size(), 3u);
-  EXPECT_EQ(row(1, at(1s)).author.incarnation, 7u) << "who has spoken last";
+  EXPECT_EQ(row(1, at(1s)).author.incarnation, 7u) << "the latest sender";
   EXPECT_EQ(picture.tick, 61);
   EXPECT_TRUE(view_.picture(at(3s)).trouble) << "no coordinator";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Jobs in worker processes: one that hangs or dies costs itself alone.
+// Jobs in worker processes: a job that hangs or crashes loses only its own result.
 #include "cli/workers.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// Job 1 computes for ever, job 3 kills its process, job 4 waits for longer than the patience.
+/// Job 1 never ends, job 3 kills its process, job 4 waits for longer than the patience.
 int answer(std::uint64_t job) {
   volatile bool forever = job == 1;
   while (forever) {

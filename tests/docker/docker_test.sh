@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The image and the compose files: a team of containers flies, survives what befalls containers, and
-# leaves a record that belongs to the person.
+# The image and the compose files: a team of containers runs a mission, survives faults of
+# containers, and leaves a record that belongs to the user.
 #   docker_test.sh BUILD_DIR
 # shellcheck disable=SC2034,SC2154
 more_tools='dockerd docker docker-compose iptables ip nsenter'

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by docker_test.sh after debian.sh (bash): a container engine of the test's own. Neither
-# this machine's network nor an engine that runs here is touched. Engine and containers are in the
-# test's process and mount namespaces, so they end with it.
-# shellcheck shell=bash disable=SC2154  # work and root are debian.sh's
+# Sourced by docker_test.sh after debian.sh (bash): a separate container engine for the test. It
+# changes neither this machine's network nor a running engine. Engine and containers are in the
+# test's process and mount namespaces, so they end with it. shellcheck shell=bash disable=SC2154  #
+# work and root are debian.sh's
 
 export DOCKER_HOST=unix://$work/engine.sock
 
 # Waits until a command succeeds, or until the process $awaited has ended, or containers have
-# (nothing_comes_of_containers). The command has the last word. The time that it takes decides no success.
+# (nothing_comes_of_containers). After the end the command is tried once more. The time that it
+# takes decides no success.
 awaited=
 eventually() {
   local deadline=$((SECONDS + ${PATIENCE_S:-300})) in_vain=
@@ -35,7 +36,8 @@ stop_engine() {
   wait "$engine" || true
 }
 
-# There is no registry: the bare system is the image to build on, with the packages that were fetched before.
+# There is no registry: the base image is the bare system, with the packages that were fetched
+# before.
 import_base() {
   tar -C "$root" --one-file-system --exclude=./tmp/test --exclude='./var/cache/apt/*.bin' \
     --exclude='./var/lib/apt/lists/*' -c . | docker import - debian-12 >/dev/null
@@ -53,7 +55,7 @@ the_image_is_built_from_the_package() {
   stop_engine
 }
 
-# A machine with nothing but the engine on it.
+# A machine with only the engine on it.
 start_isolated_engine() {
   unshare --net sleep infinity &
   awaited=$!

@@ -7,7 +7,7 @@ over=
 export COMPOSE_PROJECT_NAME=team ERGOCAST_SCENARIOS=$work/scenarios ERGOCAST_SCENARIO=patient
 export ERGOCAST_AGENTS ERGOCAST_OPTIONS ERGOCAST_RUNS ERGOCAST_KEYS=$work/team
 
-# The owner of the scenarios, who must also own the records.
+# The owner of the scenarios must also own the records.
 make_person() {
   mkdir "$ERGOCAST_SCENARIOS"
   local file=$source/scenarios/quadrimodal_corners.textproto
@@ -30,8 +30,8 @@ complain() {
   fail "$*"
 }
 expect() { "$@" >"$work/output" 2>&1 || { cat "$work/output" >&2; complain "not so: $*"; }; }
-# A wait for containers ends when none runs any more, and when one has failed by itself. Code 4: its mission
-# has failed, and the others end, too.
+# A wait for containers ends when none runs any more, or when one has failed by itself. Code 4 is
+# different: the mission has failed, and the others end, too.
 becomes() {
   nothing_comes_of_containers() { all_ended || [ -n "$(failed_containers)" ]; }
   eventually "$@" || complain "never: $*"
@@ -63,7 +63,7 @@ start_team() {
 stop_team() {
   expect compose down
   [ -z "$(docker ps -aq)" ] || fail "docker-compose down leaves $(docker ps -a)"
-  rm -f "$ERGOCAST_RUNS"/*/events-*.lcm  # the test's disk lies in memory
+  rm -f "$ERGOCAST_RUNS"/*/events-*.lcm  # the test's disk is in memory
 }
 
 one() { containers "$1" | head -n 1; }
@@ -75,7 +75,7 @@ all_healthy() {
   for container in $(docker ps -q); do is "$container" .State.Health.Status healthy || return 1; done
 }
 
-# The test's process namespace is around those of the containers.
+# The test's process namespace contains those of the containers.
 pids_of_programs() { grep -ls '^ergocast-' /proc/[0-9]*/comm | cut -d/ -f3; }
 
 bytes_recorded() { cat "$ERGOCAST_RUNS"/*/trajectory*.csv | wc -c; }
@@ -87,7 +87,8 @@ expect_end() {
   expect grep -q "\"result\": \"$1\"" "$ERGOCAST_RUNS"/*/summary.json
 }
 expect_complete() { expect_end 'done'; }
-# A mission that goes on for ever: it does, and all end in order when the coordinator is told to.
+# A mission without end: it continues, and all processes exit normally when the coordinator gets a
+# signal.
 expect_end_when_told() {
   becomes recorded $(($(bytes_recorded) + 30000))
   expect compose stop coordinator

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The example driver, driven by hand.
+// The example driver gets single messages and ticks from the test.
 #include "examples/driver/driver.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Mission mission_of(Pace pace, double command_hold_s = 0.5) {
   return mission;
 }
 
-/// A driver that received at 0 s that the mission of two agents runs.
+/// A driver that learned at 0 s that the mission of two agents runs.
 Driver running_driver(const Mission& mission, double speed_limit_mps = kSpeedLimit_mps) {
   announce(mission);
   Driver driver(kRun, kWorldLife, speed_limit_mps);
@@ -61,10 +61,10 @@ TEST(ExampleDriver, ObeysOnlyTheAgentOfTheRobotAndNothingOld) {
   Command stranger = command_of(0, 1, {5, 0, 0});
   stranger.header.incarnation = 99;
   give(driver, stranger, at(101ms));
-  give(driver, command_of(0, 2, {5, 0, 0}), at(102ms));  // of a tick that is yet to come
+  give(driver, command_of(0, 2, {5, 0, 0}), at(102ms));  // of a future tick
   EXPECT_EQ(state_at(driver, at(200ms)).vehicles[0].position_m.x(), 100);
   give(driver, command_of(0, 2, {5, 0, 0}), at(201ms));
-  give(driver, command_of(0, 1, {0, 0, 0}), at(202ms));  // overtaken
+  give(driver, command_of(0, 1, {0, 0, 0}), at(202ms));  // out of order
   EXPECT_NEAR(state_at(driver, at(300ms)).vehicles[0].position_m.x(), 100.5, 1e-9);
 }
 
@@ -99,7 +99,7 @@ Mission apart() {
   return mission;
 }
 
-/// By the true places of all, whatever the agents command and however long that is held.
+/// Uses the true positions of all robots, for any command and any time for which it is held.
 TEST(ExampleDriver, HoldsRobotsApart) {
   Driver driver = running_driver(apart());
   advance(driver, at(0s));

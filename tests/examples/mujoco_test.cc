@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Robots in a physics engine that is not ours judge the separation: real agents command discs on
-// wheels and quadrotors that follow late, slip, and touch whatever is in their way.
+// Tests the separation with robots in an independent physics engine: real agents command discs on
+// wheels and quadrotors. These follow late, slip, and touch everything in their way.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -100,7 +100,7 @@ TEST_P(RobotsInPhysics, EqualMissionsFlyAlike) {
   EXPECT_EQ(outcome_of(team(), mission).trajectory, outcome_of(team(), mission).trajectory);
 }
 
-/// T = lag + dt/2: the way that a robot still makes once it is told to stand, in seconds at V.
+/// T = lag + dt/2: the distance that a robot still moves after a command to stop, in seconds at V.
 TEST_P(RobotsInPhysics, FollowAsLateAsTheirScenarioSays) {
   const Mission mission = mission_of(team(), 1, 10);
   MujocoPhysics physics(mission, team().design);
@@ -127,7 +127,7 @@ TEST_P(RobotsInPhysics, ThatAreDrivenIntoEachOtherOrAWallAreCounted) {
   EXPECT_GE(physics.contacts().robots, 1);
   EXPECT_EQ(physics.contacts().walls, 0);
   EXPECT_GT(bodies[1].position_m.x(), 5.05) << "it is pushed";
-  physics.place(2, {9.5, 2, 0}, {0, 0, 0});  // a newcomer: the others go on
+  physics.place(2, {9.5, 2, 0}, {0, 0, 0});  // a new robot: the others continue
   const Eigen::Vector3d before_m = bodies[1].position_m;
   bodies.push_back({2, {1, 0, 0}});
   physics.pass_tick(bodies);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# An exported MCAP file says what the record says: mcap_test.sh ERGOCAST FOLDER. FOLDER keeps the reference
-# reader, which npm's registry has, from one test to the next.
+# An exported MCAP file has the contents of the record: mcap_test.sh ERGOCAST FOLDER. FOLDER keeps
+# the reference reader, from npm's registry, between tests.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 ergocast=$1 reader=$2
@@ -9,7 +9,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 mkdir -p "$reader"
-# The lock file has the SHA-512 of each package, so nothing else can come.
+# The lock file has the SHA-512 of each package, so no other file is accepted.
 if ! cmp -s "$here/reader/package-lock.json" "$reader/fetched"; then
   cp "$here"/reader/package*.json "$reader"
   npm ci --ignore-scripts --no-audit --no-fund --prefix "$reader"
@@ -24,7 +24,7 @@ printf '%s\n' '2026-04-12T10:15:00.123 info agent-3: agent 3 of run 1: running' 
 "$ergocast" export "$work/run" --to mcap --out "$work/run.mcap"
 node "$here/read_mcap.cjs" "$reader" "$work/run.mcap" "$work/run"
 
-# φ² of a mission in other modes than cosines names them.
+# If the modes are not cosines, φ² names them.
 cat >"$work/rooms.textproto" <<'END'
 origin { latitude_deg: 47.5 longitude_deg: 9.2 }
 domain { size_x_m: 100 size_y_m: 50 }
@@ -43,7 +43,7 @@ END
 "$ergocast" export "$work/rooms" --to mcap --out "$work/rooms.mcap"
 node "$here/read_mcap.cjs" "$reader" "$work/rooms.mcap" "$work/rooms"
 
-# The reader finds what is wrong: a digit of a pose, and a file that was cut off.
+# The reader finds errors: a wrong digit of a pose, and a truncated file.
 place=$(grep -abo '"position":{"x":' "$work/run.mcap" | sed -n '1s/:.*//p')
 cp "$work/run.mcap" "$work/spoiled.mcap"
 printf '9' | dd of="$work/spoiled.mcap" bs=1 seek=$((place + 17)) conv=notrunc status=none

@@ -95,7 +95,7 @@ std::vector<std::uint8_t> Adversary::wrapped(const Packet& packet) {
 void Adversary::strike() {
   Packet packet = damaged(heard_[dice_.below(heard_.size())]);
   const std::size_t what = dice_.below(32);
-  if (what == 0) {  // noise under a good name
+  if (what == 0) {  // noise under a valid name
     packet.message.resize(dice_.below(dice_.below(16) == 0 ? kMostBytes : 1400));
     for (std::uint8_t& byte : packet.message) byte = static_cast<std::uint8_t>(dice_.next());
   }
@@ -104,7 +104,7 @@ void Adversary::strike() {
   if (what == 1) datagram.resize(dice_.below(datagram.size()));  // cut off
   if (what == 2) datagram[dice_.below(kLcmHeaderBytes)] = static_cast<std::uint8_t>(dice_.next());
   if (what == 3) std::replace(datagram.begin(), datagram.end(), std::uint8_t{0}, std::uint8_t{1});
-  // The header of a fragment makes LCM itself crash, which no program with LCM can prevent.
+  // The header of a fragment can crash LCM itself, which no program with LCM can prevent.
   if (datagram.size() >= 4 && std::memcmp(datagram.data(), "LC03", 4) == 0) datagram[3] = '4';
   const sockaddr_in to = address_of(url_.group, url_.base_port + packet.bus);
   sendto(mouth_.fd(), datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One datagram on some channel, as received and with a valid tag: an accepted message is unchanged
-// when it is sent again, one message alone cannot break a table, and a receiver with a key accepts
-// nothing.
+// One datagram on some channel, as received and with a valid tag. An accepted message is unchanged
+// when it is sent again. A single message cannot break a table, and a receiver with a key accepts
+// none.
 //
 // Input: a byte with the length of the channel's name, the name, the datagram.
 #include <cmath>

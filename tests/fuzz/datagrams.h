@@ -13,7 +13,7 @@ namespace ergocast::fuzz {
 
 inline constexpr std::size_t kHeaderBytes = 60;
 
-/// A short stream of numbers that follows from its seed.
+/// A generator of numbers that depend only on its seed.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A segment of an event log, as it is and as a compressed one: events within the limits of any
+// A segment of an event log, plain and as a compressed one: events within the limits of any
 // message, and then an end or a problem.
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/event_log_reader.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One core that only receives messages of an attacker with its run id: it does not crash, holds
-// nothing impossible, and sends nothing that would be refused.
+// One core that only receives messages of an attacker with its run id: it does not crash, has no
+// impossible state, and sends no message that would be refused.
 //
 // The first byte of the input is Features, the second selects the core.
 #include <sstream>

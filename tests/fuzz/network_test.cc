@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An adversary sends damaged datagrams to the buses of a team in real time: no process dies,
-// nothing is accepted, and the mission is flown to its end.
+// An adversary sends damaged datagrams to the buses of a team in real time: no process crashes, no
+// datagram is accepted, and the mission runs to its end.
 //
-// A short run asserts no time. A long one, which prints how many deadlines were missed with and
-// without: ERGOCAST_FUZZ_DATAGRAMS=1000000 ERGOCAST_FUZZ_PER_S=5000 bin/fuzz_network_tests
+// A short run checks no time. A long run prints the missed deadlines with and without attack:
+// ERGOCAST_FUZZ_DATAGRAMS=1000000 ERGOCAST_FUZZ_PER_S=5000 bin/fuzz_network_tests
 #include <cstdlib>
 #include <lcm/lcm-cpp.hpp>
 
@@ -45,7 +45,7 @@ long largest_kb(const std::vector<pid_t>& pids) {
   return most;
 }
 
-/// How many messages the logger has accepted, and how many of those were forged.
+/// The numbers of messages and forged messages that the logger has accepted.
 std::pair<int, int> accepted(const std::filesystem::path& folder, const Adversary& adversary) {
   int all = 0, forged = 0;
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
@@ -72,7 +72,7 @@ class HostileNetwork : public RunningMission {
     }
   };
 
-  /// Listens for so long and sends so many damaged datagrams, if any.
+  /// Listens for that time and sends that number of damaged datagrams.
   static Stretch spend(Adversary& adversary, std::chrono::duration<double> time, long strikes) {
     const Tick tick = adversary.tick();
     const std::int64_t missed = adversary.missed_deadlines();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scenario from its text to its plan: refused with problems that have place, error and remedy, or
-// a mission that its own printed text and its own plan lead to again.
+// A scenario from its text to its plan. It is refused with problems that have place, error and
+// remedy, or it gives a mission. The mission's printed text and plan give the same mission again.
 #include "scenario/scenario.h"
 
 #include "team/plan.h"

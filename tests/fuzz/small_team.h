@@ -28,15 +28,15 @@ enum Features : std::uint8_t {
   kCoordinatorTakesOver = 128,
 };
 
-/// A short mission that two agents fly, with these features.
+/// A short mission of two agents with these features.
 Mission mission_with(std::uint8_t features);
 
 /// The transmitter of `message` if `transmitter` claims to have sent it: only contributions are
 /// relayed.
 AgentId transmitter_in(const Message& message, AgentId transmitter);
 
-/// Aborts if an agent holds something impossible, shows text that controls a terminal, or has NaN
-/// in a table.
+/// Aborts if an agent has an impossible state, shows text that controls a terminal, or has NaN in a
+/// table.
 void check(const Agent& agent);
 void check(const TeamPicture& picture);
 void check_table(std::string_view table);
@@ -45,12 +45,12 @@ class SmallTeam {
  public:
   explicit SmallTeam(std::uint8_t features);
 
-  /// An attacker's datagram, as the transport would pass it on.
+  /// Receives an attacker's datagram, as the transport would pass it on.
   void receive(std::span<const std::byte> datagram, AgentId transmitter);
-  /// Time passes; every process does its due work and receives the others' messages.
+  /// Advances the time; every process does its due work and receives the others' messages.
   void pass(std::chrono::nanoseconds time);
 
-  /// Aborts if any process holds or has written something impossible.
+  /// Aborts if any process has or has written an impossible value.
   void check() const;
 
   /// Receives every datagram that the team sends.

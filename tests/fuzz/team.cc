@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flying team that also receives an attacker's messages: no process crashes or sends what others
-// would refuse. The first byte of the input is Features.
+// A running team that also receives an attacker's messages: no process crashes or sends a message
+// that others would refuse. The first byte of the input is Features.
 #include "tests/fuzz/small_team.h"
 #include "tests/fuzz/target.h"
 #include "tests/fuzz/turns.h"

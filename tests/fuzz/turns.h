@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An attacker's datagrams, one after the other: the input of the targets with a state.
 //
-// First kPrefixBytes that the target reads. Then turns of 4 bytes and a datagram: how long to wait
-// before it (an index of kWaits), its transmitter, its length (2 bytes, high one first). Tags are
-// made valid, so that a change reaches the listening core.
+// The input starts with kPrefixBytes that the target reads. Turns of 4 bytes and a datagram follow.
+// The bytes are the wait before it (an index of kWaits), its transmitter, and its length (2 bytes,
+// high one first). Tags are made valid, so that a change reaches the listening core.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# What "ergocast deploy --to ssh" prints flies a mission, with keys and without: three hosts on a bridge, and an ssh that goes
-# into the network namespace of the host it is given.
+# The output of "ergocast deploy --to ssh" runs a mission, with keys and without. The test has three
+# hosts on a bridge, and an ssh that enters the network namespace of the given host.
 #   deploy_ssh_test.sh BIN_DIR SCENARIO
 set -euo pipefail
 
@@ -51,7 +51,8 @@ END
 chmod +x "$work/bin/ssh"
 export PATH="$work/bin:$PATH"
 
-# Waits until a command succeeds, or until all processes of the mission have ended. The command has the last word.
+# Waits until a command succeeds, or until all processes of the mission have ended. Then the command
+# is tried once more.
 patience_s=300
 eventually() {
   local deadline=$((SECONDS + patience_s)) in_vain=
@@ -61,7 +62,7 @@ eventually() {
     if all_ended; then in_vain=yes; fi
   done
 }
-# No host but its own knows where the scenario lies.
+# Only its own host knows the place of the scenario.
 scenario="$work/home with space's/mission.textproto"
 # use_scenario SECONDS FILE [OPTION…]
 use_scenario() {

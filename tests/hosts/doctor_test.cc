@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The findings of `ergocast doctor` on hosts of one network, and of faults there.
+// The findings of `ergocast doctor` on hosts of one network, without and with faults.
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,12 +25,12 @@ class DoctorOnHosts : public OnHosts {
       }
       return {};
     }
-    /// Of the only peer; null if there is not exactly one.
+    /// The value of the only peer; null if there is not exactly one.
     json peer(const char* what) const {
       const json& peers = report["peers"];
       return peers.size() == 1 ? peers[0][what] : json();
     }
-    /// Of the only peer, one of its losses [%]; −1 if there is not exactly one.
+    /// One of the losses of the only peer [%]; −1 if there is not exactly one.
     double lost(const char* direction, const char* what = "lost_percent") const {
       const json& loss = peer(direction);
       return loss.is_object() ? loss[what].get<double>() : -1;
@@ -58,15 +58,15 @@ class DoctorOnHosts : public OnHosts {
     Child child = start_on(host, url(ttl));
     return answer(host, child);
   }
-  /// --peer on hosts 0 and 1 at once, 100 probes from each. Once more if a busy machine started one
-  /// so much later that a host heard few of the other's.
+  /// Runs --peer on hosts 0 and 1 at once, with 100 probes from each. Repeats if a busy machine
+  /// started one so late that a host received few probes.
   std::pair<Answer, Answer> both(int ttl_of_0 = 1) {
     constexpr int kTries = 5;
     for (int n = 1;; ++n) {
       Child first = start_on(0, url(ttl_of_0), {"--peer", "5"});
       Child second = start_on(1, url(1), {"--peer", "5"});
       EXPECT_TRUE(eventually([&] {
-        const bool second_runs = second.running();  // whichever ends first may have found something
+        const bool second_runs = second.running();  // the first one to end may have found something
         return !first.running() && !second_runs;
       }));
       const Answer one = answer(0, first), two = answer(1, second);

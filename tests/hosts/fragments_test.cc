@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fragments of LCM's with crafted headers, which crash a program that reads with LCM's library, and
-// leave ours alone.
+// LCM fragments with crafted headers, which crash programs that read with LCM's library, but not
+// ours.
 #include <lcm/lcm-cpp.hpp>
 
 #include "runtime/group_socket.h"
@@ -20,7 +20,7 @@ void append(std::string& bytes, std::uint32_t number) {
 }
 
 /// The first of two fragments of a message. Its data goes to 64 bytes before the message's
-/// beginning, which in 32 bits is 4 GB after it. LCM's check of that overflows.
+/// beginning, which in 32 bits is 4 GB after it. LCM's check of this overflows.
 std::string crafted_fragment(const std::string& channel) {
   std::string bytes = "LC03";
   append(bytes, 1);     // the message's number
@@ -83,14 +83,14 @@ class Fragments : public RunningMission {
   }
 };
 
-// So the fragments of this file are what the rule is for.
+// This shows that the rule is needed against the fragments of this file.
 TEST_F(Fragments, CrashLcmsOwnLibrary) {
   const auto read_one = [] {
     signal(SIGSEGV, SIG_DFL);  // also under a sanitizer
     lcm::LCM lcm(std::get<LcmUrl>(LcmUrl::parse(kUrl)).of(Bus::kSwarm));
     const auto ignore = +[](const lcm::ReceiveBuffer*, const std::string&, int) {};
     lcm.subscribeFunction("ERGOCAST_HELLO", ignore, 0);
-    lcm.getFileno();  // LCM's thread reads from now on
+    lcm.getFileno();  // starts LCM's reading thread
     for (;;) {
       send_to(kGroup, Bus::kSwarm, crafted_fragment("ERGOCAST_HELLO"));
       lcm.handleTimeout(10);
@@ -118,7 +118,7 @@ TEST_F(Fragments, AreDroppedByTheRule) {
     ASSERT_FALSE(is_root());
     GTEST_SKIP() << "needs root";
   }
-  const Socket ear(AF_INET, SOCK_DGRAM);  // without a listener, nothing would come in
+  const Socket ear(AF_INET, SOCK_DGRAM);  // without a listener, no datagram would arrive
   ASSERT_EQ(listen_to_group(ear, kGroup, kBasePort), std::nullopt);
   const int sent = send_to_everybody();
   EXPECT_TRUE(eventually([&] { return dropped() == sent; })) << dropped();

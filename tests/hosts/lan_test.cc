@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The network of the other tests behaves as they require.
+// The network of the other tests has the properties that they require.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -35,7 +35,7 @@ class Radio {
     const std::string text(bytes, '.');
     sendto(fd_, text.data(), text.size(), 0, address(), sizeof group_);
   }
-  /// The number of messages received, once none has come for a while.
+  /// The number of received messages, once none has arrived for a while.
   int heard() {
     int count = 0;
     char text[2000];
@@ -119,7 +119,7 @@ TEST_F(ThreeHosts, CountPacketsAndFragments) {
 TEST_F(ThreeHosts, SpeakWhereTheRouteLeads) {
   lan_->add_interface(2);
   lan_->route_multicast(2, "eth1");
-  EXPECT_EQ(hearers(2), "") << "not even itself, who listens to eth0";
+  EXPECT_EQ(hearers(2), "") << "not even itself, because it listens to eth0";
   EXPECT_EQ(hearers(0), "012");
   lan_->route_multicast(2, "");
   EXPECT_EQ(hearers(2), "");

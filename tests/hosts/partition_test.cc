@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts that are disconnected for a while: in real time all processes continue with what they have,
+// Hosts that are disconnected for a while: in real time all processes continue with their own data,
 // and afterwards the team agrees again.
 #include "tests/hosts/team_on_hosts.h"
 
@@ -19,7 +19,7 @@ class Partition : public TeamOnHosts {
     }
     return coverage;
   }
-  /// Whether `who` reports that it holds at least so much of all other agents.
+  /// Whether `who` reports at least that much coverage of all other agents.
   static bool holds(const BusObserver& observer, AgentId who, const Coverage& coverage) {
     for (AgentId whose = 0; whose < 4; ++whose) {
       const std::int64_t held = observer.held(observer.member(who), observer.member(whose));
@@ -69,7 +69,7 @@ TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
              before[static_cast<std::size_t>(whose)] + 20 * kTicksPerSecond;
     };
     return holds_more(0, 1) && holds_more(1, 0);
-  })) << "who hears the world goes on";
+  })) << "agents that receive the world continue";
   const auto stands_still = [&](AgentId id) { return cut_off.stands_still(cut_off.member(id)); };
   EXPECT_TRUE(stands_still(2) && stands_still(3)) << "and the others do not";
   for (const AgentId id : {2, 3}) {
@@ -122,7 +122,7 @@ TEST_F(Partition, InLockstepEverybodyWaitsForACutOffHostAndNotABitChanges) {
 }
 
 TEST_F(Partition, AnAgentThatIsCutOffWhenTheMissionEndsDoesNotWaitForEver) {
-  // The world stands still in mid-flight, so that the mission's end comes after the cut.
+  // The world is stopped during the mission, so that the mission's end comes after the cut.
   hold_next("ERGOCAST_WORLD_STATE", 100);
   start(mission("100", "pace: REALTIME realtime_factor: 20"));
   hold_none();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts that are gone for good: their processes continue elsewhere.
+// Hosts that fail permanently: their processes continue elsewhere.
 #include "tests/hosts/team_on_hosts.h"
 
 namespace ergocast::test {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Programs on several hosts, each with its own network stack, started as people would start them
-// there.
+// Programs on several hosts, each with its own network stack, started as people would start them.
 #pragma once
 
 #include <optional>
@@ -43,8 +42,8 @@ class OnHosts : public ByHand {
   std::optional<Lan> lan_;
 };
 
-/// The default scenario's four agents: the coordinator on host 0, world and logger on host 1, agent
-/// i on host i but agent 3 on host 2, too.
+/// The default scenario's four agents: the coordinator on host 0, world and logger on host 1,
+/// agents 0, 1 and 2 on the hosts of these numbers, agent 3 also on host 2.
 class TeamOnHosts : public OnHosts {
  protected:
   /// The default scenario, lasting that long, with more fields in its `time`.
@@ -70,7 +69,7 @@ class TeamOnHosts : public OnHosts {
     start_agents();
   }
 
-  /// Tells the coordinator to end the mission.
+  /// Sends the coordinator a signal to end the mission.
   void end_mission() { coordinator_->child.send(SIGINT); }
 
   /// The mission continues until it is stopped, and the record equals the simulation's.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team on three hosts: all processes are found, and the mission is flown as on one host.
+// A team on three hosts: all processes are found, and the mission runs as on one host.
 #include "tests/hosts/team_on_hosts.h"
 
 namespace ergocast::test {

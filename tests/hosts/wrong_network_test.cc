@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A host whose multicast goes elsewhere, or nowhere: its agent is reported missing, by its number.
+// A host whose multicast uses another network or none: its agent is reported missing, by its
+// number.
 #include "tests/hosts/team_on_hosts.h"
 
 namespace ergocast::test {

@@ -80,7 +80,7 @@ TEST(EigenModes, AreOrthogonalAndBegunByTheConstant) {
     EXPECT_GE(modes->eigenvalues_per_m2[k], modes->eigenvalues_per_m2[k - 1]);
 }
 
-// The lowest mode tells the two rooms apart, and has almost one value in each.
+// The lowest mode distinguishes the two rooms, and is almost constant in each.
 TEST(EigenModes, TellRoomsApartFirst) {
   const FreeGrid grid = test::grid_of(test::square(), test::sees_through_the_door);
   const auto modes = eigen_modes(grid, 4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells know each other only where they see each other.
+// Cells are neighbours only if they see each other.
 #include "modes/free_grid.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(FreeGrid, HasNoDoorThroughAWallThatIsThinnerThanACell) {
   EXPECT_EQ(doors, 8);
 }
 
-// A door's cells see both sides; beyond it, nothing is read from the other room.
+// A door's cells see both sides; away from it, no value comes from the other room.
 TEST(FreeGrid, SeesNothingOfTheOtherRoomThroughTheWall) {
   const FreeGrid grid = grid_of(square(), test::sees_through_the_door);
   for (int cell = 0; cell < grid.cell_count(); ++cell) {

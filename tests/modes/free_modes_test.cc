@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The basis of a free domain: values, field and weights, held against cosines where they are equal.
+// The basis of a free domain: values, field and weights, compared with cosines where they are
+// equal.
 #include "core/free_modes.h"
 
 #include <gtest/gtest.h>
@@ -77,7 +78,7 @@ TEST(FreeModes, NeverExceedOneNorAreNotANumberAnywhere) {
   }
 }
 
-// The lowest mode of two rooms has another sign on the other side of the wall.
+// The lowest mode of two rooms changes its sign across the wall.
 TEST(FreeModes, JumpAtAWallAndNotAtADoor) {
   const Basis basis = free_basis(rooms_table());
   const auto lowest = [&](double x, double y) {
@@ -164,7 +165,7 @@ TEST(FreeModes, FieldHasNoSlopeAcrossWallsAndSides) {
   EXPECT_GT(std::abs(slope(1000, 1000).x()), 1e-3 * usual) << "in the door";
 }
 
-// f_k = e_k · max |f_k| has the mean square ¼, and weights make up for that.
+// f_k = e_k · max |f_k| has the mean square ¼, and weights compensate for it.
 TEST(FreeModes, WeightsAreThoseOfTheUnscaledModes) {
   const FreeModes& modes = *rooms_table();
   const Eigen::VectorXd weights = free_weights(modes, true, 1.5, false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mission gets the table of its hash or none: it is known, handed over, or computed.
+// A mission gets the table with its hash or none. The table is known, passed on, or computed.
 #include "modes/provide.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(Provide, KnowsTheMissionsWalls) {
   EXPECT_NE(std::get<ModesTable>(table_of(walled))->key, with->key);
 }
 
-// Each wall takes away what it covers.
+// Each wall removes the area that it covers.
 TEST(Provide, HasNoCellsInWalls) {
   Mission mission = mission_of(66);
   mission.walls = {{{20, 20}, {40, 20}, {40, 40}, {20, 40}},
@@ -68,7 +68,7 @@ TEST(Provide, GivesTheTableOfTheHash) {
   EXPECT_EQ(mission.basis.table->hash, mission.basis.table_hash);
 }
 
-// As of a program that rounds otherwise.
+// Like a table of a program that rounds differently.
 TEST(Provide, UsesWhatIsHandedOverInPlaceOfWhatItWouldCompute) {
   Mission mission = mission_of(90);
   const FreeGrid grid = test::grid_of(mission.domain, test::sees_all);
@@ -87,7 +87,7 @@ TEST(Provide, UsesWhatIsHandedOverInPlaceOfWhatItWouldCompute) {
   EXPECT_EQ(mission.basis.table.get(), theirs.get());
 }
 
-// As of a file that has changed since it was named.
+// Like a file that was changed after it was named.
 TEST(Provide, ComputesTheTableOfTheHashWhereItWasHandedAnotherOne) {
   Mission mission = mission_of(95);
   const FreeGrid grid = test::grid_of(mission.domain, test::sees_all);
@@ -120,7 +120,7 @@ TEST(Provide, LeavesCosinesAlone) {
   EXPECT_EQ(mission.basis.table, nullptr);
 }
 
-// What teammates say of these modes has the bounds that tables hold all sums against.
+// Teammates' sums of these modes keep the bounds that tables check for all sums.
 TEST(Provide, SumsOfItsModesAreAccepted) {
   Mission mission = mission_of(110);
   mission.basis.table_hash = std::get<ModesTable>(table_of(mission))->hash;

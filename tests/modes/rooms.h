@@ -13,7 +13,7 @@
 namespace ergocast::test {
 
 inline constexpr double kSide_m = 2000;
-inline constexpr double kWall_m = 1005;  ///< 5 m behind a side of the cells, which are 25 m wide
+inline constexpr double kWall_m = 1005;  ///< 5 m behind an edge of the cells, which are 25 m wide
 inline constexpr double kHalfDoor_m = 100;
 
 inline Box square() {

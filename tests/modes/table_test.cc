@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A table's bytes are read back as they were, or refused: nothing that reads a table looks again.
+// A table's bytes are read back unchanged, or refused: readers of a table do not check again.
 #include "modes/table.h"
 
 #include <fcntl.h>
@@ -121,7 +121,7 @@ TEST(Table, IsRefusedWithANumberThatNoneHas) {
   }
 }
 
-// Whatever is accepted can be read at any place.
+// An accepted table can be read at any place.
 TEST(Table, ThatIsAcceptedIsSafeToRead) {
   std::minstd_rand dice(5);
   int accepted = 0;

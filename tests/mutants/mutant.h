@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which mutant a process is: the copy of the tree that tests/mutants/run builds has all of them.
+// Selects the mutant of a process: tests/mutants/run builds a copy of the tree with all mutants.
 #pragma once
 
 #include <cstdlib>

@@ -12,7 +12,7 @@ set +u  # the library reads unset variables
 . "$root/packaging/completion/ergocast"
 compopt() { :; }  # only a shell at a terminal has it
 
-# What Tab offers at the end of a line.
+# The completions at the end of a line.
 offers() {
   COMP_LINE=$1 COMP_POINT=${#1}
   read -ra COMP_WORDS <<<"$1"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by the tests of the Debian package (bash): a bare Debian 12 of the test's own.
+# Sourced by the tests of the Debian package (bash): a separate bare Debian 12 for the test.
 #   SCRIPT BUILD_DIR
-# It lies in memory, in a mount namespace that ends with the test, and its processes in a process
-# namespace that does, too: whatever happens, nothing is left.
+# It is in memory, and its mounts and processes are in namespaces that end with the test. So nothing
+# remains in any case.
 #   ERGOCAST_DEBIAN_CACHE   where bare systems and fetched packages are kept (default: BUILD_DIR/debian)
 # shellcheck shell=bash
 set -euo pipefail
@@ -21,7 +21,7 @@ if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
   done
   unshare --mount true 2>/dev/null || skip 'this system allows no mount namespaces'
   mkdir -p "$root" "$cache/archives"
-  # Tests take turns with the cache; for those of one ctest, their RESOURCE_LOCK sees to it.
+  # Tests use the cache in turn; within one ctest, their RESOURCE_LOCK ensures it.
   exec 9>"$cache/lock"
   flock 9
   status=0
@@ -42,7 +42,7 @@ files_of_system() {
     -o -path ./var/lib/apt -o -path ./var/lib/dpkg \) -prune -o -print | sort)
 }
 
-# A command on a network of its own; the array is for commands that are to be killed.
+# Runs a command in a separate network; the array is for commands that are killed later.
 offline=(unshare --net sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec "$@"' _
   chroot "$root" env LC_ALL=C.UTF-8)
 offline() { "${offline[@]}" "$@"; }
@@ -65,7 +65,7 @@ pack() {
 
 make_bare_system() {
   local bare=$cache/bookworm.tar
-  # Its list of packages grows old.
+  # Its list of packages becomes outdated.
   if [ ! -f "$bare" ] || [ -n "$(find "$bare" -mtime +3)" ]; then
     debootstrap --variant=minbase bookworm "$root" >"$work/debootstrap.log" 2>&1 ||
       { tail -n 5 "$work/debootstrap.log" >&2; fail 'debootstrap (is there a network?)'; }
@@ -77,7 +77,7 @@ make_bare_system() {
   fi
   cp "$cache"/archives/*.deb "$root/var/cache/apt/archives/" 2>/dev/null || true
   cp /etc/resolv.conf "$root/etc/resolv.conf"
-  # dpkg starts no service here: there is none that could.
+  # dpkg starts no service here, because systemd does not run.
   mount -t proc proc "$root/proc"
 }
 

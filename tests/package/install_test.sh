@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The package installs on a bare Debian 12, flies there, and leaves nothing when it is purged.
-# shellcheck source=tests/package/debian.sh
+# The package installs on a bare Debian 12, runs a mission there, and leaves nothing when it is
+# purged. shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
 
 check_contents() {
@@ -31,7 +31,7 @@ check_files() {
     expect_file "usr/bin/$program"
     expect_file "usr/share/man/man1/$program.1.gz"
   done
-  # Every command has its place in the manual.
+  # The manual describes every command.
   for name in $(in_root ergocast --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
     gzip -dc "$root/usr/share/man/man1/ergocast.1.gz" | grep -q "^.SS $name$" ||
       fail "ergocast(1) does not speak of $name"
@@ -51,7 +51,7 @@ check_missions() {
     fail 'ergocast simulate'
   offline ergocast run --duration 20 --out /tmp/test/run quadrimodal_corners || fail 'ergocast run'
   cmp "$work/simulated/trajectory.csv" "$work/run/trajectory.csv" || fail 'run and simulate differ'
-  # With the map that lies beside it.
+  # With the map in the same folder.
   offline ergocast check lake_search || fail 'ergocast check lake_search'
   ! offline ergocast check no_such_scenario 2>"$work/said" || fail 'a scenario that is not there'
   grep -q harbour_patrol "$work/said" || fail 'the shipped scenarios are not named'
@@ -87,7 +87,7 @@ make_bare_system
 pack
 check_contents
 cp "$deb" "$root/tmp/"
-# The libraries the package depends on stay, so that what is left is the package's.
+# The libraries that the package depends on stay, so that every remaining file is the package's.
 apt_install "/tmp/$(basename "$deb")"
 check_files
 check_missions

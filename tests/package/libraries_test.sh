@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# libergocast-dev and python3-ergocast on a bare Debian 12: each header compiles alone, the example flies
-# in a team of the packaged processes, Python reads what was flown, and nothing is left.
-# shellcheck source=tests/package/debian.sh
+# libergocast-dev and python3-ergocast on a bare Debian 12: each header compiles alone, the example
+# runs in a team of the packaged processes, Python reads the record, and nothing is left. shellcheck
+# source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
 
 source=$(cd "$(dirname "$0")/../.." && pwd)
@@ -24,7 +24,7 @@ check_versions() {
   grep -q 'version: 0' "$work/said" || { cat "$work/said"; fail 'the version is not named'; }
 }
 
-# In a team of the packaged processes; its trajectory is that of the simulation.
+# Runs in a team of the packaged processes; its trajectory equals that of the simulation.
 check_example() {
   cp -r "$source/examples/embed" "$work/embed"
   in_root cmake -S /tmp/test/embed -B /tmp/test/embed/build >"$work/said" 2>&1 &&

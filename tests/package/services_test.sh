@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The installed services under a systemd of the test's own (systemd-nspawn): they fly a mission, come
-# back after crashes, end in order, take a mission key, and are shut in.
-# shellcheck disable=SC2034
+# The installed services under a separate systemd (systemd-nspawn): they run a mission, restart
+# after crashes, exit normally, take a mission key, and are sandboxed. shellcheck disable=SC2034
 more_tools='systemd-nspawn nsenter pgrep'
 
-# nspawn makes control groups below its own; none may be left.
+# nspawn makes control groups below its own; none may remain.
 hierarchies='/sys/fs/cgroup /sys/fs/cgroup/systemd /sys/fs/cgroup/unified'
 before_all() {
   local hierarchy
@@ -34,8 +33,8 @@ fail() {
   exit 1
 }
 
-# Waits until a command succeeds, or until the system has ended or one of the services has failed. The command
-# has the last word.
+# Waits until a command succeeds, or until the system has ended or one of the services has failed.
+# Then the command is tried once more.
 patience_s=300
 eventually() {
   local deadline=$((SECONDS + patience_s)) in_vain=
@@ -50,7 +49,7 @@ failed_services() {
 }
 
 boot() {
-  # systemd does not start over it; and nspawn leaves folders in /run.
+  # systemd does not start if it exists; and nspawn leaves folders in /run.
   umount "$root/proc"
   mount -t tmpfs tmpfs /run
   systemd-nspawn --register=no --keep-unit --private-network --resolv-conf=off --timezone=off \
@@ -109,7 +108,7 @@ check_mission_with_crashes() {
   use_scenario $endless
   there systemctl start $all
   eventually recorded 2000
-  # Nothing moves now, so that all that follows happens in mid-flight.
+  # The mission stands still now, so that all that follows happens during it.
   there systemctl kill --signal=STOP ergocast-sim
   for unit in ergocast-agent@2 ergocast-logger ergocast-coordinator; do
     kill_one $unit
@@ -119,7 +118,7 @@ check_mission_with_crashes() {
   before=$(rows)
   there systemctl kill --signal=CONT ergocast-sim
   eventually recorded $((before + 2000))
-  # One that still looks for the mission could not end it.
+  # A coordinator that still looks for the mission could not end it.
   eventually took_over
   there systemctl stop ergocast-coordinator
   eventually all_are inactive "$all"
@@ -141,7 +140,7 @@ check_complete_mission() {
   all_are inactive "$all" || fail 'a complete mission was begun again'
 }
 
-# A coordinator that comes back where nothing flies begins nothing.
+# A restarted coordinator without a running mission starts none.
 check_crash_on_the_ground() {
   there systemctl start ergocast-coordinator
   kill_one ergocast-coordinator

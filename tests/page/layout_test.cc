@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing that a person needs is cut off or away, on a laptop or on a telephone.
+// Nothing that a person needs is cut off or hidden, on a laptop or on a telephone.
 #include "tests/page/page_in_a_browser.h"
 
 namespace ergocast::test {

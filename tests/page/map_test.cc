@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What can be read from the map: how large bodies are, and where the target is.
+// The map shows the size of bodies and the place of the target.
 #include "tests/page/page_in_a_browser.h"
 
 namespace ergocast::test {
 namespace {
 
-/// How many pixels within ten of agent 0's place have exactly its colour.
+/// The number of pixels within ten of agent 0's place that have exactly its colour.
 constexpr const char* kOwnPixels =
     "const { view, S, shown } = ergocast, track = shown().track(0);"
     "const [x, y] = view.at(track, S.run.rowAt(S.t)), [r, g, b] = [1, 3, 5].map(i => "
@@ -28,8 +28,8 @@ constexpr const char* kDistance =
     "    1.9779984951 * l - 2.428592205 * m + 0.4505937099 * s,"
     "    0.0259040371 * l + 0.7827717662 * m - 0.808675766 * s]; };"
     "const distance = (p, q) => Math.hypot(...lab(p).map((v, i) => v - lab(q)[i]));"
-    // The pixel of the shading in the middle of the first cell of the target that is between two
-    // levels of 255.
+    // Finds the first cell whose density is between `low` and `high` of 255, and reads the
+    // shading's pixel in its middle.
     "const { S, view } = ergocast, { density: { width, height, cells }, size } = S.run;"
     "const pixel = (low, high) => { const i = cells.findIndex(v => v >= low && v <= high);"
     "  const x = view.px((i % width + 0.5) / width * size[0]);"
@@ -46,7 +46,7 @@ TEST_F(PageInABrowser, BodiesAreDrawnToScale) {
   EXPECT_LT(js(kOwnPixels), 160) << "a drop of its size before had twice as many";
   EXPECT_GT(js(kOwnPixels), 3 * radius * radius - 15);
   screenshot("bodies");
-  // Near by the body is large, and the number is inside.
+  // At high zoom the body is large, and the number is inside.
   js("const { view, S, shown } = ergocast, track = shown().track(0);"
      "view.zoomAt(8, ...view.at(track, S.run.rowAt(S.t)), shown().size); ergocast.set('tail', 0)");
   wait_for_frame();

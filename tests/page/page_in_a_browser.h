@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A page of a run in a real browser.
 //
-// With ERGOCAST_SCREENSHOTS=FOLDER the tests save what they show there.
+// With ERGOCAST_SCREENSHOTS=FOLDER the tests save their screenshots there.
 #pragma once
 
 #include <cstdlib>
@@ -25,7 +25,7 @@ class PageInABrowser : public RunningMission {
     browser_->open("file://" + (out() / "report.html").string() + fragment);
     ASSERT_TRUE(browser_->becomes("return Boolean(window.ergocast && ergocast.S.run.ready)"));
   }
-  /// The frame after next shows what was asked for.
+  /// Waits for two frames; the second one shows the requested change.
   void wait_for_frame() {
     js("return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
   }

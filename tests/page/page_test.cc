@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page in a real browser: a report from disk, a served record, and a team that flies.
+// The page in a real browser: a report from disk, a served record, and a running team.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -36,7 +36,7 @@ TEST_F(PageInABrowser, AReportFromDiskShowsAnyTick) {
   EXPECT_NEAR(rows[0].get<double>(), x, 0.1);  // 2000 m in 14 bits
   EXPECT_NEAR(rows[1].get<double>(), y, 0.1);
 
-  // The agent is drawn where it is.
+  // The agent is drawn at its position.
   const auto drawn =
       js("const { head: [x, y], r } = ergocast.marker(2), s = devicePixelRatio;"
          "const g = document.getElementById('markers').getContext('2d');"
@@ -140,7 +140,7 @@ TEST_F(PageInABrowser, TextOfARecordIsTextOnly) {
   browser_->press("i");
   EXPECT_NE(text("detailsText").find("onerror='window.broken = 2'"), std::string::npos);
   EXPECT_EQ(js("return window.broken === undefined && document.images.length === 0"), true);
-  // The policy stops what a mistake would let through.
+  // The policy blocks code that a mistake would let through.
   js("document.body.insertAdjacentHTML('beforeend', '<img src=x onerror=\"window.broken = 3\">');"
      "const s = document.createElement('script'); s.textContent = 'window.broken = 4'; "
      "document.body.append(s);");
@@ -205,7 +205,7 @@ agents { starts { x_m: 50 y_m: 20 } random_count: 1 })";
   browser_->open("file://" + (out() / "report.html").string());
   ASSERT_TRUE(browser_->becomes("return Boolean(window.ergocast)"));
   const auto rows = [this] {
-    wait_for_frame();  // the page draws what was asked in its next frame
+    wait_for_frame();  // the page draws the request in its next frame
     return js(
         "return [...document.querySelectorAll('#rows > tr')].map(r => "
         "[r.children[0].textContent, r.children[1].textContent].join())");
@@ -276,11 +276,11 @@ agents { starts { x_m: 50 y_m: 20 } random_count: 1 })";
   EXPECT_EQ(js("return document.querySelectorAll('#rows > tr').length"), 2);
   EXPECT_EQ(rows()[0].get<std::string>().substr(0, 3), "10,");
 
-  // The bands have their points from the table's columns.
+  // The points of the bands come from the table's columns.
   EXPECT_EQ(js("return ergocast.shown().curves[0].over_time.map(p => p[0])"),
             nlohmann::json::parse(
                 "[1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8, 10, 12.5, 16, 20, 25, 32, 40]"));
-  // The row's command flies that point.
+  // The row's command runs that point.
   browser_->click("#rows tr td:last-child button");
   EXPECT_NE(js("return document.querySelector('.how pre').textContent")
                 .get<std::string>()
@@ -312,7 +312,7 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
       "return ergocast.S.run.incidents.some(i => i.agent === 2 && /restarted|back/.test(i.text))"));
   EXPECT_TRUE(browser_->becomes(
       "return /killed by SIGKILL/.test(document.getElementById('log').textContent)"));
-  // Back in time while the team flies, and to it again.
+  // Seeks back in time while the team runs, and returns to the present.
   browser_->press(kHome);
   EXPECT_EQ(js("return [ergocast.S.t, ergocast.S.following]"), nlohmann::json::array({0, false}));
   const double end = js("return ergocast.S.run.end");
@@ -335,7 +335,7 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);
 
-  // Opened from disk, the record tells it, too: what happened, and what each agent knew when.
+  // Opened from disk, the record also shows the incidents and the agents' knowledge over time.
   show_report();
   EXPECT_EQ(js("return ergocast.S.run.incidents.some(i => i.agent === 2 && "
                "/restarted|back/.test(i.text))"),
@@ -393,7 +393,7 @@ TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {
   EXPECT_TRUE(browser_->becomes("return ergocast.S.run.end > " + std::to_string(end)));
   mission.send(SIGINT);
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
-  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 0.02);  // of the whole mission
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 0.02);  // for the whole mission
   ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);
@@ -407,11 +407,11 @@ TEST_F(PageInABrowser, AnotherSitesPageGetsNothing) {
   ASSERT_TRUE(eventually([] { return get(8811, "/").status == 200; }));
   browser_->open("http://127.0.0.1:8811/");
   EXPECT_TRUE(browser_->becomes("return Boolean(window.ergocast?.S.run)"));
-  // A site whose name has come to mean this host.
+  // A site whose name resolves to this host.
   browser_->open("http://evil.example:8811/");
   EXPECT_EQ(js("return document.body.textContent.trim()"), "this server does not have that name");
-  // A page from elsewhere, here from a file: browsers keep those of the network from this host
-  // before our server can. It may neither read an answer, nor use one unread, nor show it.
+  // A foreign page, here from a file, because browsers themselves keep pages of the network from
+  // this host. It may neither read an answer, nor use one unread, nor show it.
   std::ofstream(folder_ / "evil.html") << "<!DOCTYPE html><title>evil</title>";
   browser_->open("file://" + (folder_ / "evil.html").string());
   browser_->errors();

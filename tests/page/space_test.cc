@@ -20,7 +20,8 @@ class BoxInABrowser : public PageInABrowser {
     browser_.emplace(folder_, webgl);
     open_report({"--duration", "20"}, fragment, "cube_corners");
   }
-  /// A pixel of a canvas, {red, green, blue}, at what an expression says in pixels of the map.
+  /// A pixel of a canvas, {red, green, blue}, at the position of an expression in pixels of the
+  /// map.
   std::array<int, 3> pixel(const std::string& canvas, const std::string& at) {
     wait_for_frame();
     const auto drawn =
@@ -64,7 +65,8 @@ TEST_F(BoxInABrowser, ABoxHasItsAgentsTailsAndSlices) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(shown[axis].get<double>(), place[axis], 0.05);
   }
-  // The tip of its pin is where the eye sees this place; beside the number is the agent's colour.
+  // The tip of its pin is at the projection of its position; the agent's colour is beside the
+  // number.
   EXPECT_EQ(js("const { view, S, marker } = ergocast, at = view.placeAt(S.run.track(5), 100);"
                "return String(marker(5).tip) === String(view.project(at).slice(0, 2))"),
             true);
@@ -85,7 +87,7 @@ TEST_F(BoxInABrowser, ABoxHasItsAgentsTailsAndSlices) {
   const auto empty = pixel("space", where);
   EXPECT_GT(distance(dense, empty), 60);
 
-  // A slider moves its slice, and says where it is.
+  // A slider moves its slice and shows the slice's position.
   browser_->press("z");
   js("const slider = document.querySelectorAll('#slices input[type=range]')[2];"
      "slider.value = 0.75; slider.dispatchEvent(new Event('input'));");
@@ -93,7 +95,7 @@ TEST_F(BoxInABrowser, ABoxHasItsAgentsTailsAndSlices) {
   EXPECT_GT(distance(pixel("space", "view.project([250, 750, 750])"),
                      pixel("space", "view.project([490, 490, 750])")),
             40);
-  // What was achieved so far differs from what is wanted: the start of agent 1 was covered.
+  // The coverage so far differs from the target: the start of agent 1 was covered.
   const std::string start = "view.project([30, 30, 750])";
   js("ergocast.S.slices[2] = 0.99; ergocast.set('layer', 'target')");
   const auto wanted = pixel("space", "view.project([15, 15, 990])");
@@ -114,7 +116,7 @@ TEST_F(BoxInABrowser, ABoxHasItsAgentsTailsAndSlices) {
 
 TEST_F(BoxInABrowser, ABoxTurnsByMouseKeysAndWheel) {
   open_cube(true, "#theme=dark");
-  // The corner nearest to the eye goes with the mouse.
+  // The corner nearest to the eye follows the mouse.
   const std::string nearest =
       "const { view } = ergocast; return view.project([0, 1, 2].map(i => view.forward[i] > 0 ? 0 "
       ": view.size[i]))";
@@ -142,7 +144,7 @@ TEST_F(BoxInABrowser, ABoxTurnsByMouseKeysAndWheel) {
   EXPECT_EQ(js("return ergocast.S.view"), "xy");
   screenshot("box_from_above");
 
-  // All of the picture is inside of the canvas from everywhere, its numbers included.
+  // The whole picture with its numbers is inside the canvas from every direction.
   js("ergocast.showView('turn'); ergocast.draw(10)");
   EXPECT_EQ(js("const { view, S } = ergocast; let out = 0;"
                "for (let a = 0; a < 6.3; a += 0.1) for (let e = -1.5; e < 1.6; e += 0.25) {"
@@ -204,7 +206,7 @@ TEST_F(BoxInABrowser, AFlatBoxIsDrawnHigher) {
   EXPECT_EQ(js("return ergocast.shown().stretch"), nlohmann::json::parse("[1, 5]"));
   EXPECT_NE(js("return ergocast.svgText()").get<std::string>().find("z [m] × 5"),
             std::string::npos);
-  // There is more of it at the surface than at the bottom, and none at the land in the west.
+  // The target is larger at the surface than at the bottom, and zero at the land in the west.
   const auto cells =
       js("const { cells, width, height } = ergocast.shown().density, at = (u, v) => "
          "cells[Math.floor(v * height) * width + Math.floor(u * width)];"
@@ -237,7 +239,7 @@ TEST_F(BoxInABrowser, ABoxGrowsLive) {
   EXPECT_TRUE(browser_->becomes("return ergocast.S.run.tracks.length === 8"));
   EXPECT_TRUE(browser_->becomes(
       "const t = ergocast.S.run.track(3); return t.z[t.last] < 1000 && t.z[t.first] === 1000"));
-  // What flies now has a tail behind it.
+  // A moving agent has a tail behind it.
   js("ergocast.set('tail', 7); ergocast.S.slices = [null, null, null]");
   EXPECT_TRUE(browser_->becomes(
       "const { view, S } = ergocast, t = S.run.track(3), from = document.getElementById('space'), "

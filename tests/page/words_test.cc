@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page says in words what agents and mission do, and what its labels mean.
+// The page describes in words the states of agents and mission, and explains its labels.
 #include "tests/page/page_in_a_browser.h"
 
 namespace ergocast::test {
@@ -65,7 +65,7 @@ TEST_F(WordsInABrowser, AgentsGoHomeAndRest) {
 }
 
 TEST_F(WordsInABrowser, ALiveTeamPausesAndRests) {
-  // From tick 2000 of 10^8 on they rest.
+  // They rest from tick 2000 of 10^8 on.
   const auto file = scenario(
       "", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } reserve_s: 9999800 }\n");
   Child mission = launch_endless(file, {"--watch", "--port", "8813", "--lcm-url", kUrl});
@@ -85,7 +85,7 @@ TEST_F(WordsInABrowser, ALiveTeamPausesAndRests) {
   expect_no_errors();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
-  // The record says when it was paused.
+  // The record has the times of the pause.
   js("const { S } = ergocast, [from] = S.run.holds[0]; ergocast.draw(from * S.run.mission.dt_s)");
   EXPECT_EQ(js(kStates), nlohmann::json(std::vector<std::string>(4, "paused")));
   EXPECT_TRUE(is_shown("pause"));

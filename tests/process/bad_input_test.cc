@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One clear error, the documented exit code, and nothing written.
+// Bad input gives one clear error and the documented exit code; no file is written.
 
 #include "tests/process/programs.h"
 
@@ -128,10 +128,11 @@ TEST_F(BadInput, ReportAndVerifyNameWhatIsMissing) {
   EXPECT_TRUE(printed("plan.binpb")) << output();
 }
 
-/// Files of at most 16 MB that would take gigabytes, read by programs that may have half of one.
+/// Files of at most 16 MB that would need gigabytes, read by programs with half a gigabyte of
+/// memory.
 class LittleMemory : public BadInput {
  protected:
-  /// Its output is in output().
+  /// The output is in output().
   int in_half_a_gigabyte(const std::vector<std::string>& arguments) {
     std::string command =
         "ulimit -v 524288; exec '" + (program_folder() / "ergocast").string() + "'";

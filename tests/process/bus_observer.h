@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A listening process on the buses of a mission: it collects what the team reports of itself.
+// A listening process on the buses of a mission: it collects the team's reports.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class BusObserver {
   bool observes(const std::function<bool()>& condition) {
     return eventually(condition, [this] { listen(); });
   }
-  /// Listens for a moment; for conditions on several witnesses.
+  /// Listens for a moment; for conditions on several observers.
   void listen() { transport_->deliver_until(now() + std::chrono::milliseconds(5), -1); }
 
   /// The newest member under that number; incarnation 0 if there is none.
@@ -59,14 +59,15 @@ class BusObserver {
     const std::int64_t first = block(author, 0).steps;
     return blocks_.contains({author, 1}) ? std::min(first, block(author, 1).steps) : first;
   }
-  /// The last tick that `author` has answered; −1 if no message of it came.
+  /// The last tick that `author` has answered; −1 if no message of it was received.
   Tick answered(const Author& author) const {
     const auto tick = answered_.find(author);
     return tick == answered_.end() ? -1 : tick->second;
   }
-  /// The last tick that the logger has acknowledged; −1 if no acknowledgement came.
+  /// The last tick that the logger has acknowledged; −1 if no acknowledgement was received.
   Tick recorded() const { return recorded_; }
-  /// Whether its last two statuses are of one tick: in lockstep, half a second without progress.
+  /// Whether the agent's last two statuses have the same tick: in lockstep, half a second without
+  /// progress.
   bool stands_still(const Author& author) const {
     const auto ticks = status_ticks_.find(author);
     return ticks != status_ticks_.end() && ticks->second.first == ticks->second.second;
@@ -98,7 +99,7 @@ class BusObserver {
 
   std::unique_ptr<Transport> transport_;
   MissionFollower follower_;
-  std::map<Author, std::pair<Tick, Tick>> status_ticks_;  // of its last two
+  std::map<Author, std::pair<Tick, Tick>> status_ticks_;  // of the last two statuses
   std::map<std::pair<Author, int>, Contribution> blocks_;
   std::map<Author, Tick> answered_;
   Tick recorded_ = -1;

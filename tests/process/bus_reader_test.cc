@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One socket of ours, among others at its port: what it receives, and what it counts as lost.
+// One socket of ours among others at its port: the messages that it receives, and those that it
+// counts as lost.
 #include "runtime/bus_reader.h"
 
 #include "lcmtypes/channels.h"
@@ -20,7 +21,7 @@ class OneBus : public OwnHost {
   static std::unique_ptr<BusWriter> writer(const LcmUrl& url) {
     return std::get<0>(BusWriter::open(url));
   }
-  /// Sends so many messages of one kind.
+  /// Sends several messages of one kind.
   static void send(BusWriter& writer, const Message& message, int count = 1) {
     std::vector<std::byte> bytes;
     encode(message, bytes);
@@ -33,7 +34,7 @@ class OneBus : public OwnHost {
     sendto(socket.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
            sizeof to);
   }
-  /// Reads on; the channels of what came are in `heard_`.
+  /// Continues to read; the channels of received messages are in `heard_`.
   std::size_t read(BusReader& reader) {
     std::size_t all = 0;
     while (const std::size_t count = reader.receive()) {
@@ -45,7 +46,7 @@ class OneBus : public OwnHost {
     }
     return all;
   }
-  /// Reads until a message of that kind has come.
+  /// Reads until a message of that kind has arrived.
   bool receives(BusReader& reader, const Message& message) {
     return eventually([&] {
       read(reader);
@@ -118,7 +119,7 @@ TEST_F(OneBus, CountsAsLostWhatABufferHadNoRoomForAndNothingElse) {
     EXPECT_TRUE(eventually([&] { return (rejected += ear->take_rejected()) >= 3 * kSent; }));
     EXPECT_EQ(rejected, 3 * kSent);
     EXPECT_EQ(ear->lost(), 0);
-    // More than any buffer holds, and nobody reads.
+    // More than any buffer holds, while no process reads.
     send(*mouth, contribution(), 4 * kSent);
     std::size_t received = 0;
     EXPECT_TRUE(eventually([&] {

@@ -95,7 +95,7 @@ TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
   EXPECT_TRUE(moves_on());
 }
 
-// As when an adapter is unplugged, or a container is disconnected from its network: memberships in
+// As if an adapter is unplugged, or a container is disconnected from its network: memberships in
 // the group end with the interface.
 TEST_F(StartedByHand, AMissionGoesOnOnAnotherNetworkInterface) {
   const auto plug_in = [] {

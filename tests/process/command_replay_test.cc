@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An outsider without the key recorded a signed command that nobody obeyed, and sends it again
+// An attacker without the key recorded a signed command that no process obeyed, and sends it again
 // later.
 #include <lcm/lcm-cpp.hpp>
 
@@ -22,7 +22,7 @@ class Tape {
       ear.lcm->subscribe("ERGOCAST_(PAUSE|STOP)", &Ear::receive, &ear)->setQueueCapacity(0);
     }
   }
-  /// Takes in what has arrived; how much there is.
+  /// Reads the arrived messages; returns the number of all recorded ones.
   std::size_t size() {
     for (Ear& ear : ears_) {
       while (ear.lcm->handleTimeout(0) > 0) {
@@ -30,7 +30,7 @@ class Tape {
     }
     return recorded_.size();
   }
-  /// Sends all of it.
+  /// Sends all recorded messages.
   void play(const std::string& url) const {
     const LcmUrl buses = std::get<LcmUrl>(LcmUrl::parse(url));
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
@@ -71,7 +71,7 @@ class CommandReplay : public ByHand {
     EXPECT_EQ(write_key_file(team_key_, key_text(key, false)), std::nullopt);
   }
 
-  /// A keyed team that flies until the test ends it.
+  /// A keyed team that runs until the test ends it.
   void start_mission() {
     std::filesystem::create_directory(out());
     hand("ergocast-logger", {"--out", out(), "--key-file", team_key_});
@@ -83,7 +83,7 @@ class CommandReplay : public ByHand {
       hand("ergocast-agent", {"--id", id, "--key-file", team_key_});
     ASSERT_TRUE(recorded(30000)) << coordinator_->printed();
   }
-  /// The operator's command, as a person gives it.
+  /// Runs the operator's command as a person would.
   int send_command(const std::string& command, std::vector<std::string> more = {},
                    const char* url = kUrl) {
     more.insert(more.begin(), {command, "--lcm-url", url, "--key-file", coordinator_key_});
@@ -93,13 +93,13 @@ class CommandReplay : public ByHand {
     signal_to({"ergocast-coordinator"}, SIGKILL);
     ASSERT_TRUE(eventually([] { return pids({"ergocast-coordinator"}).empty(); }));
   }
-  /// Another one takes the mission over, some ticks later.
+  /// Another coordinator takes the mission over some ticks later.
   void resume_coordinator() {
     ASSERT_TRUE(moves_on());
     coordinator_ = &hand("ergocast-coordinator", {"--resume", "--key-file", coordinator_key_});
     ASSERT_TRUE(coordinator_->prints("taken over")) << coordinator_->printed();
   }
-  /// Plays the tape until `program` says that it ignores that, or does something else.
+  /// Sends the recording until `program` logs that it ignores it, or does something else.
   void play_until_ignored(const Tape& tape, const Program& program) const {
     EXPECT_TRUE(eventually(
         [&] {
@@ -114,8 +114,9 @@ class CommandReplay : public ByHand {
   static bool ignores(const Program& program) {
     return program.printed().find("late=") != std::string::npos;
   }
-  /// Until the world refuses a command that names the mission's first tick; and longer, for those
-  /// that began later. The world leaves a stop in order to the coordinator, which does not hear it.
+  /// Waits until the world refuses a command that names the mission's first tick, and longer for
+  /// processes that started later. The world leaves a stop in order to the coordinator, which does
+  /// not receive it.
   void pass_the_first_tick() const {
     Stranger operator_(kUrl,
                        MessageAuthenticator(std::get<MissionKey>(read_key_file(coordinator_key_))));
@@ -125,7 +126,7 @@ class CommandReplay : public ByHand {
     })) << world_->printed();
     std::this_thread::sleep_for(CommandWindow::kLength);
   }
-  /// The team still obeys its operator.
+  /// Checks that the team still obeys its operator.
   void expect_obedience() {
     ASSERT_TRUE(moves_on()) << coordinator_->printed();
     EXPECT_EQ(send_command("pause"), 0) << output();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the kernel passes on to a socket of ours, with real sockets: what is subscribed to always, a
-// share of the repeats during a flood, nothing else.
+// The messages that the kernel passes to our sockets, with real sockets: always subscribed ones, a
+// share of the repeats during a flood, and no others.
 #include "runtime/datagram_filter.h"
 
 #include "lcmtypes/channels.h"
@@ -18,7 +18,7 @@ class DatagramFilter : public ::testing::Test {
     EXPECT_EQ(bind(ear_.fd(), reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
   }
 
-  /// Sends a message in LCM's format; whether it arrives.
+  /// Sends a message in LCM's format; returns whether it arrives.
   bool passes(const Message& message, const std::string& channel) {
     encode(message, bytes_);
     std::string datagram = std::string("LC02\0\0\0\1", 8) + channel + '\0';
@@ -106,7 +106,7 @@ TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
     EXPECT_GT(passed, 40) << channel_of(message);
     EXPECT_LT(passed, 160) << channel_of(message);
   }
-  // And for numbers of one to four digits.
+  // The same for numbers of one to four digits.
   for (const char* number : {"7", "42", "127", "1023", "NEW"}) {
     int passed = 0;
     for (int i = 0; i < 3200; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast deploy`, and the shipped scenarios that it and others know by name.
+// `ergocast deploy`, and the shipped scenarios that commands know by name.
 #include "tests/process/programs.h"
 
 namespace ergocast::test {

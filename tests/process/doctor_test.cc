@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast doctor` on this host: what it finds, and that it disturbs no team.
+// `ergocast doctor` on this host: its findings; it disturbs no team.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -150,7 +150,7 @@ TEST_F(Doctor, TwoOnOneHostHearEachOther) {
     doctor({"--peer", "3"});
     return told_["peers"].size() == 1 && told_["peers"][0]["hears_this_host"] == true;
   })) << output();
-  EXPECT_EQ(finding("TTL")["level"], "problem");  // no other host would
+  EXPECT_EQ(finding("TTL")["level"], "problem");  // no other host would receive messages
   other.send(SIGKILL);
 }
 

@@ -77,7 +77,7 @@ TEST_F(DrivenRobots, RefuseAMissionInLockstep) {
   EXPECT_TRUE(coordinator.prints("running")) << coordinator.printed();
 }
 
-/// Each robot has a driver of its own, which knows no other place.
+/// Each robot has its own driver, which knows only that robot's position.
 class RobotsWithTheirOwnDrivers : public ByHand {
  protected:
   static constexpr double kDistance_m = 8, kStep_m = 1;
@@ -154,7 +154,8 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver)
   EXPECT_GE(least_distance_m(), kDistance_m - 2 * kStep_m);
 }
 
-// Somebody repeats what agent 1 has said, with another place, and echoes what nobody has sent.
+// A foreign sender repeats agent 1's messages with another position, and echoes messages that no
+// process has sent.
 TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsOutOfOrderAndFromTheFuture) {
   std::filesystem::create_directory(out());
   hand("ergocast-logger", {"--out", out()});
@@ -174,7 +175,7 @@ TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsOutOfOrderAndFromTheFuture) 
     stranger.send(Bus::kSwarm, late);
     return first.printed().find("beacons of teammates overtake each other") != std::string::npos;
   })) << first.printed();
-  // It echoes what nobody has sent.
+  // It echoes a message that no process has sent.
   Beacon early = late;
   early.roster_revision = std::int64_t{1} << 40;
   early.echoes.fill(40000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast export --to geojson`: what a map shows of a record.
+// `ergocast export --to geojson`: a record on a map.
 #include "tests/process/programs.h"
 
 namespace ergocast::test {

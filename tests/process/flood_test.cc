@@ -34,7 +34,7 @@ class Flood : public RunningMission {
       sendto(socket.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
              sizeof to);
       if (i % 50 == 0)
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // so that all are heard
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // so that all are received
     }
   }
   /// A message on a channel of ours, but fifty times as long as any valid one.
@@ -78,7 +78,7 @@ TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
   EXPECT_EQ(summary()["restarts"], 0);
 }
 
-/// Repeats agent 3's messages without end, or sends new ones at that rate in its place.
+/// Repeats agent 3's messages without end, or sends new ones in its name at that rate.
 class RateOffender {
  public:
   RateOffender(const std::string& url, bool in_its_place)
@@ -171,8 +171,8 @@ class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const 
     const MissionKey key = make_mission_key();
     EXPECT_EQ(write_key_file(key_file_, key_text(key, true)), std::nullopt);
   }
-  /// Messages that the receivers of the flood refused as `rate`: for agents, as they report
-  /// themselves.
+  /// Messages that the receivers of the flood refused as `rate`: for agents, as in their own
+  /// reports.
   std::int64_t refused_by_agents() {
     ergocast({"status", "--json", "--lcm-url", kUrl, "--key-file", key_file_});
     std::int64_t refused = 0;
@@ -223,7 +223,7 @@ TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
 INSTANTIATE_TEST_SUITE_P(Of, FloodOfRepeats, ::testing::Values("MISSION", "WORLD_STATE"),
                          [](const auto& of) { return std::string(of.param); });
 
-/// Resident memory after a while and much later. ERGOCAST_LONG_TICKS makes it a longer flight.
+/// Resident memory after a while and much later. ERGOCAST_LONG_TICKS makes the mission longer.
 TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
   constexpr long kGrowth_kb = 1024;
   constexpr Tick kWarmUp = 3000;

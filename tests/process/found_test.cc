@@ -21,7 +21,7 @@ class Found : public OwnHost {
   }
   bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
 
-  /// Starts a mission that flies until it is stopped, and waits for its entry and first rows.
+  /// Starts a mission that runs until it is stopped, and waits for its entry and first rows.
   Child start_mission(const std::string& name, const std::vector<std::string>& more = {}) {
     const auto known = entries().size();
     std::vector<std::string> words{"run",         scenario_file("quadrimodal_corners"),
@@ -43,7 +43,8 @@ class Found : public OwnHost {
     const std::string text = output();
     return nlohmann::json::parse(text.substr(text.find('[')));
   }
-  /// The id of the run with this folder. Runs that began in one second are listed in any order.
+  /// The id of the run with this folder. Runs that started within one second are listed in any
+  /// order.
   std::string id_of(const std::string& name) {
     for (const auto& run : listed()) {
       if (run["run_dir"] == (folder_ / name).string()) return run["run_id"];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mission that steers by modes of the free domain: two rooms with a door between them.
+// A mission that uses modes of the free domain: two rooms with a door between them.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,7 @@
 
 namespace ergocast::test {
 
-/// Writes the scenario into a folder, with more fields, and more agents at places drawn from the
-/// seed.
+/// Writes the scenario into a folder, with more fields, and more agents at places from the seed.
 inline std::filesystem::path free_rooms(const std::filesystem::path& folder,
                                         const std::string& more = "", int more_agents = 0) {
   const auto file = folder / "rooms.textproto";

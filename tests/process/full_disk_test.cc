@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The disk of a run directory is full for a while: the team continues, and later the record does,
-// too.
+// The disk of a run directory is full for a while: the team continues, and later the record, too.
 #include <sys/mount.h>
 #include <sys/statvfs.h>
 
@@ -26,7 +25,7 @@ class FullDisk : public RunningMission {
   bool resize_disk(const std::string& size) const {
     return mount("none", out().c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()) == 0;
   }
-  /// Makes it as small as its content, which grows meanwhile.
+  /// Makes the disk as small as its content, which grows meanwhile.
   bool fill_disk() const {
     return eventually([this] {
       struct statvfs disk {};
@@ -38,7 +37,7 @@ class FullDisk : public RunningMission {
   bool mounted_ = false;
 };
 
-/// A logger that cannot write is given up after 5 s.
+/// The team waits at most 5 s for a logger that cannot write.
 class FullDiskInEitherPace : public FullDisk, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, FullDiskInEitherPace,
                          ::testing::Values("--lockstep", "--realtime=40"), [](const auto& pace) {
@@ -46,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Paces, FullDiskInEitherPace,
                          });
 
 TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
-  // More than any machine writes before it is full, or afterwards.
+  // More than any machine writes before the disk is full, or afterwards.
   constexpr const char* kRoomy = "4g";
   if (!mount_disk("size=4g")) GTEST_SKIP() << "the disk this needs cannot be mounted here";
   Child mission = launch_endless(scenario("lockstep_timeout_s: 10 broadcast_period_ticks: 20"),

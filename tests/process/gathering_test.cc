@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages gather in the kernel as long as a mission allows, and nothing is read late for that.
+// Messages collect in the kernel as long as a mission allows, but none is read late.
 #include "runtime/clock.h"
 #include "runtime/transport.h"
 #include "tests/lcmtypes/sample_messages.h"
@@ -22,7 +22,7 @@ class Gathers : public OwnHost {
     const Message message = bus == Bus::kWorld ? Message(world_state()) : Message(digest());
     transport_->publish(Outbox(static_cast<std::size_t>(count), {bus, message}));
   }
-  /// Whether the call returns before it must, though nothing is asked of it for an hour.
+  /// Whether the call returns early, although its next work is due in an hour.
   bool is_woken() {
     const Instant start = now();
     return transport_->deliver_until(start + 1h, -1) - start < kLongestWait;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stations: real processes go home, rest there while the mission lasts, and people see both.
+// Stations: real processes go home and rest there until the mission's end; people see both.
 #include "tests/process/mission.h"
 
 namespace ergocast::test {
@@ -7,7 +7,7 @@ namespace {
 
 class AgentsWithAStation : public RunningMission {
  protected:
-  /// How many agents `ergocast status` shows with that word.
+  /// The number of agents that `ergocast status` shows with that word.
   int shown(const std::string& word) {
     ergocast({"status", "--lcm-url", kUrl});
     int count = 0;
@@ -18,7 +18,7 @@ class AgentsWithAStation : public RunningMission {
 };
 
 TEST_F(AgentsWithAStation, RestAtHomeAsStatusAndSummarySay) {
-  // From tick 2000 of 10^8 on they rest.
+  // They rest from tick 2000 of 10^8 on.
   const auto file = scenario(
       "", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } reserve_s: 9999800 }\n");
   Child mission = launch_endless(file, {"--lcm-url", kUrl});
@@ -34,7 +34,7 @@ TEST_F(AgentsWithAStation, RestAtHomeAsStatusAndSummarySay) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
-// Without a reserve the mission's end is when they have to be there, after its last row.
+// Without a reserve they must be there at the mission's end, after its last row.
 TEST_F(AgentsWithAStation, AreJudgedAtTheEndWithoutAReserve) {
   const auto file =
       scenario("", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } }\n");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team with a mission key beside an attacker that receives everything, repeats it and forges
-// more.
+// A team with a mission key, and an attacker that receives, repeats and forges messages.
 #include <sys/stat.h>
 
 #include <array>
@@ -59,7 +58,8 @@ class Outsider {
     }
   };
 
-  /// Also its own datagrams, so that forgeries are forged again. LCM's own self test has no header.
+  /// Also records its own datagrams, so that forgeries are forged again. LCM's own self test has no
+  /// header.
   void keep(Heard one) {
     constexpr std::size_t kMost = 20000;
     if (heard_.size() < kMost && one.bytes.size() >= kHeaderEnd) heard_.push_back(std::move(one));
@@ -67,8 +67,8 @@ class Outsider {
   void send(const Heard& one) {
     buses_[one.bus].publish(one.channel, one.bytes.data(), static_cast<unsigned>(one.bytes.size()));
   }
-  /// The message with some bytes after the tag changed, under a tag that fits without a key; and
-  /// the same message under a neighbour's channel.
+  /// The message with changed bytes after the tag and a tag that is valid without a key; and the
+  /// same message on a neighbour's channel.
   void forge(Heard one) {
     const std::size_t at = random(2) % one.bytes.size();
     one.bytes[at < kTagOffset || at >= kHeaderEnd ? at : 8] ^= std::byte{1};
@@ -100,7 +100,7 @@ class Keyed : public ByHand {
   MessageAuthenticator authenticator(const std::filesystem::path& file) const {
     return MessageAuthenticator(std::get<MissionKey>(read_key_file(file)));
   }
-  /// The id of the mission that is flying.
+  /// The id of the running mission.
   static RunId run_id() {
     const std::string world = std::to_string(pids({"ergocast-sim"}).at(0));
     const std::string command = text_of("/proc/" + world + "/cmdline");
@@ -236,7 +236,7 @@ TEST_F(Keyed, KeygenWritesBothFilesOnceAndForItsOwnerOnly) {
   EXPECT_EQ(team.shared, coordinator.shared);
   EXPECT_EQ(ergocast({"keygen", name}), 2);
   EXPECT_EQ(std::get<MissionKey>(read_key_file(name + ".key")).shared, team.shared);
-  // Half a pair would be of no use.
+  // Half a pair would be useless.
   std::filesystem::remove(name + ".coordinator.key");
   EXPECT_EQ(ergocast({"keygen", name}), 2);
   EXPECT_FALSE(std::filesystem::exists(name + ".coordinator.key"));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real processes of several kinds: their record, what is said of them, and a kind that nobody
-// knows.
+// Real processes of several kinds: their record, the output about them, and an unknown kind.
 #include <fstream>
 
 #include "tests/process/mission.h"

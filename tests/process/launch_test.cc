@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast run` on a machine that cannot restart a dead process at once: the mission continues.
+// `ergocast run` on a machine that cannot restart a killed process at once: the mission continues.
 #include <sys/resource.h>
 
 #include "tests/process/mission.h"
@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> kLoggerProgram{"ergocast-logger"};
 
-/// In lockstep: a mission that continues has all its processes back.
+/// In lockstep: if the mission continues, all its processes run again.
 class Launch : public RunningMission {
  protected:
   void TearDown() override {
@@ -68,7 +68,7 @@ TEST_F(Launch, WithoutRoomForOneMoreProcessADeadAgentComesBackOnceThereIs) {
   end(mission, 1);
 }
 
-/// Copies of the programs, which the test can remove.
+/// Copies of the programs that the test can remove.
 class OwnPrograms : public Launch {
  protected:
   void SetUp() override {
@@ -113,7 +113,7 @@ TEST_F(Launch, WhileTheRouteIsAwayTheDeadAreWaitedForAndNoRestartIsCounted) {
   kill_next({"ergocast-coordinator"});
   kill_next({"ergocast-sim"});
   kill_next(kLoggerProgram);
-  // More often than a dead process is restarted.
+  // More often than a killed process is restarted.
   for (const char* name : {"agent-1", "coordinator", "sim", "logger"}) {
     EXPECT_TRUE(logs(name, "LCM needs a multicast route", 4)) << printed();
   }

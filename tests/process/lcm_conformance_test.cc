@@ -14,7 +14,7 @@ namespace {
 
 constexpr Bus kBuses[] = {Bus::kSwarm, Bus::kWorld, Bus::kCommand};
 
-/// A datagram, as either side sees it.
+/// A datagram, as both sides see it.
 struct Said {
   std::string channel;
   Bytes bytes;
@@ -40,7 +40,7 @@ std::vector<Message> under_every_name() {
 
 class Conformance : public OwnHost {
  protected:
-  /// What one end has heard on one bus, in its order.
+  /// The messages that one side has received on one bus, in order.
   using Heard = std::vector<Said>;
 
   class LcmEar {
@@ -103,7 +103,7 @@ TEST_F(Conformance, LcmReadsEveryMessageThatWePublish) {
     EXPECT_TRUE(eventually([&] { return theirs[bus].listen().size() >= expected.size(); }));
     EXPECT_EQ(theirs[bus].listen(), expected) << "bus " << bus;
     EXPECT_TRUE(eventually([&] { return listen(kBuses[bus]).size() >= expected.size(); }));
-    EXPECT_EQ(heard_[kBuses[bus]], expected) << "we hear ourselves, bus " << bus;
+    EXPECT_EQ(heard_[kBuses[bus]], expected) << "we receive our own messages, bus " << bus;
   }
 }
 
@@ -171,8 +171,8 @@ TEST_F(Conformance, LcmsLoggerRecordsUsAndItsPlayerReachesUs) {
       return std::find(heard.begin(), heard.end(), one) != heard.end();
     });
   };
-  // Each is repeated until it is in the file, for the logger's beginning cannot be seen, and it
-  // keeps few messages that wait.
+  // Each message is repeated until it is in the file: the logger's start is not visible, and it
+  // buffers few messages.
   for (const Message& message : under_every_name()) {
     expected.push_back(printed(message));
     ASSERT_TRUE(eventually(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The libraries of the programs: those of every robot contain no scenario, map or picture reader
-// and no projection of the earth, and none LCM's, whose formats we read and write ourselves.
+// The libraries of the programs. The programs on a robot have no reader of scenarios, maps or
+// pictures and no projection of the earth. No program has LCM's library; we read and write its
+// formats ourselves.
 #include <array>
 #include <memory>
 

@@ -46,7 +46,7 @@ TEST_F(Log, RefusesALevelThatIsNone) {
 }
 
 TEST_F(Log, InTheJournalHasAPriorityOnEveryLineAndNoTimeOfItsOwn) {
-  const auto journal = folder_ / "output-1";  // where the first program's output goes
+  const auto journal = folder_ / "output-1";  // the first program's output
   std::ofstream(journal).close();
   struct stat info {};
   ASSERT_EQ(stat(journal.c_str(), &info), 0);

@@ -12,7 +12,7 @@
 namespace ergocast::test {
 
 /// The last lines of the logs below a folder, each under its name: outputs of programs that a test
-/// started, and what `ergocast run` keeps ("run/log/sim.log").
+/// started, and the logs of `ergocast run` ("run/log/sim.log").
 /// @param commands  of those programs, by the names of their outputs
 inline std::string ends_of_logs(const std::filesystem::path& folder,
                                 const std::map<std::string, std::string>& commands) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A test of processes that fails prints what they logged, and ends them.
+// A failed test of processes prints their logs and ends them.
 #include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {
 
-/// Set where the failure is planted.
+/// Set in the process in which the failure is planted.
 constexpr const char* kPlanted = "ERGOCAST_PLANTED_FAILURE";
 
 using FailedTest = ByHand;

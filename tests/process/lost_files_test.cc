@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files of the run directory, and the key file, are removed, cut or overwritten under way: what is
-// lost is the file itself. The mission goes on, also with the processes that are started again.
+// Files of the run directory, and the key file, are removed, cut or overwritten during a mission.
+// Only the file itself is lost. The mission continues, also with restarted processes.
 #include <filesystem>
 
 #include "runtime/key_file.h"
@@ -15,14 +15,14 @@ namespace fs = std::filesystem;
 
 enum class Harm { kRemoved, kCut, kOverwritten };
 
-/// A file that is being written under another name may be gone already.
+/// A file that is being written under a temporary name may be gone already.
 void harm(const fs::path& file, Harm how) {
   std::error_code gone;
   const std::uintmax_t bytes = fs::file_size(file, gone);
   if (gone) return;
   if (how == Harm::kRemoved) fs::remove(file, gone);
   if (how == Harm::kCut) fs::resize_file(file, bytes / 2, gone);
-  if (how == Harm::kOverwritten) {  // where it stands, as `cp` does
+  if (how == Harm::kOverwritten) {  // in place, as `cp` does
     std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
     stream << std::string(bytes, '~');
   }
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Of, HarmedFiles,
 
 TEST_P(HarmedFiles, AreAllThatIsLostWhicheverProcessStartsAgain) {
   Child mission = launch_endless(free_rooms(folder_), {"--lcm-url", kUrl});
-  // In lockstep the record goes on with all processes or not at all. Its files are gone.
+  // In lockstep the record continues with all processes or not at all. Its files are gone.
   BusObserver observer(kUrl);
   ASSERT_TRUE(observer.observes([&] { return observer.recorded() >= 0; })) << printed();
   for (const auto& [name, words] :
@@ -87,7 +87,7 @@ TEST_P(HarmedFiles, DisturbNoProcessThatRuns) {
   EXPECT_TRUE(printed("no report: ") || fs::exists(out() / "report.html")) << printed();
 }
 
-// What a scenario names may be gone as well: maps, for instance.
+// Files that a scenario names, such as maps, may be gone as well.
 TEST_F(LostFiles, WithoutTheScenarioAndItsMapTheNextCoordinatorBeginsTheMission) {
   const fs::path shipped = scenario_file("lake_search").parent_path();
   fs::copy(shipped / "maps", folder_ / "maps");
@@ -146,7 +146,7 @@ TEST_F(LostFiles, WhatSomebodyWroteIntoALogControlsNoTerminal) {
   EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
-// Something else stands where the logger's summary belongs, and the logger writes none.
+// Another file is in the place of the logger's summary, and the logger writes none.
 TEST_F(LostFiles, AForeignSummaryIsNotTakenForTheLoggers) {
   Child mission = launch_endless(scenario(), {"--realtime=5"});
   std::ofstream(out() / "summary.json") << R"({"run_id": 7, "result": 7, "reason": 7})";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every test of this program runs on a host of its own, and knows no run of other tests.
+// Every test of this program runs on a separate host, and sees no run of other tests.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -5,7 +5,7 @@
 // disturbed mission either lasts until the test ends it (launch_endless()), or stands still at a
 // tick while the test acts (launch_held()). A test waits for visible events and never sleeps
 // instead. tests/at_speed checks that: with ERGOCAST_TEST_SPEED=fast, which is read here, missions
-// fly several times as fast and the default one is over after a tenth of its ticks.
+// run several times as fast. The default mission then has a tenth of its ticks.
 #pragma once
 
 #include <algorithm>
@@ -44,11 +44,11 @@ class RunningMission : public OwnHost {
 
   /// Mission time [s] that is longer than any test: the limit, 10⁸ ticks.
   static constexpr const char* kEndless = "10000000";
-  /// The tick at which a held mission stands.
+  /// The tick at which a held mission waits.
   static constexpr int kHeldTick = 50;
 
-  /// The default scenario with other or more fields in its `time` and `agents`. A tick may stay
-  /// unanswered, and the team gather, for longer than any test takes, unless a test says otherwise.
+  /// The default scenario with other or more fields in its `time` and `agents`. By default,
+  /// time-outs for answers and for gathering the team are longer than any test.
   std::filesystem::path scenario(std::string time = "", const std::string& agents = "") {
     std::string text = text_of(scenario_file("quadrimodal_corners"));
     std::vector<std::string> others{"dt_s: 0.1", "duration_s: 600", "pace: LOCKSTEP",
@@ -84,8 +84,8 @@ class RunningMission : public OwnHost {
     }
     return launch(scenario, more);
   }
-  /// A mission in lockstep that stands still under way until release(): agent 0 is stopped just
-  /// before its answer to tick kHeldTick.
+  /// A mission in lockstep that waits at a tick until release(): agent 0 is stopped just before its
+  /// answer to tick kHeldTick.
   Child launch_held(const std::filesystem::path& scenario,
                     const std::vector<std::string>& more = {}) {
     hold_next("ERGOCAST_COMMAND_0", kHeldTick);
@@ -96,7 +96,7 @@ class RunningMission : public OwnHost {
   }
   static void release() { signal_to(agent(0), SIGCONT); }
 
-  /// Stops the first of the programs started from now on that is about to send a message on that
+  /// For programs started from now on: stops the first one before it sends a message on that
   /// channel at that tick or later.
   void hold_next(const std::string& channel, Tick tick) const {
     const auto once = folder_ / "hold";
@@ -112,7 +112,7 @@ class RunningMission : public OwnHost {
   static void hold_none() {
     for (const char* name : {"ERGOCAST_HOLD", "LD_PRELOAD"}) unsetenv(name);
   }
-  /// Whether it is one process, and stopped.
+  /// Whether there is exactly one such process, and it is stopped.
   static bool stopped(const std::vector<pid_t>& processes) {
     if (processes.size() != 1) return false;
     const std::string stat = text_of("/proc/" + std::to_string(processes[0]) + "/stat");
@@ -142,7 +142,7 @@ class RunningMission : public OwnHost {
     ASSERT_EQ(targets.size(), 1U) << ::testing::PrintToString(words);
     kill(targets.front(), signal);
   }
-  /// Kills a process as soon as there is one, and waits until it is gone.
+  /// Kills a process as soon as it exists, and waits until it is gone.
   static void kill_next(const std::vector<std::string>& words) {
     ASSERT_TRUE(eventually([&] { return pids(words).size() == 1; }))
         << ::testing::PrintToString(words);
@@ -171,7 +171,7 @@ class RunningMission : public OwnHost {
   std::filesystem::path mission_log_;
 };
 
-/// Programs that a test starts one by one, as a person would; they end with the test.
+/// Programs that a test starts one by one, as a person would. They end with the test.
 class ByHand : public RunningMission {
  protected:
   struct Program {
@@ -202,8 +202,9 @@ class ByHand : public RunningMission {
   void TearDown() override {
     forget_watched();
     for (Program& program : programs_) {
-      // It may have been stopped. Not after SIGTERM: SIGCONT cancels the SIGSTOP by which the leak
-      // sanitizer holds the threads of an ending process, which then waits for ever.
+      // The process may be stopped, so it gets SIGCONT. But not after SIGTERM: SIGCONT would cancel
+      // the SIGSTOP with which the leak sanitizer holds an ending process's threads, and the
+      // process would never end.
       program.child.send(SIGCONT);
       program.child.send(SIGTERM);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of modes of a free domain: `ergocast run` hands it to its processes, those that were
-// handed none, or another one, compute it, the record has it, and a process that computes another
-// one stays out. And φ² of such a mission says what it is in, wherever it is shown.
+// The table of modes of a free domain: `ergocast run` passes it to its processes, and the record
+// has it. A process that got none, or another one, computes it. A process that computes another
+// table cannot take part. Every output of φ² of such a mission names its basis.
 #include "tests/process/free_rooms.h"
 #include "tests/process/mission.h"
 
@@ -23,7 +23,7 @@ class TablesOfModes : public ByHand {
     }
     return {};
   }
-  /// The mission's table as another computer computes it, which rounds a number otherwise.
+  /// The mission's table as computed by another computer, which rounds a number differently.
   std::filesystem::path table_of_another_computer() {
     EXPECT_EQ(ergocast({"simulate", two_rooms(), "--out", out()}), 0) << output();
     std::string bytes = text_of(table_in(out()));
@@ -31,14 +31,14 @@ class TablesOfModes : public ByHand {
     std::ofstream(folder_ / "other.bin", std::ios::binary) << bytes;
     return folder_ / "other.bin";
   }
-  /// Whether that process reads the table that it was handed, as one that computes it does not.
+  /// Whether that process reads the table that it got; a process that computes it does not.
   bool shares_the_table(const std::vector<std::string>& words) const {
     const auto process = pids(words);
     if (process.size() != 1) return false;
     const std::string maps = text_of("/proc/" + std::to_string(process[0]) + "/maps");
     return maps.find(table_in(out()).filename()) != std::string::npos;
   }
-  /// As agent(), where numbers have several digits.
+  /// Like agent(), for numbers with several digits.
   static std::vector<std::string> just_agent(int id) {
     return {"ergocast-agent", "--id " + std::to_string(id) + ' '};
   }
@@ -117,7 +117,7 @@ TEST_F(TablesOfModes, ALoggerThatComputesAnotherOneStaysOut) {
   EXPECT_TRUE(std::filesystem::is_empty(record)) << logger.printed();
 }
 
-// Its file may have been lost, or have changed, since it was named.
+// The file may have been lost or changed after it was named.
 TEST_F(TablesOfModes, AProcessThatIsHandedAnotherOneOrNoneComputesIt) {
   const auto other = table_of_another_computer(), damaged = folder_ / "damaged.bin";
   std::ofstream(damaged) << text_of(other).substr(0, 5000);

@@ -52,12 +52,13 @@ TEST_F(RobotsInPhysics, RefuseAMissionOfOtherVehicles) {
 /// What docs/running.md shows: robots with real contacts in the office, held on the way.
 class RobotsInTheOffice : public RunningMission {
  protected:
-  /// After 300 s they have covered the office as well as that; it begins at 0.78.
+  /// φ² after 300 s; it starts at 0.78.
   static constexpr Tick kCoveredTick = 3000;
   static constexpr double kCovered = 0.02;
 
   std::string said_by_the_world() { return text_of(out() / "log/world.log"); }
-  /// Of the whole rows of metrics.csv, one a mission second: the newest tick; 0 before.
+  /// The newest tick in the complete rows of metrics.csv, which has one for each mission second; 0
+  /// before.
   Tick measured_tick() {
     std::string rows = text_of(out() / "metrics.csv");
     rows.erase(rows.rfind('\n') + 1);

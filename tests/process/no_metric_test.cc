@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A φ² that is no number fails a mission, and the failure says so.
+// A φ² that is no number fails a mission, and the failure names the cause.
 #include "tests/process/mission.h"
 
 namespace ergocast::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clients of `ergocast run --watch` that want to harm the mission, or to keep its page from the
-// user. None has the token.
+// Clients of `ergocast run --watch` that try to harm the mission, or to make its page unavailable.
+// None has the token.
 #include <algorithm>
 #include <atomic>
 #include <memory>
@@ -19,7 +19,7 @@ class AttackedPage : public RunningMission {
  protected:
   static std::vector<std::string> page() { return {"ergocast run-page"}; }
 
-  /// The most memory that the run and its page have had so far.
+  /// The maximum memory of the run and its page so far.
   static double peak_mib() {
     double peak = 0;
     for (const pid_t pid : pids({"ergocast run"})) {
@@ -31,7 +31,7 @@ class AttackedPage : public RunningMission {
     }
     return peak;
   }
-  /// How much a process may allocate, in bytes or "unlimited".
+  /// The allocation limit of a process, in bytes or "unlimited".
   static std::string memory_limit(pid_t pid) {
     const std::string limits = text_of("/proc/" + std::to_string(pid) + "/limits");
     const std::string name = "Max data size";
@@ -155,7 +155,7 @@ TEST_F(AttackedPage, RequestsThatNeverEndDoNotKeepItFromTheUser) {
   std::vector<std::unique_ptr<HttpConnection>> half;
   for (int i = 0; i < 191; ++i) half.push_back(connected("GET / HTTP/1.1\r\n" + kHost + "X: "));
   std::atomic<bool> done = false;
-  std::thread trickle([&] {  // each of them goes on
+  std::thread trickle([&] {  // each of them continues
     for (; !done; std::this_thread::sleep_for(std::chrono::milliseconds(100))) {
       for (const auto& one : half) one->send("x");
     }

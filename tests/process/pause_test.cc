@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast pause` and `ergocast resume`: real processes stand still between two ticks, whoever
-// restarts meanwhile, and go on.
+// `ergocast pause` and `ergocast resume`: real processes stop between two ticks and continue, even
+// if one restarts meanwhile.
 #include <algorithm>
 
 #include "tests/process/mission.h"
@@ -13,13 +13,13 @@ class PauseCommand : public RunningMission {
  protected:
   int send_command(const std::string& command) { return ergocast({command, "--lcm-url", kUrl}); }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
-  /// What follows "at tick " in the output: the tick and the time.
+  /// The text after "at tick " in the output: the tick and the time.
   std::string time_said() const {
     const std::string printed = output();
     const auto at = printed.find("at tick ") + 8, end = printed.find(" s", at);
     return printed.substr(at, end - at);
   }
-  /// `status --json` tells the time that counts, as `status` does, and the world's tick beside it.
+  /// `status --json` has the time that counts, as `status` has, and also the world's tick.
   void expect_one_clock() {
     ergocast({"status", "--json", "--lcm-url", kUrl});
     const auto json = nlohmann::json::parse(output());
@@ -92,7 +92,7 @@ TEST_F(PauseCommand, HoldsAMissionInRealTimeInWhichAnAgentRestarts) {
   ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
   const auto holds = summary()["holds"];
   ASSERT_EQ(holds.size(), 1U);
-  // A command may be late by as long as old ones are held.
+  // A command may be late by the time for which old ones are held.
   expect_standing(holds[0][0].get<Tick>() + 10, holds[0][1]);
 }
 
@@ -102,7 +102,7 @@ TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
   ASSERT_TRUE(moves_on(3000));
   ASSERT_EQ(send_command("resume"), 0) << output();
   ASSERT_TRUE(moves_on());
-  mission.send(SIGSTOP);  // it restarts nobody
+  mission.send(SIGSTOP);  // it restarts no process
   kill_next({"ergocast-logger"});
   mission.send(SIGKILL);
   wait_for(mission);

@@ -48,8 +48,8 @@ inline pid_t pid_of(const std::string& process) {
 /// A folder that is removed after the test, and the programs' network.
 class OwnHost : public ::testing::Test {
  protected:
-  /// A failed test may leave its mission running. The output of its processes is the only
-  /// information on them; they are ended here.
+  /// A failed test may leave its mission running. Prints the output of its processes, the only
+  /// information on them, and ends them.
   void TearDown() override {
     forget_watched();
     if (HasFailure()) {
@@ -74,7 +74,7 @@ class OwnHost : public ::testing::Test {
     log_ = folder_ / ("tool-" + std::to_string(++begun_));
     return start_watched({command, log_, SIGKILL});
   }
-  /// Its exit code, or −signal.
+  /// The program's exit code, or −signal.
   static int wait_for(Child& child) {
     if (!eventually([&child] { return !child.running(); })) {
       child.send(SIGKILL);
@@ -82,7 +82,7 @@ class OwnHost : public ::testing::Test {
     }
     return child.exit_code().value_or(-1);
   }
-  /// Runs to the end; the exit code. Its output is in output().
+  /// Runs a program to its end; returns the exit code. The output is in output().
   int run(const std::string& program, std::vector<std::string> arguments) {
     Child child = start(program, std::move(arguments));
     return wait_for(child);
@@ -102,7 +102,7 @@ class OwnHost : public ::testing::Test {
     }
     return bytes;
   }
-  /// Waits until so much is on disk: a mission that is under way.
+  /// Waits until that many bytes are on disk, so that the mission is under way.
   bool recorded(std::uintmax_t bytes) const {
     return eventually([&] { return recorded_bytes() >= bytes; });
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The recorded trajectory of a mission of real processes, as tests query it.
+// The recorded trajectory of a mission of real processes, with the queries of tests.
 #pragma once
 
 #include <cstdio>

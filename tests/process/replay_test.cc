@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recorded mission is replayed, by `ergocast replay` or on one URL as LCM's player does: displays
-// show all of it, and nobody else takes part.
+// A recorded mission is replayed by `ergocast replay`, or on one URL as by LCM's player: displays
+// show all of it, and no other process takes part.
 #include <fstream>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
@@ -17,7 +17,7 @@ namespace {
 using Replay = ByHand;
 
 TEST_F(Replay, ShowsTheWholeTeamAndItsEnd) {
-  // By the clock, so that the log lasts as long on any machine.
+  // In real time, so that the log has the same duration on any machine.
   ASSERT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--realtime", "--duration", "8",
                       "--out", out()}),
             0)
@@ -31,7 +31,7 @@ TEST_F(Replay, ShowsTheWholeTeamAndItsEnd) {
   for (const char* process : {"coordinator  alive", "world        alive", "logger       alive"}) {
     EXPECT_NE(printed.find(process), std::string::npos) << printed;
   }
-  // An ended mission is not alive, although its messages are recent.
+  // An ended mission is not running, although its messages are recent.
   const std::string end = printed.substr(printed.rfind("quadrimodal_corners, run "));
   EXPECT_NE(end.find("the mission has ended"), std::string::npos) << end;
   EXPECT_EQ(end.find("alive"), std::string::npos) << end;

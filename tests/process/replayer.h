@@ -15,7 +15,7 @@
 
 namespace ergocast::test {
 
-/// Works below LCM, so that it sends as fast as the kernel lets it.
+/// Works below LCM, so that it sends as fast as the kernel allows.
 class Replayer {
  public:
   /// @param stem  the beginning of the recorded channels, without ERGOCAST_
@@ -26,7 +26,7 @@ class Replayer {
     }
   }
 
-  /// Records the waiting datagrams; to be called before the first replay.
+  /// Records the waiting datagrams; call it before the first replay.
   void listen() {
     constexpr std::size_t kMost = 20000;
     for (int bus = 0; bus < kBusCount; ++bus) {
@@ -43,7 +43,7 @@ class Replayer {
   }
   std::size_t kept() const { return kept_.size(); }
 
-  /// Sends so many of the recorded datagrams, in turn. After the first call it records no more.
+  /// Sends that many of the recorded datagrams, in turn. After the first call it records no more.
   void replay(std::size_t count) {
     ears_.clear();
     for (; count > 0; --count, ++next_) {

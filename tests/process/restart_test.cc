@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kill -9: the death of one process never ends a mission, nor that of several at once, and a
-// restarted process continues where it was.
+// kill -9: the loss of one or several processes never ends a mission, and a restarted process
+// continues where it was.
 #include <lcm/lcm-cpp.hpp>
 #include <tuple>
 
@@ -37,7 +37,7 @@ class Restart : public RunningMission {
     EXPECT_NE(output().find("identical"), std::string::npos) << output();
     EXPECT_TRUE(!complete || output().find("missing") == std::string::npos) << output();
   }
-  /// Kills all of them before any is started again.
+  /// Kills all of the processes before any is started again.
   static void kill_at_once(const std::vector<std::vector<std::string>>& processes) {
     std::vector<pid_t> victims;
     for (const auto& words : processes) {
@@ -47,7 +47,7 @@ class Restart : public RunningMission {
     }
     for (const pid_t victim : victims) kill(victim, SIGKILL);
   }
-  /// Kills it once more than it is restarted.
+  /// Kills the process more often than it is restarted.
   void kill_for_good(const std::vector<std::string>& words) {
     for (int death = 0; death <= 3; ++death) kill_next(words);
   }
@@ -101,7 +101,7 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
   EXPECT_EQ(wait_for(mission), 0) << printed();
 
   EXPECT_EQ(observer.held(member(), former), observer.steps_sent(former))
-      << "no more than it had said";
+      << "no more than it had sent";
   EXPECT_LT(observer.answered(former), observer.block(former).next_broadcast_tick)
       << "lost is only what it covered since its last broadcast";
   for (const Author& life : {former, member()}) {
@@ -113,8 +113,7 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
   }
 }
 
-/// All agents, and others of the team, die at once: nobody is left to ask for the mission but
-/// `ergocast run`.
+/// All agents and other processes are killed at once: only `ergocast run` still has the mission.
 struct Victims {
   const char* name;
   std::vector<std::string> programs;  // besides the agents

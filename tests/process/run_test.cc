@@ -54,7 +54,7 @@ TEST_F(MissionRun, RecordedScenarioRunsAgainToTheSameTrajectory) {
 }
 
 TEST_F(MissionRun, WarnsOfLateCommandsWithTheRemedy) {
-  // No machine makes ten thousand ticks in a second without being late now and then.
+  // Every machine is sometimes late at ten thousand ticks a second.
   Child mission =
       start("ergocast", {"run", scenario_file("quadrimodal_corners"), "--out", out(),
                          "--realtime=1000", "--duration", "10000000", "--event-log-limit", "128"});
@@ -73,7 +73,7 @@ TEST_F(MissionRun, WarnsOfLateCommandsWithTheRemedy) {
   EXPECT_EQ(printed.find("warning: "), printed.rfind("warning: ")) << "once";
 }
 
-// Agents get the coefficients with the plan, and the report a picture with the record.
+// Agents get the coefficients with the plan; the report gets a picture with the record.
 TEST_F(MissionRun, OfAMapIsVerifiedAndReportedWithoutTheMap) {
   const auto shipped = scenario_file("lake_search").parent_path();
   std::filesystem::create_directories(folder_ / "maps");
@@ -98,8 +98,8 @@ TEST_F(MissionRun, SeventeenAgentsFillTwoWorldStatesATick) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
-// With frequent or rare broadcasts, rarer ones of high modes, with or without dead reckoning, in
-// doubles or in 16 bits: eighteen agents, whose places come in two parts.
+// Eighteen agents, whose positions come in two parts. Broadcasts are frequent or rare, rarer for
+// high modes, with or without dead reckoning, in doubles or in 16 bits.
 TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
   std::vector<std::string> trajectories;
   for (const std::string telling :
@@ -219,7 +219,7 @@ TEST_F(MissionRun, StartsAnotherProgramInTheWorldsPlace) {
       << output();
   EXPECT_TRUE(std::filesystem::exists(out() / "log/world.log"));
   EXPECT_FALSE(std::filesystem::exists(out() / "log/sim.log"));
-  // The driver refuses lockstep, as it says.
+  // The driver refuses lockstep and reports it.
   EXPECT_EQ(ergocast({"run", scenario_file("paper_fig1a"), "--lockstep", "--world",
                       (program_folder() / "ergocast-example-driver").string(), "--out",
                       out().string() + "-2"}),

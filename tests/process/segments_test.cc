@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A record in several segments, as a logger that was killed and restarted leaves it.
+// A record in several segments, as left by a logger that was killed and restarted.
 #include "runtime/event_log.h"
 #include "tests/process/programs.h"
 
@@ -12,7 +12,8 @@ class Segments : public OwnHost {
     std::ofstream(out() / file, std::ios::binary) << text;
   }
   /// Simulates 100 ticks of four agents, then splits the trajectory before `second` and lets its
-  /// first part end before `first_end`. So do the metrics, whose second part has not begun.
+  /// first part end before `first_end`. The metrics are split likewise; their second part is still
+  /// empty.
   void split(const std::string& first_end, const std::string& second) {
     ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "10",
                         "--out", out()}),
@@ -26,7 +27,7 @@ class Segments : public OwnHost {
     write("metrics.csv", metrics.substr(0, metrics.find('\n' + first_end.substr(0, 3)) + 1));
     write("metrics-001.csv", metrics.substr(0, metrics.find('\n') + 1));
   }
-  /// The record of a logger that was killed for good: no summary and no drawing.
+  /// The record of a logger that was killed and not restarted: no summary and no drawing.
   void forget_the_end() {
     std::filesystem::remove(out() / "summary.json");
     std::filesystem::remove(out() / "report.html");

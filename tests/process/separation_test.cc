@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real processes whose bodies keep a distance, in both paces, and what their record says of it.
+// Real processes whose bodies keep a distance, in both paces, and the distances in their record.
 #include <algorithm>
 #include <cmath>
 #include <map>

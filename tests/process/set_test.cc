@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// --set: the mission that is flown, checked and recorded is the one that was set.
+// --set: the mission that runs, is checked and is recorded has the set fields.
 #include "tests/process/programs.h"
 
 namespace ergocast::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast status` beside a mission: what it shows, how it ends, and that it only listens.
+// `ergocast status` during a mission: its output and its end; it only listens.
 #include <set>
 
 #include "lcmtypes/codec.h"
@@ -24,7 +24,7 @@ class Status : public ByHand {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return ergocast(arguments);
   }
-  /// Repeats the question until `wanted` holds for the answer; null if it never does.
+  /// Repeats the query until `wanted` holds for the answer; null if it never does.
   nlohmann::json status_where(const std::function<bool(const nlohmann::json&)>& wanted) {
     nlohmann::json answer;
     const bool came = eventually([&] {

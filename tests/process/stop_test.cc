@@ -20,7 +20,7 @@ class StopCommand : public ByHand {
   }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
 
-  /// Whether the record has that reason, possibly with a remark on late commands.
+  /// Whether the record has that reason, possibly followed by a remark on late commands.
   bool was_ended(const std::string& reason) const {
     return summary()["reason"].get<std::string>().starts_with(reason);
   }
@@ -108,7 +108,7 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
   expect_halt(GetParam());
 }
 
-// The tick of STOP is known when the team waits for one of its agents.
+// The team waits for one agent, so the tick in which STOP arrives is known.
 TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
   constexpr Tick kWaitedFor = 100;
   hold_next("ERGOCAST_COMMAND_2", kWaitedFor);
@@ -168,7 +168,7 @@ TEST_F(StopCommand, NeedsTheCoordinatorsKeyIfTheTeamHasOne) {
     how.insert(how.end(), {"--key-file", team});
     EXPECT_EQ(stop(how), 2);
     EXPECT_TRUE(answered("cannot begin or end missions")) << output();
-    EXPECT_TRUE(moves_on()) << "nobody obeys who is not the coordinator's";
+    EXPECT_TRUE(moves_on()) << "no process obeys without the coordinator's key";
   }
   ASSERT_EQ(stop({"--now", "--key-file", coordinator}), 0) << output();
   EXPECT_EQ(wait_for(sim.child), 0) << sim.printed();

@@ -192,7 +192,7 @@ TEST_F(Study, AWorkerThatDiesCostsItsRun) {
   EXPECT_EQ(lines(table()), 1U);
 }
 
-/// The shards of one study and what `merge` makes of them.
+/// The shards of one study, and their merged folder.
 class Shards : public Study {
  protected:
   std::filesystem::path part(int index) const {

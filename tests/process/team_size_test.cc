@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Teams of one and two, and teams that grow while they fly.
+// Teams of one and two, and teams that grow during the mission.
 #include "tests/process/bus_observer.h"
 #include "tests/process/mission.h"
 
@@ -16,7 +16,7 @@ TEST_F(TeamSize, TwoKnowWhatTheOtherCovered) {
   ASSERT_EQ(summary()["agents"].size(), 2U);
   const double observed = summary()["ergodic_metric"]["last"];
   for (const auto& one : summary()["agents"]) {
-    // From its own coverage alone, each would compute another figure.
+    // From only its own coverage, each would compute another value.
     EXPECT_NEAR(one["ergodic_metric"].get<double>(), observed, 1e-9 * observed);
   }
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();

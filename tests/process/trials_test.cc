@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast simulate --seeds`: each seed flies the mission that `--seed` flies, is recorded, and is
-// repeated by the command that is printed when it fails.
+// `ergocast simulate --seeds`: each seed simulates the mission of `--seed` and is recorded. If it
+// fails, the printed command repeats it.
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -45,8 +45,7 @@ class Trials : public OwnHost {
     return column;
   }
 
-  /// φ² at the end of the mission that `simulate --seed` flies with these arguments, as it is
-  /// written.
+  /// φ² at the end of the mission of `simulate --seed` with these arguments, as written.
   std::string simulated(std::vector<std::string> arguments, int seed) {
     const auto folder = folder_ / ("simulated-" + std::to_string(seed));
     arguments.insert(arguments.begin(), "simulate");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Typing errors and invalid files: one sentence that tells what to do, nothing that controls a
-// terminal, and no program that blocks.
+// Typing errors and invalid files: one sentence with the remedy, no text that controls a terminal,
+// and no program that blocks.
 #include <fcntl.h>
 #include <sys/stat.h>
 
@@ -69,7 +69,7 @@ TEST_F(Typing, PlacesAreSaidByTheDomainAndNotByALimitNobodyMeets) {
   EXPECT_FALSE(printed("1e+13")) << output();
 }
 
-// Nothing is ever written into the pipe: a program that opens it to read would wait for ever.
+// No process writes into the pipe: a program that opens it to read would never continue.
 TEST_F(Typing, PipesAreRefusedWhereverAFileIsNamed) {
   const std::string pipe = folder_ / "pipe", scenario = scenario_file("quadrimodal_corners");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

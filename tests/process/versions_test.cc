@@ -66,7 +66,7 @@ TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
     stranger_.send(Bus::kSwarm, theirs);
     return coordinator.printed().find(warning) != std::string::npos;
   })) << coordinator.printed();
-  // A valid agent of our version gets the number that the other has asked for.
+  // A valid agent of our version gets the number that the other agent has asked for.
   hand("ergocast-agent", {"--id", "2"});
   ASSERT_TRUE(observer.observes([&] {
     stranger_.send(Bus::kSwarm, theirs);

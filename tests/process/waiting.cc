@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Looks at the children of this process without reaping them: one that the test has not reaped has
-// ended without the test's knowledge.
+// Checks the children of this process without reaping them. The test does not know of the end of a
+// child that it has not reaped.
 #include "tests/process/waiting.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@
 namespace ergocast::test {
 namespace {
 
-/// How often a wait looks at its condition after the last process has ended: the test itself may
-/// have messages to read, or wait for the end of another process.
+/// How often a wait checks its condition after the last process has ended. The test itself may have
+/// messages to read, or wait for the end of another process.
 constexpr int kLastLooks = 10;
 constexpr int kMissionFailed = 4;
 
@@ -38,7 +38,7 @@ struct Watched {
 };
 std::vector<Watched> watched;
 
-/// How a child has ended that is not reaped yet.
+/// How a child that is not reaped yet has ended.
 std::optional<siginfo_t> ended_status(pid_t pid) {
   siginfo_t status{};
   if (waitid(P_PID, static_cast<id_t>(pid), &status, WEXITED | WNOHANG | WNOWAIT) != 0) return {};
@@ -95,7 +95,8 @@ bool in_vain(pid_t awaited, bool quiet) {
   return true;
 }
 
-/// A command that a condition runs answers also in the last look: no wait within a wait ends early.
+/// A command that a condition runs still answers in the last check, because no wait within a wait
+/// ends early.
 struct Depth {
   Depth() { ++now; }
   ~Depth() { --now; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The waits of a test. Each ends when what it waits for has happened, and also when the process
-// that should make it happen has ended.
+// The waits of a test. A wait ends when its event has happened, and also when the process that
+// should cause the event has ended.
 #pragma once
 
 #include <sys/types.h>
@@ -13,7 +13,7 @@
 namespace ergocast::test {
 
 /// How long a test waits for a necessary event before it fails, while all its processes run. It
-/// decides no success, also on a busy machine with a tenth of the speed.
+/// decides no result, even on a busy machine with a tenth of the speed.
 inline constexpr auto kPatience = std::chrono::seconds(300);
 
 /// Starts a program. Every wait of the test ends if the program fails.
@@ -27,10 +27,9 @@ void forget_watched();
 /// - a watched program has failed: a code other than 0, or a signal that tests do not send. A
 ///   process of a team may end with code 4: a mission that fails ends all of them.
 /// - all watched programs, and all processes that they have left, have ended.
-/// An end that the test has seen, by Child::running(), ends no wait. The condition has the last
-/// word: it is looked at again after the end. A wait within a condition lasts until its own is
-/// true.
-/// @param pause  what happens between two looks
+/// An end that the test has seen, by Child::running(), ends no wait. The condition is checked again
+/// after the end. A wait within a condition lasts until its own condition is true.
+/// @param pause  called between two checks
 bool eventually(const std::function<bool()>& condition, const std::function<void()>& pause = {});
 
 /// The same; the wait also ends as soon as that process has ended, in any way.

@@ -11,7 +11,7 @@ namespace {
 
 class Waiting : public ByHand {
  protected:
-  /// What a wait reports as failures, which are not those of this test.
+  /// The failures that a wait reports, which are no failures of this test.
   static std::string failures_of(const std::function<bool()>& wait) {
     using Reporter = ::testing::ScopedFakeTestPartResultReporter;
     ::testing::TestPartResultArray failures;
@@ -27,7 +27,7 @@ class Waiting : public ByHand {
     }
     return text;
   }
-  /// A wait for what comes after many looks.
+  /// A wait for an event that comes after many checks.
   static bool wait_long() {
     int looks = 0;
     return eventually([&looks] { return ++looks > 50; });
@@ -35,7 +35,7 @@ class Waiting : public ByHand {
   static void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
     for (const std::string& part : parts) EXPECT_NE(text.find(part), text.npos) << part << text;
   }
-  /// Ended, and not yet seen by the test.
+  /// A child that has ended, not yet seen by the test.
   void start_and_let_end(const std::string& program, const std::vector<std::string>& arguments) {
     const Child child = start(program, arguments);
     siginfo_t ignored;
@@ -64,7 +64,7 @@ TEST_F(Waiting, ForAnotherProcessEndsAtOnceToo) {
 TEST_F(Waiting, ForAProgramsWordsEndsWithIt) {
   hand("ergocast-agent");
   Program& told = hand("ergocast", {"doctor", "--help"});
-  expect_parts(failures_of([&] { return told.prints("what it never says"); }),
+  expect_parts(failures_of([&] { return told.prints("what it never prints"); }),
                {"/ergocast doctor --help", "exited with code 0 while the test waited"});
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast watch` and `run --watch` as other programs and other sites' pages attack them. What a
-// browser shows of them: tests/page.
+// `ergocast watch` and `run --watch` under attacks by other programs and other sites' pages.
+// tests/page tests them in a browser.
 #include <unistd.h>
 
 #include <memory>
@@ -70,9 +70,9 @@ TEST_F(WatchedPage, NamesThatAreNotOursAreRefused) {
   end_server();
 }
 
-// Another host of the network may answer for that name, and lead a browser here.
+// Another host of the network could resolve that name to this address.
 TEST_F(WatchedPage, TheHostsNameIsRefusedWhereOnlyThisHostReachesThePage) {
-  ASSERT_EQ(sethostname("survey-desk", 11), 0);  // of this test's own host
+  ASSERT_EQ(sethostname("survey-desk", 11), 0);  // of this test's separate host
   serve_record();
   EXPECT_EQ(http(kPort, "GET", "/", {host("survey-desk:8765")}).status, 421);
   end_server();
@@ -118,7 +118,7 @@ TEST_F(WatchedPage, OnlyReads) {
     EXPECT_EQ(get(kPort, target).status, 404) << target;
   }
   EXPECT_EQ(get(kPort, "/?" + std::string(4000, 'x')).status, 414);
-  // What is no HTTP does not end it.
+  // Input that is no HTTP does not end it.
   HttpConnection(kPort).send(std::string("\0\xff\r\n\r\n", 6) + std::string(100000, 'x'));
   EXPECT_EQ(get(kPort, "/").status, 200);
   end_server();
@@ -160,7 +160,7 @@ TEST_F(WatchedPage, BeyondThisHostATokenIsNeeded) {
   }
   EXPECT_EQ(ask("/", {"Cookie: a=b; ergocast-8801=" + wrong}).status, 403);
   EXPECT_EQ(ask("/", {"Cookie: a=b; ergocast-8801=" + right + "; c=d"}).status, 200);
-  // The token does not help a name that is not ours.
+  // A foreign name is refused even with the token.
   const auto renamed =
       http(8801, "GET", "/?token=" + right, {host("evil.example:8801")}, "", "127.0.0.2");
   EXPECT_EQ(renamed.status, 421);
@@ -198,7 +198,7 @@ TEST_F(WatchedPage, SixteenBrowsersWatchATeamAndMoreTakeTurns) {
   EXPECT_TRUE(shows(*events(kPort), "event: mission"));
   EXPECT_EQ(get(kPort, "/").status, 200);
   EXPECT_EQ(get(kPort, "/record.json").status, 404);
-  // Browsers that read nothing more keep neither the team nor another browser waiting.
+  // Browsers that stop reading delay neither the team nor another browser.
   EXPECT_TRUE(moves_on());
   streams.clear();
 
@@ -221,7 +221,7 @@ TEST_F(WatchedPage, WhatLacksTheTeamsKeyIsNotShown) {
   auto with_key = events(8803), without = events(8804);
   EXPECT_TRUE(shows(*without, "event: mission"));
   EXPECT_TRUE(shows(*without, "\"authenticated\":false"));
-  // It had time: a sign of life comes after two seconds without an event.
+  // It had time: a keep-alive text comes after two seconds without an event.
   EXPECT_TRUE(shows(*with_key, "\n\n"));
   EXPECT_EQ(with_key->read_until([](const std::string&) { return true; }).find("event:"),
             std::string::npos);

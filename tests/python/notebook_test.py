@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The notebook runs to its end, and draws. notebook_test.py NOTEBOOK"""
+"""The notebook runs to its end and draws figures. notebook_test.py NOTEBOOK"""
 
 import sys
 import unittest
@@ -18,7 +18,8 @@ class Notebook(unittest.TestCase):
         nbformat.validate(notebook)
         cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
         self.assertFalse(any(cell.outputs for cell in cells), "commit it without outputs")
-        # Over sockets in files: a TCP port that is free now may be another test's when the kernel takes it.
+        # Uses sockets in files, because another test may take a TCP port between its choice and its
+        # use.
         files = Config({"KernelManager": {"transport": "ipc"}})
         NotebookClient(notebook, timeout=None, kernel_name="python3", config=files).execute()
         pictures = [

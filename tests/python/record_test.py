@@ -18,7 +18,7 @@ import ergocast
 SCENARIO = Path(os.environ["ERGOCAST_SCENARIO_DIR"]) / "quadrimodal_corners.textproto"
 COMMAND = Path(os.environ["ERGOCAST_BIN_DIR"]) / "ergocast"
 SHORT = {"time.duration_s": 20, "law.noise_ceiling": 5}
-# What of a record says when and where it was made.
+# The parts of a record that depend on when and where it was made.
 NOT_OF_THE_MISSION = {"summary.json", "report.html"}
 
 
@@ -35,7 +35,7 @@ def command(*arguments):
 
 
 class WithRecord(unittest.TestCase):
-    """A record of Python's own, in a folder that goes with the class."""
+    """A record made by Python, in a folder that is removed with the class."""
 
     @classmethod
     def setUpClass(cls):
@@ -187,7 +187,7 @@ class InTheModesOfTheFreeDomain(unittest.TestCase):
 
 
 class Refused(WithRecord):
-    """What is wrong with a record or a scenario is one exception that says where, and what to do."""
+    """An error in a record or a scenario raises one exception with the place and the remedy."""
 
     def damaged(self, file, change):
         copy = self.folder / f"damaged-{self.id()}"

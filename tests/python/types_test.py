@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The types of the package: complete, true of the C++ part, and of use to who calls it.
+"""The types of the package: complete, equal to those of the C++ part, and useful to callers.
 
-types_test.py FOLDER: mypy's memory lies in FOLDER.
+types_test.py FOLDER: mypy's cache is in FOLDER.
 """
 
 import re
@@ -17,7 +17,7 @@ PACKAGE = Path(ergocast.__file__).parent
 FOLDER = Path(sys.argv.pop())
 CONFIGURATION = "[mypy]\nstrict = True\n[mypy-pandas.*]\nignore_missing_imports = True\n[mypy-matplotlib.*]\nignore_missing_imports = True\n"
 
-# What pybind11 gives every class, and classes that only C++ makes.
+# Members that pybind11 gives every class, and classes that only C++ makes.
 ALLOWED = """ergocast\\._native\\.[A-Z][A-Za-z]*
 ergocast\\._native\\.(ControlLaw|Mission)\\.__init__
 """
@@ -42,7 +42,7 @@ plot.study("runs/noise", y="slope")
 command: npt.NDArray[np.float64] = ergocast.Controller(run.mission).command(0, 0, (1.0, 2.0))
 """
 
-# From the second line on each is wrong.
+# Each line from the second on is wrong.
 BAD = """import ergocast
 ergocast.simulate("x", seed="one")
 ergocast.load("x").coverage("end")

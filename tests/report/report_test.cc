@@ -158,7 +158,8 @@ TEST_F(Report, SaysHowLargeBodiesAreAndWhoGoesHomeWhen) {
   EXPECT_EQ(record["mission"]["body_radius_m"], 1.5);
   EXPECT_EQ(record["mission"]["stations"],
             nlohmann::json::parse(R"([{"id": 0, "at_m": [600, 500], "rest_from": 800}])"));
-  // It circles 330 to 610 m away, and goes at 10 m/s: 33 to 61 s before tick 800.
+  // The agent circles 330 to 610 m away and moves at 10 m/s, so it goes home 33 to 61 s before tick
+  // 800.
   ASSERT_EQ(record["home_from"].size(), 1U);
   EXPECT_GT(record["home_from"]["0"], 190);
   EXPECT_LT(record["home_from"]["0"], 480);
@@ -336,7 +337,7 @@ TEST(TrackGrid, CodesRunsBetweenGapsAsSecondDifferences) {
   EXPECT_EQ(grid.rows(), 6);
   const auto coded = grid.encode(0, grid.rows());
   EXPECT_EQ(coded["agents"].dump(), R"([{"id":7,"runs":[0,3,5,1]}])");
-  // x 0 10 20, y 64 64 64, then x 50, y 64; zigzag doubles what is positive.
+  // x 0 10 20, y 64 64 64, then x 50, y 64; zigzag doubles positive numbers.
   EXPECT_EQ(coded["data"], base64(std::string("\x00\x14\x00\x80\x01\x7f\x00\x64\x80\x01", 10)));
   EXPECT_EQ(grid.encode(3, 5)["agents"].size(), 0U);
   EXPECT_EQ(grid.encode(1, 2)["agents"].dump(), R"([{"id":7,"runs":[1,1]}])");
@@ -351,7 +352,7 @@ TEST(TrackGrid, KeepsEveryOtherRowWhenThereAreTooMany) {
   grid.put(3, TrackGrid::kMostPositions, {0, 0, 0});
   EXPECT_EQ(grid.stride(), 2);
   EXPECT_EQ(grid.rows(), TrackGrid::kMostPositions / 2 + 1);
-  // Of the ticks 0, 2, 4 the places 0, 2, 4.
+  // The places 0, 2, 4 of the ticks 0, 2, 4.
   EXPECT_EQ(grid.encode(0, 3)["data"], base64(std::string("\x00\x04\x00\x00\x00\x00", 6)));
   grid.put(3, Tick{1} << 52, {1, 1, 0});  // as a damaged record may
   EXPECT_LE(grid.rows(), TrackGrid::kMostPositions);

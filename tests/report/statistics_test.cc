@@ -57,7 +57,7 @@ std::vector<double> countdown(int n) {
   return values;
 }
 
-// The ranks are those of tables of the sign test.
+// The ranks come from tables of the sign test.
 TEST(MedianOf, HasTheIntervalOfTheSignTest) {
   EXPECT_EQ(median_of(countdown(5)).low, 0);
   EXPECT_EQ(median_of(countdown(6)).low, 0);

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The job array of docs/studies.md on a Slurm of the test's own: one controller and one node. One
-# task is killed in mid-flight; the array submitted again completes it, and the merged table has the
-# bytes of one run of all.
+# The job array of docs/studies.md on a separate Slurm with one controller and one node. One task is
+# killed during its run; submitting the array again completes it. The merged table has the same
+# bytes as that of a single command.
 #   study_test.sh BIN_DIR SOURCE_DIR; ends with 77 where Slurm is not installed, or without root
 set -euo pipefail
 bin=$1 source=$2
@@ -12,13 +12,13 @@ done
 [ "$(id -u)" = 0 ] || { echo "a Slurm of one's own needs root"; exit 77; }
 export PATH=$bin:$PATH:/usr/sbin
 
-# A network and a host name of the test's own, so that nobody else's Slurm is met.
+# A separate network and host name, so that no other Slurm is reached.
 if [ -z "${ERGOCAST_SLURM_INSIDE:-}" ]; then
   ERGOCAST_SLURM_INSIDE=1 exec unshare --net --uts --pid --fork --mount-proc "$0" "$@"
 fi
 hostname node
 ip link set lo up
-ip address add 10.77.0.1/32 dev lo  # Slurm resolves no name where 127.0.0.1 is the only address
+ip address add 10.77.0.1/32 dev lo  # Slurm resolves no name if 127.0.0.1 is the only address
 work=$(mktemp -d /tmp/ergocast-slurm-XXXXXX)
 finish() {
   local status=$?

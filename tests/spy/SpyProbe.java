@@ -79,7 +79,7 @@ public final class SpyProbe {
     Thread.sleep(Long.MAX_VALUE);
   }
 
-  /** Says again at another URL whatever is heard at one. */
+  /** Repeats all messages of one URL on another one. */
   private static void echo(String from, String to) throws Exception {
     LCM there = new LCM(to);
     new LCM(from).subscribe("ERGOCAST_.*", (lcm, channel, in) -> {

@@ -98,7 +98,7 @@ class WithProbe : public RunningMission {
   }
 };
 
-/// With a screen and a window manager.
+/// Tests with a screen and a window manager.
 class Desk : public WithProbe {
  protected:
   void SetUp() override {
@@ -125,10 +125,10 @@ class Desk : public WithProbe {
     OwnHost::TearDown();
   }
 
-  /// Without a socket file and a lock file, which all tests of a machine would share, the only name
-  /// of a screen is the abstract socket in the network of the test.
-  // Without -noreset the screen starts anew whenever its last client leaves, and refuses others
-  // meanwhile: xdotool may be its only client while the window manager still starts.
+  /// The screen has only an abstract socket in the test's network; all tests of a machine would
+  /// share a socket file and a lock file.
+  // Without -noreset the screen restarts when its last client leaves, and refuses others meanwhile.
+  // xdotool may be its only client while the window manager still starts.
   std::vector<std::string> screen_command(const std::vector<std::string>& more) const {
     std::vector<std::string> command{"/usr/bin/Xvfb", "-screen",  "0",         "1600x1000x24",
                                      "-nolisten",     "tcp",      "-nolisten", "unix",
@@ -141,7 +141,7 @@ class Desk : public WithProbe {
     arguments.insert(arguments.begin(), "/usr/bin/xdotool");
     return sent_by(arguments);
   }
-  /// The id of the window with that name, or nothing.
+  /// The id of the window with that name, or nullopt.
   std::string window(const std::string& name) {
     const std::string found = xdotool({"search", "--onlyvisible", "--name", "^" + name + "$"});
     return found.substr(0, found.find('\n'));
@@ -149,7 +149,7 @@ class Desk : public WithProbe {
   bool sees(const std::string& name) {
     return eventually([&] { return !window(name).empty(); });
   }
-  /// Brings it to the front; where it is, but for the height of its title.
+  /// Brings the window to the front; returns its position, without the height of its title.
   Area front(const std::string& name) {
     const std::string id = window(name);
     xdotool({"windowactivate", "--sync", id});
@@ -162,8 +162,8 @@ class Desk : public WithProbe {
     }
     return {values["X"], values["Y"], values["WIDTH"], values["HEIGHT"]};
   }
-  /// Double-clicks rows of the viewer's table, from `row` on as there may be channels that come and
-  /// go, until the window of that channel is there.
+  /// Double-clicks rows of the viewer's table until the window of that channel is there. Starts at
+  /// `row` and tries the next rows, because channels may appear and disappear.
   bool open(const std::string& channel, int row) {
     constexpr int kHeader = 24, kRow = 16, kMoreRows = 3;  // pixels; lcm-spy has fixed ones
     int tries = 0;

@@ -80,7 +80,7 @@ TEST_F(SpyJar, EveryMessageComesBackFromLcmsJavaAsItWasSent) {
   wait_for(echo);
 }
 
-/// Reads as Java's Double.toHexString writes.
+/// Reads the format of Java's Double.toHexString.
 double next_number(std::istream& in) {
   std::string word;
   in >> word;

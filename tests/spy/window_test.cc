@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast spy` beside a real mission, on a virtual screen.
+// `ergocast spy` during a real mission, on a virtual screen.
 #include <gtest/gtest-spi.h>
 
 #include "tests/spy/spy_desk.h"
@@ -12,7 +12,7 @@ constexpr const char* kCommandUrl = "udpm://239.255.76.67:24702?ttl=0";
 
 /// The colours of agents 0 to 3, as in TeamView.java.
 constexpr int kAgentColors[] = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7};
-/// Pixels of an agent's disc that have its colour alone.
+/// Pixels of an agent's disc that have only its colour.
 constexpr std::size_t kMarker = 40;
 /// Rows of the swarm bus: names in order, four agents.
 constexpr int kTeamStatusRow = 13;
@@ -32,7 +32,7 @@ TEST_F(Spy, EveryMessageOfAMissionIsDecoded) {
   const auto log = log_;
   ASSERT_TRUE(eventually([&] { return text_of(log).find("listening") != std::string::npos; }));
   Child mission = start_mission();
-  end(mission, 0);  // says STOP
+  end(mission, 0);  // sends STOP
   for (const char* type : {"HELLO", "MISSION", "CONTRIBUTION", "AGENT_STATUS", "TEAM_STATUS",
                            "STOP", "WORLD_STATE", "COMMAND", "RECORD_ACK", "DIGEST"}) {
     EXPECT_TRUE(eventually([&] {

@@ -32,7 +32,7 @@ class InputFileTest : public ::testing::Test {
   test::TempFolder folder_;
 };
 
-// Nobody writes into the pipe: a program that opens it to read would wait for ever.
+// No process writes into the pipe: a program that opens it to read would never continue.
 TEST_F(InputFileTest, RefusesWhatIsNoRegularFile) {
   const auto pipe = folder_.path() / "pipe", link = folder_.path() / "link";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
