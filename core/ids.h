@@ -24,13 +24,13 @@ using Tick = std::int64_t;
 
 inline constexpr int kMaxAgents = 1024;
 inline constexpr int kMaxIncarnationsPerAgent = 16;
-/// Of missions with separation.lease_s: each echoes all others in one message.
+/// The most agents of a mission with separation.lease_s: each echoes all others in one message.
 inline constexpr int kMostLeasedAgents = 256;
 /// Incarnations of all agents together.
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
 inline constexpr int kMaxModesPerAxis = 64;
 inline constexpr int kMaxModes = 4096;  ///< of all axes together
-/// Of a free domain: the time that they take to compute grows with the square.
+/// The most modes of a free domain: the time to compute them grows with the square of their number.
 inline constexpr int kMostFreeModes = 400;
 inline constexpr int kMaxHostLength = 63;
 inline constexpr int kMaxVersionLength = 31;

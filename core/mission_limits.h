@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mission may say: the limits that scenario.proto's comments state. core/mission_fields.h
-// gives each field its own. scenario/ holds what people write against them, and names what breaks
-// them; team/plan.cc holds what comes off the network.
+// The limits of a mission's fields, which scenario.proto's comments state. core/mission_fields.h
+// gives each field its own. scenario/ checks what people write, and names the fields that break a
+// limit. team/plan.cc checks plans from the network.
 #pragma once
 
 #include <string_view>
@@ -36,7 +36,7 @@ inline constexpr Limits kIntensity = between(0, 1e6);  ///< of any noise [m/√s
 inline constexpr Limits kTimeout_s = above(0, 86400);
 inline constexpr Limits kDuration_s = above(0, 1e7);
 inline constexpr double kMaxTicks = 1e8;
-/// Between two broadcasts of any block.
+/// Ticks between two broadcasts of any block.
 inline constexpr Limits kPeriod_ticks = between(1, 1000);
 /// In real time, the least wall time of a step.
 inline constexpr double kMinWallStep_s = 1e-4;
@@ -56,11 +56,11 @@ bool is_name(std::string_view name);
 /// Whether `name` is such a name of at most kMaxKindNameLength characters.
 bool is_kind_name(std::string_view name);
 
-/// How long the mission lasts: tick_count · dt_s, but no more than a scenario may say [s].
+/// How long the mission lasts: tick_count · dt_s, but no more than a scenario may set [s].
 double duration_s(const Timing& timing);
 
-/// Whether `mission` is one that a scenario can say: each number within its limits, and those
-/// beside each other fit together. μ is finite, |μ| ≤ 1 but for rounding, and μ_00 = 1.
+/// Whether a scenario can describe `mission`: each number is within its limits, and related numbers
+/// fit together. μ is finite, |μ| ≤ 1 but for rounding, and μ_00 = 1.
 bool within_limits(const Mission& mission);
 
 }  // namespace ergocast
