@@ -21,7 +21,7 @@ void draw_dot(Svg& svg, const Eigen::Vector2d& at, const std::string& color) {
   svg.circle(at, 3.2, "fill=\"" + color + '"');
 }
 
-/// The height it takes.
+/// Draws the key and returns its height.
 double draw_key(Svg& svg, const std::vector<KeyEntry>& key, double width) {
   constexpr double kPerLetter = 6, kSample = 28;
   double x = kLeft, y = kKeyRow;

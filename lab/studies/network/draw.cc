@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables and figures of the network studies, from what lab/studies/network/run has simulated.
+// Makes tables and figures of the network studies from the results of lab/studies/network/run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// One thing that is varied; FOLDER/<name>-<source>-<agents>-<value>.csv has the seeds of one
-/// point. They are compared with the same seeds where every agent knows everything,
+/// point. They are compared with runs of the same seeds in which every agent knows everything,
 /// FOLDER/central-<agents>/study.csv.
 struct Study {
   std::string name, x_title;
@@ -27,7 +27,7 @@ struct Study {
   bool log_x = false;
 };
 
-/// What agents know of each other from.
+/// The source of what agents know of each other.
 struct Source {
   std::string name, dashes;
 };
@@ -68,7 +68,7 @@ Metrics metrics_of(const Table& table) {
   return metrics;
 }
 
-/// Of the seeds that both have. Throws std::runtime_error if there is none.
+/// Compares the seeds that both have. Throws std::runtime_error if there is none.
 Estimate compare(const Metrics& ours, const Metrics& theirs) {
   std::vector<double> numerators, denominators;
   for (const auto& [seed, metric] : ours) {
@@ -124,7 +124,7 @@ void print(const Study& study, const std::vector<Series>& all) {
   std::printf("\n");
 }
 
-/// Neighbours stand a little beside each other, so that the intervals of all can be seen.
+/// Draws neighbours a little beside each other, so that all intervals can be seen.
 double beside(const Study& study, double x, double most, std::size_t place, std::size_t count) {
   const double steps = static_cast<double>(place) - 0.5 * static_cast<double>(count - 1);
   return study.log_x ? x * std::pow(1.025, steps) : x + 0.006 * steps * most;

@@ -27,8 +27,8 @@ std::vector<KeyEntry> key_of_sets() {
   return key;
 }
 
-/// Median times against what is varied: dots with 10 % to 90 % measured, solid the law, dashed the
-/// law without the past. Of the `other` parameter there is the `wanted` value only.
+/// Median times over the varied parameter: dots with 10 % to 90 % measured, solid the law, dashed
+/// the law without the past. Only rows whose `other` parameter has the value `wanted`.
 Panel panel_of(const std::vector<Row>& rows, double exponent, Axis x, Axis y, double Point::*varied,
                double Point::*other, double wanted) {
   Panel panel{weight_text(exponent), std::move(x), std::move(y), {}, {}};
@@ -123,7 +123,8 @@ void draw_distributions(const std::vector<Row>& rows, const fs::path& images) {
                       {distributions(rows, 1), distributions(rows, 3)}));
 }
 
-/// Left, how the spread grows; right, that the measured medians lie where it reaches the distance.
+/// Left: how the spread grows. Right: the measured medians lie where the spread reaches the
+/// distance.
 void draw_growth(const std::vector<Row>& rows, const fs::path& images) {
   Panel growth{"Spread of the linearised recursion for σ = 1 m/√s",
                range_axis("time", "s", 0, 300),
