@@ -25,14 +25,14 @@ Eigen::Vector2d wave_numbers_of(const Box& domain) {
 /// cos(mα) and sin(mα).
 struct Wave {
   double cosine, sine;
-  /// Of one mode more, by those of the first.
+  /// The wave of the next mode, from this one and that of the first mode.
   Wave after(const Wave& first) const {
     return {cosine * first.cosine - sine * first.sine, sine * first.cosine + cosine * first.sine};
   }
 };
 
-/// Calls each(m, wave along x, wave along y) for every mode of the axis that has more of them: both
-/// axes in one loop, for neither waits for the other, and the shorter one's tables have room.
+/// Calls each(m, wave along x, wave along y) for every mode of the axis that has more of them. One
+/// loop serves both axes: neither waits for the other, and the shorter one's tables have room.
 template <class Each>
 inline void for_each_mode(const Eigen::Vector3d& x_m, const Box& domain, const Basis& basis,
                           const Each& each) {
@@ -162,8 +162,8 @@ struct ColumnSums {
   BasisAt::Table over_bend, over_slope, over_cos;
 };
 
-/// Adds so many rows, from row m on and in this order. By several at a time the sums are read and
-/// written less often.
+/// Adds kRows rows, from row m on and in this order. Adding several at a time reads and writes the
+/// sums less often.
 template <int kRows>
 ERGOCAST_VECTORIZED_PART void add_rows(const BasisAt& at, const BasisAt::Table& bend,
                                        const Basis& basis, const double* weights, int m,
@@ -235,11 +235,11 @@ double across_columns(const BasisAt::Table& columns, const BasisAt::Table& along
   return sum;
 }
 
-/// Weights of a plane's modes, which are left of a box's where z is known.
+/// Weights of a plane's modes: what remains of a box's weights at a given z.
 using Slab = std::array<double, static_cast<std::size_t>(kMaxModesPerAxis) * kMaxModesPerAxis>;
 
-/// Four doubles, added and multiplied one by one. Where tables are many, the compiler finds no such
-/// vectors by itself.
+/// Four doubles, added and multiplied one by one. With many tables the compiler does not vectorise
+/// by itself.
 using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
 
 /// Sums over l of the modes in kCount values, from the slab's mode `first` on, for each table along
@@ -271,7 +271,7 @@ ERGOCAST_VECTORIZED_PART void contract_z(const std::array<const BasisAt::Table*,
     for (int k = 0; k < end; ++k) contract_some<double, 1>(along_z, basis, weights, k, slabs);
     return;
   }
-  // The last eight are those at the end, also where they are not the next ones.
+  // The last stride ends at the last mode, and may overlap the stride before.
   for (int k = 0; k < end; k += 8) {
     contract_some<Four, 2>(along_z, basis, weights, std::min(k, end - 8), slabs);
   }
@@ -371,7 +371,7 @@ void for_every_mode(const Basis& basis, const Each& each) {
   }
 }
 
-/// Of a plane's one mode along z it is 0.
+/// It is 0 for a plane's one mode along z.
 double wave_number(int mode, double length_m) {
   return mode == 0 ? 0 : mode * std::numbers::pi / length_m;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cosine basis (2) on a box, its gradient, and the weights that compare coefficients. Or, in a
-// plane with walls, the modes of the free domain (core/free_modes.h) in the cosines' place: f is
-// then e_k of that table, which has the cosines' bounds, and `domain` is not read.
+// The cosine basis (2) on a box, its gradient, and the weights that compare coefficients. In a
+// plane with walls the modes of the free domain (core/free_modes.h) can take the cosines' place.
+// Then f is e_k of that table, which has the same bounds as cosines, and `domain` is not read.
 //
 // Places have three coordinates. A plane has one mode along z, f_lmn = f_mn for l = 0, and its
 // numbers are bit for bit those of the two-dimensional sums.
@@ -37,7 +37,7 @@ enum class SobolevForm {
 struct Basis {
   int modes_x = 1;
   int modes_y = 1;
-  int modes_z = 1;  ///< of a plane 1
+  int modes_z = 1;  ///< 1 in a plane
   SobolevForm sobolev_form = SobolevForm::kSquaredNorm;
   double sobolev_exponent = 1.5;
   /// Whether f is divided by h_k = sqrt(Π L_i · (1/2)^[k_i > 0]) where coefficients are compared;
@@ -45,8 +45,8 @@ struct Basis {
   bool normalized = false;
   /// Whether the modes_x · modes_y lowest modes of the free domain are used, by ascending ν.
   bool free_domain = false;
-  std::uint64_t table_hash = 0;  ///< of their table, else 0
-  /// The table of that hash. Not in a plan: null where nobody has provided it.
+  std::uint64_t table_hash = 0;  ///< hash of their table, else 0
+  /// The table of that hash. A plan does not contain it; it is null until it has been provided.
   std::shared_ptr<const FreeModes> table = nullptr;
 
   int mode_count() const { return modes_x * modes_y * modes_z; }
@@ -72,7 +72,7 @@ inline Coefficients in_basis_order(const PlaneCoefficients& coefficients) {
 struct CosinesAt {
   using Table = std::array<double, kMaxModesPerAxis>;
   FreePlace free;             ///< if it has modes, the cosines are not set
-  Table cos_x, cos_y, cos_z;  ///< cos(mπx/Lx), cos(nπy/Ly), cos(lπz/Lz); of one mode {1}
+  Table cos_x, cos_y, cos_z;  ///< cos(mπx/Lx), cos(nπy/Ly), cos(lπz/Lz); {1} for one mode
 
   /// @pre x_m is finite; up to kMaxModesPerAxis modes an axis, one along z if the domain is a
   /// plane. Outside the domain f continues, even about each side and periodic. By recurrence from
@@ -83,9 +83,9 @@ struct CosinesAt {
   CosinesAt() = default;
 };
 
-/// With their derivatives: all that f and ∇f need.
+/// The cosines and their derivatives: all that f and ∇f need.
 struct BasisAt : CosinesAt {
-  Table slope_x, slope_y, slope_z;  ///< −(mπ/Lx) sin(mπx/Lx) …  [1/m]; of one mode {0}
+  Table slope_x, slope_y, slope_z;  ///< −(mπ/Lx) sin(mπx/Lx) …  [1/m]; {0} for one mode
 
   /// @pre as for CosinesAt, whose bits it has.
   BasisAt(const Eigen::Vector3d& x_m, const Box& domain, const Basis& basis);

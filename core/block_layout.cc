@@ -12,7 +12,7 @@
 namespace ergocast {
 namespace {
 
-/// The modes of a free domain ascend as they are.
+/// The modes of a free domain already ascend.
 int squared_wave_number(const Basis& basis, int mode) {
   if (basis.free_domain) return mode;
   const int n = mode % basis.modes_y, m = mode / basis.modes_y % basis.modes_x;

@@ -32,9 +32,9 @@ class BlockLayout {
     int first, count;
   };
 
-  /// In the order of the basis.
+  /// All modes in the order of the basis.
   BlockLayout(const Basis& basis, ContributionEncoding encoding);
-  /// As the mission says.
+  /// The layout that the mission asks for.
   explicit BlockLayout(const Mission& mission);
 
   ContributionEncoding encoding() const { return encoding_; }
@@ -44,13 +44,13 @@ class BlockLayout {
   /// Whether mode k of the basis has slot k.
   bool in_basis_order() const { return mode_by_rank_.empty(); }
 
-  /// Those of a block that have a mode.
+  /// The slots of a block that have a mode.
   Slots slots_of(int block) const;
   /// How many numbers a block has on the wire; those without a mode are 0.
   int size_of(int block) const {
     return block == 0 && !in_basis_order() ? kLowModes : block_size();
   }
-  /// Up to the last one that has a mode.
+  /// The number of slots up to the last one that has a mode.
   int slot_count() const;
 
   /// The numbers of the basis's modes, each in its slot; slots without a mode stay what they are.

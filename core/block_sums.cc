@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts who holds a block's sums, and keeps the memory of released ones for the next.
+// Counts the holders of a block's sums, and keeps the memory of released blocks for the next ones.
 #include "core/block_sums.h"
 
 #include <algorithm>
@@ -18,8 +18,9 @@ const double BlockSums::kZeros[kMostBlockSize] = {};
 
 namespace {
 
-/// Released memory of blocks of one size, for the next ones: malloc takes long for a kilobyte, and
-/// a step that takes in messages allocates nothing. It ends with its thread.
+/// Released memory of blocks of one size, kept for the next blocks. malloc takes long for a
+/// kilobyte, and with it a step that takes in messages allocates nothing. The memory is freed with
+/// its thread.
 struct Spares {
   ~Spares() {
     while (count > 0) ::operator delete(pieces[--count]);
@@ -61,7 +62,7 @@ bool BlockSums::operator==(const BlockSums& other) const {
 
 ERGOCAST_VECTORIZED
 double BlockSums::largest_of(std::span<const double> values) {
-  // Lanes, because the order of comparisons does not matter; not a number is never the greater one.
+  // Lanes, because the order of comparisons does not matter. A NaN is never the greater number.
   double lanes[kModesPerStride] = {};
   std::size_t numbers = 0;
   for (std::size_t k = 0; k < values.size(); k += kModesPerStride) {

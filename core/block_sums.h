@@ -8,8 +8,8 @@
 
 namespace ergocast {
 
-/// Sums in one block of a contribution that says doubles; the last block of a mission is padded
-/// with zeros.
+/// Sums in one block of a contribution in doubles; the last block of a mission is padded with
+/// zeros.
 /// Limit (Messages): modes in a block of a contribution. Beyond it: the contribution takes several
 /// messages.
 inline constexpr int kBlockSize = 128;
@@ -22,9 +22,9 @@ inline constexpr int kMostBlockSize = 256;
 /// are sent more rarely.
 inline constexpr int kLowModes = 64;
 
-/// Some numbers, kBlockSize unless said. A copy shares them with its original until one of the two
-/// is edited. All copies belong to one thread, because the holders are counted without atomic
-/// operations.
+/// The numbers of a block, by default kBlockSize. A copy shares them with its original until one of
+/// the two is edited. All copies belong to one thread, because the holders are counted without
+/// atomic operations.
 class BlockSums {
  public:
   BlockSums() = default;  ///< zeros
@@ -43,7 +43,7 @@ class BlockSums {
   }
 
   std::size_t size() const { return held_ != nullptr ? held_->size : kBlockSize; }
-  /// Before any are set, kMostBlockSize zeros.
+  /// kMostBlockSize zeros until values are set.
   const double* data() const { return held_ != nullptr ? held_->values() : kZeros; }
   const double* begin() const { return data(); }
   const double* end() const { return data() + size(); }
@@ -57,13 +57,13 @@ class BlockSums {
     return held_->largest;
   }
 
-  /// The values, for this holder alone to change before anything else is asked of it.
+  /// The values, for this holder alone. Change them before the next call of another method.
   std::span<double> edit();
-  /// The same for one who sets all of them, `size` ≤ kMostBlockSize: they are anything yet.
+  /// The same for a caller that sets all values, `size` ≤ kMostBlockSize: they are not initialised.
   std::span<double> set_all(std::size_t size = kBlockSize);
 
  private:
-  /// Before as many numbers, in one piece of memory.
+  /// Stands before its `size` numbers, in one piece of memory.
   struct Held {
     double largest;  // negative: not known yet
     int holders;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent says about its coverage: the only message that the method needs.
+// What an agent sends about its coverage: the only message that the method needs.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ enum class ContributionEncoding {
 inline constexpr int block_size_of(ContributionEncoding encoding) {
   return encoding == ContributionEncoding::kFixed16 ? kMostBlockSize : kBlockSize;
 }
-/// Into how many blocks so many modes fall.
+/// The number of blocks that `mode_count` modes need.
 inline constexpr int block_count_of(int mode_count, ContributionEncoding encoding) {
   return (mode_count + block_size_of(encoding) - 1) / block_size_of(encoding);
 }
@@ -38,7 +38,7 @@ struct Contribution {
   BlockSums sums;  ///< Σ f_k(x) dt, not divided by h_k [s]; as many as BlockLayout::size_of()
   ContributionEncoding encoding = ContributionEncoding::kDouble;
   /// kFixed16: what the sums have gained in the last `gained_steps` steps [s]. Receivers cannot
-  /// tell it from two rounded averages.
+  /// compute it from two rounded averages.
   BlockSums gains;
   std::int64_t gained_steps = 0;
 

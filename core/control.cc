@@ -16,7 +16,8 @@ namespace ergocast {
 namespace {
 
 /// A box with all sides as long as the longest one. The gradient of a mode is steep across a short
-/// side, where it says little: an ε that counted it would stop agents from going along the others.
+/// side, but means little there. An ε that counted it would keep agents from moving along the other
+/// sides.
 Box cube_around(const Box& domain) {
   Box cube = domain;
   cube.size_m.head(domain.planar() ? 2 : 3).setConstant(domain.size_m.maxCoeff());
@@ -27,12 +28,12 @@ Box cube_around(const Box& domain) {
 
 Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double epsilon,
                              double u_max_mps) {
-  // hypot, because B is 1e-4 and falling: its square would lose the smallest residuals.
+  // hypot, because B falls below 1e-4: its square would lose the smallest residuals.
   const double b_z = spectral_gradient.z();
   const double length = std::hypot(std::hypot(spectral_gradient.x(), spectral_gradient.y()),
                                    b_z == 0 ? epsilon : std::hypot(b_z, epsilon));
   if (length == 0) return {0, 0, 0};
-  // Divided first: u_max / length overflows where B is next to nothing.
+  // The division comes first: u_max / length overflows where B is close to 0.
   return spectral_gradient / length * -u_max_mps;
 }
 

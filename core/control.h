@@ -17,7 +17,7 @@ namespace ergocast {
 Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double epsilon,
                              double u_max_mps);
 
-/// What one agent does with the team's coverage. Holds the mission's constant tables and a
+/// Computes one agent's command from the team's coverage. Holds the mission's constant tables and a
 /// K-vector of scratch space; no step allocates.
 class Controller {
  public:

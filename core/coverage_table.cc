@@ -27,7 +27,7 @@ static_assert(kLowModes % kModesPerStride == 0);
 /// Whether no sum of a block has changed by more than `limit`.
 ERGOCAST_VECTORIZED
 bool gains_within(std::span<const double> sums, const double* before, double limit) {
-  std::int64_t beyond = 0;  // counted, because a loop with a way out is not vectorised
+  std::int64_t beyond = 0;  // counted, because a loop with an early exit is not vectorised
   for (std::size_t k = 0; k < sums.size(); ++k) {
     beyond += !(std::abs(sums[k] - before[k]) <= limit);
   }
@@ -61,7 +61,7 @@ void average_weighted(std::span<const double* const> rows, const double* qualiti
   }
 }
 
-/// What has travelled in 16 bits may have been rounded up, but not beyond 1.
+/// Numbers that travelled in 16 bits may have been rounded up, but not beyond 1.
 bool gains_in_range(const Contribution& c, double dt_s) {
   const double gained_s = static_cast<double>(c.gained_steps) * dt_s;
   return c.gained_steps >= 0 && c.gained_steps <= c.steps &&
@@ -191,7 +191,7 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
     block.sums_before = theirs.gains;
     block.gained_steps = theirs.gained_steps;
   } else if (notes_gains_) {
-    // Who joined later than the block was said compares with nothing.
+    // An agent that joined after this block was sent has no earlier block to compare with.
     const bool comparable = block.tick >= joined_;
     block.steps_before = comparable ? block.steps : 0;
     block.sums_before = comparable ? std::move(block.sums) : BlockSums();
@@ -221,7 +221,7 @@ CoverageTable::BlockView CoverageTable::view(std::size_t row, int block) const {
           held.next_broadcast_tick - held.tick};
 }
 
-/// Over how many steps a block has gained; 0 if no agent can have gained that in them.
+/// The number of steps over which a block has gained; 0 if no agent can gain that much in them.
 std::int64_t CoverageTable::gained_steps(const Block& block) const {
   if (block.gained_steps != kNotCompared) return block.gained_steps;
   const std::int64_t steps = block.steps - block.steps_before;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The coverage of all agents as one agent knows it: a state-based CRDT of cumulative sums.
+// The coverage of all agents as one agent knows it: a state-based CRDT (a replicated value whose
+// copies merge in any order) of cumulative sums.
 //
 // One row per (agent, incarnation), each in blocks with their own step counts. A block with more
 // steps replaces one with fewer, so merging is commutative, associative and idempotent: loss,
@@ -26,15 +27,15 @@ enum class Merge { kNewer, kStale, kRefusedRange, kRefusedLimit, kRefusedEncodin
 class CoverageTable {
  public:
   /// @param joined  the tick from which its holder takes part. Earlier blocks depend on when the
-  ///                holder joined, so no block is compared with one said before that tick.
+  ///                holder joined, so no block is compared with one that was sent before that tick.
   CoverageTable(const Basis& basis, double dt_s, Tick joined = 0);
 
-  /// From now on nothing is noted of what blocks gain, and view() says that no gains are possible:
-  /// for who does not look ahead.
+  /// From now on the table does not note what blocks gain, and gains() returns none. For holders
+  /// that do not look ahead.
   void forgo_gains() { notes_gains_ = false; }
 
-  /// From now on blocks come, and are given out, in this layout and its encoding; at first in
-  /// doubles, in the order of the basis.
+  /// From now on blocks arrive and are returned in this layout and its encoding. Before the first
+  /// call they are doubles in the order of the basis.
   /// @pre no rows
   void set_layout(const BlockLayout& layout);
 
@@ -49,16 +50,18 @@ class CoverageTable {
   /// @param footprint  null, or g of core/kinds.h: S += g f(x)·dt
   void add_sample(const Author& author, const BasisAt& at, const double* footprint = nullptr);
 
-  /// From now on the row of `author`, if there is one, counts with this quality; at first with 1.
+  /// From now on the row of `author`, if there is one, counts with this quality. The default is 1.
   void set_quality(const Author& author, double quality);
 
-  /// Takes in one block. Refused, without effect: another encoding, another number of modes, a
-  /// block that does not exist or has another length, an elapsed time that is not steps·dt, an S_00
-  /// that is not the elapsed time, |S| > elapsed (both but for rounding, 1e-9 and half an ulp a
-  /// step), more steps than `max_steps` (a forged future would win for ever), a full table.
+  /// Merges one block. These are refused without effect: another encoding; another number of modes;
+  /// a block that does not exist or has another length; an elapsed time that is not steps·dt; an
+  /// S_00 that is not the elapsed time, or |S| > elapsed, both up to rounding (1e-9 and half an ulp
+  /// a step); more steps than `max_steps` (a forged future would win for ever); a new row for a
+  /// full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
-  /// One block of a row as its author said it, header and all but the run; steps 0 if unknown.
+  /// One block of a row as its author sent it, with the header except for the run. If the block is
+  /// unknown, steps is 0.
   Contribution block(const Author& author, int block) const;
 
   /// From now on the row of `author` does not count, even if it arrives later. It is kept and
@@ -76,7 +79,7 @@ class CoverageTable {
   /// The fewest steps among a row's blocks; nothing if the row is unknown.
   std::optional<std::int64_t> steps_held(const Author& author) const;
 
-  /// The longest silence that `author` has announced between two of its broadcasts; 0 if unknown.
+  /// The longest time that `author` has announced between two of its broadcasts; 0 if unknown.
   Tick announced_period(const Author& author) const;
 
   /// One row as a digest describes it.
@@ -100,24 +103,24 @@ class CoverageTable {
   struct BlockView {
     const double* sums;  ///< those of the block's slots [s]
     std::int64_t steps;
-    Tick tick;    ///< when it was said
-    Tick period;  ///< until its author speaks again, as announced
+    Tick tick;    ///< when it was sent
+    Tick period;  ///< until its author's next broadcast, as announced
   };
   BlockView view(std::size_t row, int block) const;
-  /// What a block has gained on the one held before.
+  /// What a block has gained since the one held before.
   struct Gains {
     const double* before;     ///< the sums of the one held before [s]; null if `announced` is set
-    const double* announced;  ///< the gains as the author has told them [s], or null
-    std::int64_t steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their time,
-                         ///< or not noted
+    const double* announced;  ///< the gains that the author has sent [s], or null
+    std::int64_t steps;  ///< the steps gained; 0 if the gains are not noted, or impossible: |gain|
+                         ///< > their time
   };
   Gains gains(std::size_t row, int block) const;
   /// Whether the views of all blocks of a row differ only in their sums.
   bool uniform_blocks(std::size_t row) const;
-  /// Whether all blocks have gained in as many steps.
+  /// Whether all blocks have gained over the same number of steps.
   bool uniform_gains(std::size_t row) const;
 
-  /// The sums of a row that only add_sample() fills [s]: those of all slots and then zeros.
+  /// The sums of a row that only add_sample() fills [s]: one for each slot, then zeros.
   /// @pre `author` has samples
   const double* sums_of(const Author& author) const;
 
@@ -152,7 +155,7 @@ class CoverageTable {
     AlignedDoubles samples;  // instead of the blocks' sums, once there are samples
     double quality = 1;
     const double* sums(std::size_t block, int block_size) const;
-    /// After a block has changed.
+    /// Call it after a block has changed.
     void sum_up();
     std::int64_t max_steps() const;
     std::uint64_t state_hash() const;
@@ -180,7 +183,7 @@ class CoverageTable {
   std::vector<Row> rows_;                       // ascending by author
   mutable std::vector<const double*> counted_;  // of each row that counts, the sums of a block
   mutable std::vector<double> qualities_;       // and its quality
-  // Of another layout than in the order of the basis: numbers by mode, and by slot.
+  // Numbers by mode and by slot, only for a layout other than the order of the basis.
   std::vector<double> by_mode_;
   mutable std::vector<double> by_slot_;
 };

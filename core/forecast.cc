@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Says what each teammate's row will have covered, by its last rate or by its reported places, and
-// adds the rows from both ends of the team.
+// Forecasts what each teammate's row will have covered, from its last rate or its reported places,
+// and adds the rows from both ends of the team.
 #include "core/forecast.h"
 
 #include <algorithm>
@@ -66,7 +66,7 @@ void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
   if (!domain_.contains(x_m)) return;
   auto& places = tracks_[agent].places;
   if (!places.empty() && places.back().tick >= tick) return;
-  // Many at a time: to move all the others for each that comes would cost more than to use it.
+  // Many are erased at a time: moving all others for each new place would cost more than using it.
   if (places.size() == 2 * most_places_) {
     places.erase(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(most_places_));
   }
@@ -76,15 +76,16 @@ void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
 
 // ---- dead reckoning ----
 
-/// Brings the track of a row's vehicle up to what is known; null if that is no more than the row.
+/// Extends the track of a row's vehicle to its newest known place; null if nothing is newer than
+/// the row.
 Forecast::Track* Forecast::dead_reckon(const CoverageTable& table, std::size_t row,
                                        const RosterEntry& entry) {
   const auto found = tracks_.find(entry.author.agent);
   if (found == tracks_.end()) return nullptr;
   Track& track = found->second;
   const auto blocks = static_cast<std::size_t>(table.block_count());
-  // What was added before a pause, or before a successor of the coordinator admitted the author
-  // anew, would make the forecast depend on when it was looked at.
+  // Additions from before a pause, or from before a successor of the coordinator admitted the
+  // author again, are dropped. With them the forecast would depend on when it was computed.
   const bool goes_on = track.author == entry.author && track.active_from == entry.active_from &&
                        track.look + 1 == looks_ && track.sent_steps.size() == blocks;
   track.look = looks_;
@@ -112,7 +113,7 @@ Forecast::Track* Forecast::dead_reckon(const CoverageTable& table, std::size_t r
       track.places.end() - static_cast<std::ptrdiff_t>(std::min(track.places.size(), most_places_));
   auto place = track.places.end();
   while (place != first && std::prev(place)->tick > oldest) --place;
-  // The newest is where the vehicle goes on from, whether or not its author has said it already.
+  // The newest place is where the vehicle goes on from, also if its author has already sent it.
   if (place == track.places.end() && place != first) --place;
   for (; place != track.places.end(); ++place) {
     if (entry.active_at(place->tick)) add_place(*place, table, row, track);
@@ -120,7 +121,8 @@ Forecast::Track* Forecast::dead_reckon(const CoverageTable& table, std::size_t r
   return &track;
 }
 
-/// S += f(x) dt in every block that does not hold it, as its author does: at the next use.
+/// S += f(x) dt in every block that does not contain it, as its author does. The addition is done
+/// at the next use.
 void Forecast::add_place(const Place& place, const CoverageTable& table, std::size_t row,
                          Track& track) {
   if (place.tick != track.newest_tick) {
@@ -182,7 +184,7 @@ void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>
   }
 }
 
-/// Whether all blocks of each row that counts are as old, as most often they are.
+/// Whether all blocks of each row that counts have the same age, the usual case.
 bool Forecast::uniform_blocks(const CoverageTable& table) const {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row)) continue;
@@ -288,8 +290,8 @@ const double* Forecast::gains_of(const Track& track, Modes modes) {
   return gains_.data();
 }
 
-/// Adds the same of any row: one whose quality or footprint is not that of others, or all of them
-/// where slots are not modes.
+/// Does what add() does for any row: one whose quality or footprint differs from others, or every
+/// row where slots are not modes.
 void Forecast::add_weighted(const Term& term, Modes modes, const double* before, double* sum) {
   Track* const track = term.track;
   const auto block = static_cast<std::size_t>(modes.first / block_size_);
@@ -331,8 +333,8 @@ void Forecast::add(const Term& term, Modes modes, const double* before, double* 
   }
 }
 
-/// The rows from both ends of the team, and the own one last: core/ideal_team.cc makes all its
-/// agents' sums in this order, with few more additions than one agent's take.
+/// Adds the rows from both ends of the team, and the own row last. In this order core/ideal_team.cc
+/// computes the sums of all agents with few more additions than those of one agent.
 void Forecast::add_up(Modes modes, double per_second, double* coverage) {
   const double *earlier = nothing_.data(), *later = nothing_.data();
   const auto own = terms_.begin() + before_own_;

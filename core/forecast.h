@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The forecast of the team's coverage by one agent, which its law answers to.
+// One agent's forecast of the team's coverage, which its law uses.
 //
 //   ĉ_i = [Σ_j S_j + Σ_{j≠i} w_j r_j] / [Σ_j T_j + Σ_{j≠i} w_j]
-//   r_j = (S_j − S'_j) / (T_j − T'_j), or as j has told it where averages travel in 16 bits
+//   r_j = (S_j − S'_j) / (T_j − T'_j), or as j has sent it where averages travel in 16 bits
 //
-// Each teammate j continues for w_j as since the block before (core/look_ahead.h has w_j). Agents
-// that steer by the team's *past* coverage chase the same deficit. With ĉ, each leaves to the
-// others what they are about to cover. docs/law_theory.md has the derivation, docs/law.md the
-// figures.
+// Each teammate j is assumed to continue for w_j (core/look_ahead.h) at its rate since the block
+// before. Agents that steer by the team's *past* coverage chase the same deficit. With ĉ, each
+// agent leaves to the others what they are about to cover. docs/law_theory.md has the derivation,
+// docs/law.md the figures.
 //
 // With dead reckoning, f at a teammate's known places since its last block is added to its row, and
-// r_j is f at the newest place. The row then equals one that was said there. The table is not
+// r_j is f at the newest place. The row then equals one that was sent there. The table is not
 // changed, the forecast is never sent, and the next block replaces these additions.
 //
-// Who will rest (core/station.h) goes on until then at the longest: h of its w_j is at most that.
+// A teammate that will rest (core/station.h) is assumed to continue no longer than until then: h of
+// its w_j is at most that time.
 //
 // Where kinds differ (core/kinds.h), each row's part has its quality q_j in both sums, and f at a
 // place of teammate j is g_j f.
 //
-// ĉ is a function of the table, the roster and the known places, and does not depend on the order
-// of their arrival: in lockstep all agents that hear the same compute the same forecast.
+// ĉ is a function of the table, the roster and the known places. The order of their arrival does
+// not matter: in lockstep all agents that receive the same messages compute the same forecast.
 #pragma once
 
 #include <cstdint>
@@ -41,19 +42,19 @@ namespace ergocast {
 
 class Forecast {
  public:
-  /// Places of a vehicle that are kept beyond those of the longest period. An honest silence is
-  /// shorter, so a late block loses none.
+  /// Places of a vehicle that are kept beyond those of the longest period. A correct agent is
+  /// silent for less time than they cover, so a late block loses none.
   /// Limit (Team): positions of a teammate that an agent keeps beyond those of a broadcast period
   /// [steps]. Beyond it: the oldest is forgotten.
   static constexpr Tick kPlacesBeyondPeriod = 64;
 
-  /// Consecutive ones in the order of the wire.
+  /// Consecutive slots in the order of the wire.
   using Modes = BlockLayout::Slots;
 
   Forecast(const Mission& mission, const Author& self);
 
-  /// A vehicle was at `x_m` at `tick`. Without effect: without dead reckoning, for our own vehicle,
-  /// for a tick that is already known, outside the domain.
+  /// Notes that a vehicle was at `x_m` at `tick`. It has no effect without dead reckoning, for our
+  /// own vehicle, for a tick that is already known, and outside the domain.
   void see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m);
 
   /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if its author
@@ -70,23 +71,24 @@ class Forecast {
   };
   /// A row since its last blocks. Places belong to the vehicle, not to an incarnation.
   struct Track {
-    std::vector<Place> places;             // ascending by tick; the last most_places_ count
-    Author author;                         // of the row that is extended
-    Tick active_from = 0;                  // of that author, as the roster said, …
-    int kind = 0;                          // … and its kind
-    std::uint64_t look = 0;                // of looks_, when it was last extended
-    std::vector<std::int64_t> sent_steps;  // per block, of the block that was taken from the row
-    std::vector<std::int64_t> steps;       // with the places added since
-    std::vector<Tick> until;               // the tick of the last step
-    std::vector<char> due;                 // whether that one counts, but is not in the sums yet
-    AlignedDoubles sums;  // with the places; of blocks to which nothing was added, anything
+    std::vector<Place> places;  // ascending by tick; the last most_places_ count
+    Author author;              // author of the row that is extended
+    Tick active_from = 0;       // of that author, from the roster, …
+    int kind = 0;               // … and its kind
+    std::uint64_t look = 0;     // value of looks_ when it was last extended
+    std::vector<std::int64_t>
+        sent_steps;                   // per block: steps of the block that was taken from the row
+    std::vector<std::int64_t> steps;  // with the places added since
+    std::vector<Tick> until;          // the tick of the last step
+    std::vector<char> due;            // whether that step counts, but is not in the sums yet
+    AlignedDoubles sums;  // with the places; not set for blocks to which nothing was added
     std::optional<CosinesAt> newest;  // at the newest place, and its tick
     Tick newest_tick = -1;
     AlignedDoubles gains;  // f dt there, by slot; only where that is not the mode
   };
   /// One row's part in one block.
   struct Term {
-    // Where the first mode would be. One that gains has the sums before, or the gains as told.
+    // Where the first mode would be. A row that gains has the sums before, or the gains as sent.
     const double *sums, *sums_before, *announced_gains;
     Track* track;                      // null: by its blocks
     std::int64_t steps, gained_steps;  // 0: no forecast
@@ -123,7 +125,7 @@ class Forecast {
   LookAhead look_ahead_;
   bool dead_reckons_;
   Sensors sensors_;
-  bool uniform_;    // all of them, as most often they are
+  bool uniform_;    // whether all sensors are alike, the usual case
   bool by_tables_;  // slots are not modes: f is computed as a whole, not mode by mode
   std::size_t most_places_;
   std::vector<Tick> rest_from_;  // by number, where any agent has a station
@@ -132,11 +134,11 @@ class Forecast {
   std::vector<Track*> dead_reckoned_;  // per row of the table; null: by its blocks
   std::vector<char> has_forecast_;     // per row: whether it has a forecast
   std::vector<Term> terms_;            // of the other rows that count, ascending by author
-  std::ptrdiff_t before_own_ = 0;      // so many of them come before the own row
+  std::ptrdiff_t before_own_ = 0;      // number of terms before the own row
   const double* own_sums_ = nullptr;
   double own_quality_ = 1;
   AlignedDoubles nothing_;  // zeros
-  AlignedDoubles gains_;    // of a row whose sensor is unlike others
+  AlignedDoubles gains_;    // of a row whose sensor differs from others
   AlignedDoubles by_slot_;  // ĉ, only where a slot is not the mode
   // What the rows before the own one and those after it will have covered.
   AlignedDoubles earlier_, later_;

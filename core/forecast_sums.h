@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The additions that a forecast is made of, over some modes: the loops that take its time.
 //
-// What these functions call sum is a running sum over rows, `before` what it was before this row:
-// it may be the same table. All tables begin with the first mode of the basis. Each mode is
-// computed by itself and in one order, so a vector of modes gives the same bits as one mode.
+// `sum` is a running sum over rows. `before` is its value before this row, and may be the same
+// table. All tables begin with the first mode of the basis. Each mode is computed by itself and in
+// one order, so a vector of modes gives the same bits as one mode.
 #pragma once
 
 #include "core/basis.h"

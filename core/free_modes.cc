@@ -98,8 +98,8 @@ void sum_around(const FreePlace& at, const double* weights, double* sums) {
   }
 }
 
-/// The quadratic B-spline at an offset from −½ to ½: of the values of three cells in a row, one
-/// cell apart, and of its derivatives.
+/// The weights of three cells in a row, one cell apart, in the quadratic B-spline at an offset from
+/// −½ to ½, and in its derivatives.
 struct Spline {
   Eigen::Vector3d value, slope, bend;
   explicit Spline(double t)

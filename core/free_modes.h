@@ -4,8 +4,8 @@
 //   −∇²f_k = ν_k f_k in the free domain,   n · ∇f_k = 0 at its walls and sides,   f_0 = 1
 //   mean over the free domain of f_k² = ¼ for k > 0,   λ_k = (1 + ν_k L²/π²)^−s,   L² = Lx Ly
 //
-// Where nothing stands in the domain they are cosines. A wall has no value: each cell reads what is
-// next to it as it is seen from there, so the two sides of a wall know nothing of each other.
+// In a domain without walls they are cosines. A wall has no value: each cell reads its neighbours
+// as they are seen from this cell, so the two sides of a wall are independent.
 //
 // The table holds e_k = f_k / max |f_k|, so |e_k| ≤ 1 as for cosines, and sums, averages and limits
 // on the wire stay what they are. The weights of e_k have the factor max² |f_k|, so φ² and (6) are
@@ -21,10 +21,10 @@
 
 namespace ergocast {
 
-/// Each cell has so many parts along an axis, each of which belongs to one free cell.
+/// The number of parts of a cell along an axis. Each part belongs to one free cell.
 inline constexpr int kPartsPerCell = 4;
 
-/// What a table says. Cell numbers are those of the free cells, 0 … cell_count − 1.
+/// The content of a table. Cell numbers are those of the free cells, 0 … cell_count − 1.
 struct FreeModes {
   Eigen::Vector2d origin_m{0, 0}, size_m{1, 1};  ///< of the domain
   int columns = 1, rows = 1;                     ///< cells along x and y
@@ -36,8 +36,8 @@ struct FreeModes {
   std::span<const std::int32_t> owner;
   /// Where a free cell is in the grid: column · rows + row.
   std::span<const std::int32_t> place;
-  /// What each free cell sees at (column + a, row + b), a and b from −1 to 1: nine cells, of which
-  /// (a + 1) · 3 + b + 1 is the number. It sees itself in place of a wall.
+  /// What each free cell sees at (column + a, row + b), with a and b from −1 to 1: nine cells, at
+  /// (a + 1) · 3 + b + 1. It sees itself in place of a wall.
   std::span<const std::int32_t> around;
   std::span<const double> eigenvalues_per_m2;  ///< ν_k, ascending
   std::span<const double> mean_squares;        ///< of e_k
@@ -58,13 +58,13 @@ struct FreeModes {
 /// A place in the table: e_k there is the bilinear interpolation of four cells.
 struct FreePlace {
   const FreeModes* modes = nullptr;  ///< null: none
-  int cell = 0;                      ///< that the place belongs to
+  int cell = 0;                      ///< to which the place belongs
   Eigen::Vector2d offset{0, 0};      ///< from its middle, in cells, from −½ to ½
   std::array<const float*, 4> corners{};
   std::array<double, 4> shares{};  ///< of each corner; their sum is 1
 
   FreePlace() = default;
-  /// Outside of the domain it is the nearest place within.
+  /// A place outside the domain becomes the nearest place inside.
   /// @pre x_m is finite
   FreePlace(const Eigen::Vector2d& x_m, const FreeModes& modes);
 };
@@ -75,8 +75,8 @@ struct FreeField {
   Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
 };
 
-/// Of the quadratic spline through the nine cells around, which has no slope across a wall. The
-/// order of the sums is the same on every processor. Does not allocate.
+/// The field of the quadratic spline through the nine cells around, which has no slope across a
+/// wall. The order of the sums is the same on every processor. Does not allocate.
 FreeField free_field(const FreePlace& at, const double* weights);
 
 /// λ_k max² |f_k| of each mode: the weights of e_k.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Floods the free cells of a grid, from each that no flood has reached.
+// Floods the free cells of a grid, starting from each cell that no flood has reached.
 #include "core/free_region.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ constexpr double kSameWay = 1 + 1e-9;
 struct Offset {
   int column, row;
 };
-/// The later half are opposite to the first.
+/// Each of the last four is opposite to one of the first four, in the same order.
 constexpr std::array<Offset, 8> kNeighbours = {
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
@@ -168,7 +168,8 @@ std::optional<int> FreeRegion::free_cell_near(const Eigen::Vector2d& x_m) const 
   return best;
 }
 
-/// The largest first, and those that are none become free of any part.
+/// Sorts the parts, the largest first. The cells of parts that are too small then belong to no
+/// part.
 void FreeRegion::sort_parts() {
   std::vector<int> order(sizes_.size());
   std::iota(order.begin(), order.end(), 0);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which places of a domain with walls a body can reach from which, keeping its clearance.
+// Which places of a domain with walls a body can reach from each other while it keeps its
+// clearance.
 //
 // The domain is a grid, usually with 256 cells along its longer side. Two neighbouring cells are
 // joined if the straight way between their centres keeps the clearance, which is tested exactly. So
-// every way that is found is one, and a passage narrower than a cell and twice the clearance may be
+// every way that is found exists. A passage narrower than a cell and twice the clearance may be
 // missed.
 #pragma once
 
@@ -25,12 +26,12 @@ class FreeRegion {
   /// @param kept_m  above 0
   FreeRegion(const Rings& walls, const Box& domain, double kept_m, int cells = 256);
 
-  /// The parts that no way joins, the largest first. Those below 1/1000 of all that is free are
-  /// left out: they are niches that the grid does not resolve.
+  /// The number of parts that no way joins, the largest first. Parts below 1/1000 of the free area
+  /// are left out: they are niches that the grid does not resolve.
   int parts() const { return static_cast<int>(sizes_.size()); }
-  /// Of the domain's area.
+  /// The free share of the domain's area.
   double free_share() const;
-  /// Of what is free.
+  /// The share of a part in the free area.
   double share_of(int part) const;
   /// The part that the cell of `x_m` belongs to; nothing where its centre is not free.
   std::optional<int> part_at(const Eigen::Vector2d& x_m) const;
@@ -40,12 +41,13 @@ class FreeRegion {
   int cells() const { return columns_ * rows_; }
   int cell_at(const Eigen::Vector2d& x_m) const;
   Eigen::Vector2d center_m(int cell) const;
-  /// The length of the shortest way from the centre of a cell to that of each, along neighbours: at
-  /// most 8 % too long. Infinite where there is none.
+  /// The length of the shortest way along neighbours from the centre of a cell to that of each
+  /// cell. It is at most 8 % too long, and infinite where there is no way.
   std::vector<double> ways_m(int from) const;
-  /// The neighbour through which the shortest of these ways leads; the cell itself at their end and
-  /// where there is none. Ways that differ by rounding alone are equally short, and of them the one
-  /// with the longest first step is taken: so neither the domain's origin nor its axes decide.
+  /// The neighbour through which the shortest of these ways leads; the cell itself at the end of
+  /// the ways and where there is none. Ways that differ only by rounding are equally short. Among
+  /// them the one with the longest first step is taken, so neither the domain's origin nor its axes
+  /// decide.
   int nearer(const std::vector<double>& ways_m, int cell) const;
   /// Calls `each(cell)` for the cells of any part that are at most kNiche cells away from `x_m`
   /// along an axis.
@@ -59,14 +61,14 @@ class FreeRegion {
       }
     }
   }
-  /// The free cell nearest to `x_m`, of those; nothing if none of them is free.
+  /// The nearest to `x_m` of those cells; nothing if none of them is free.
   std::optional<int> free_cell_near(const Eigen::Vector2d& x_m) const;
   static constexpr int kNiche = 3;
 
  private:
   void join(const Rings& walls, double kept_m);
   bool joined(const Rings& walls, int from, int to, double kept_m) const;
-  /// Calls `each(neighbour, length of the step)` for those that a cell is joined with.
+  /// Calls `each(neighbour, length of the step)` for the neighbours that a cell is joined with.
   void for_joined(int cell, auto&& each) const;
   void grow(int seed, int part);
   void sort_parts();

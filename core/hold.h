@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ticks that do not count, because the mission is paused.
 //
-// The world's ticks go on while a mission is paused. Whatever depends on mission time goes by the
-// number of ticks that count: coverage, forecasts, broadcasts, ages, noise of the law, the end.
+// The world's ticks go on while a mission is paused. Everything that depends on mission time uses
+// the number of ticks that count: coverage, forecasts, broadcasts, ages, noise of the law, the end.
 #pragma once
 
 #include <algorithm>
@@ -27,15 +27,15 @@ struct Hold {
   bool operator==(const Hold&) const = default;
 };
 
-/// So many in a mission at most: one travels in a part of MISSION.
+/// The most holds of a mission: each travels in a part of MISSION.
 /// Limit (Team): pauses of a mission. Beyond it: `ergocast pause` ends with code 4.
 inline constexpr std::size_t kMaxHolds = 32;
 
-/// Whether each ends after it begins, none begins before the one before has ended, only the last
-/// has no end, and there are not too many.
+/// Whether each hold ends after it begins, none begins before the previous one has ended, only the
+/// last has no end, and there are at most kMaxHolds.
 bool are_holds(std::span<const Hold> holds);
 
-// ---- of holds that are are_holds() ----
+// ---- for holds that satisfy are_holds() ----
 
 bool is_held(std::span<const Hold> holds, Tick tick);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps all agents on one shared coverage, with the additions in the order that a coverage table
-// has.
+// Steps all agents on one shared coverage, with the additions in the order of a coverage table.
 #include "core/ideal_team.h"
 
 #include <algorithm>
@@ -93,7 +92,7 @@ void IdealTeam::see_bodies() {
         agents_[i].v_mps};
 }
 
-/// What the team's distance leaves of a command, as an agent's last step of it.
+/// What the filter leaves of a command: the last step, as in an agent.
 Eigen::Vector3d IdealTeam::kept_apart(Agent& agent, const Eigen::Vector3d& v_mps) {
   if (!agent.filtered) return v_mps;
   const SafeVelocity safe = separation_->safe(
@@ -127,8 +126,8 @@ void IdealTeam::sample() {
   }
 }
 
-/// What ĉ of core/forecast.h is made of, in its order of additions, where every row was said in
-/// this tick: all agents' sums by as many additions as one agent's take.
+/// Computes the parts of ĉ in core/forecast.h, in its order of additions, where every row was sent
+/// in this tick. The sums of all agents take as many additions as those of one agent.
 ERGOCAST_VECTORIZED
 void IdealTeam::look_ahead() {
   const auto n = static_cast<int>(agents_.size());
@@ -139,7 +138,7 @@ void IdealTeam::look_ahead() {
   for (std::size_t i = agents_.size() - 1; i > 0; --i) {
     const double* sums = table_.sums_of(agents_[i].author);
     const double* gain = agents_[i].gain.data();
-    const double* later = agents_[i].later.data();  // 0 of the last
+    const double* later = agents_[i].later.data();  // 0 for the last agent
     double* all = agents_[i - 1].later.data();
     const double q = quality(agents_[i]);
     for (std::size_t k = 0; k < earlier_.size(); ++k)
@@ -147,7 +146,7 @@ void IdealTeam::look_ahead() {
   }
 }
 
-/// Sets what the sums of all in the forecast of `agent` are to be multiplied by.
+/// Sets the factors of all sums in the forecast of `agent`.
 void IdealTeam::weigh(const Agent& agent) {
   double steps = 0;
   for (const Agent& each : agents_) steps += quality(each) * static_cast<double>(tick_ + 1);
@@ -158,7 +157,7 @@ void IdealTeam::weigh(const Agent& agent) {
   per_second_ = 1 / covered_s;
 }
 
-/// Shows ĉ to the next agent in the order of the team.
+/// Sets ĉ for the next agent in the order of the team.
 ERGOCAST_VECTORIZED
 void IdealTeam::foresee(const Agent& agent) {
   const double* own = table_.sums_of(agent.author);

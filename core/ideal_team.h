@@ -31,9 +31,9 @@ class IdealTeam {
  public:
   explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect);
 
-  /// Whether a distributed team would compute the same: lockstep, every agent hears every other,
-  /// all coverage is broadcast each tick or known by dead reckoning, without rounding, and nobody
-  /// goes home.
+  /// Whether a distributed team would compute the same: lockstep, every agent receives from every
+  /// other, all coverage is broadcast each tick or known by dead reckoning, without rounding, and
+  /// no agent goes home.
   static bool stands_for(const Mission& mission);
 
   /// One tick: samples, commands from the common c_k, motion. Does not allocate.
@@ -57,8 +57,8 @@ class IdealTeam {
   /// c_k of the last step, and its φ².
   Coefficients coverage() const;
   double metric() const { return controllers_.front().metric(coverage()); }
-  /// Steps of single agents that a teammate or an edge has blocked, and the longest row of one
-  /// agent.
+  /// Steps of single agents that a teammate or an edge has blocked, and the longest run of such
+  /// steps of one agent.
   std::int64_t blocked_steps() const { return blocked_steps_; }
   std::int64_t longest_block_ticks() const { return longest_block_ticks_; }
 
@@ -67,7 +67,7 @@ class IdealTeam {
     Author author;
     int kind = 0;
     Motion motion;
-    bool filtered = false;  // its commands
+    bool filtered = false;  // whether its commands pass the filter
     Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
     std::optional<BasisAt> at;                            // x_m
     std::vector<double> sent;                             // its sums a tick ago
@@ -92,7 +92,7 @@ class IdealTeam {
   LookAhead look_ahead_;
   Coefficients coverage_;                             // known or foreseen
   std::vector<double> earlier_;                       // what all earlier agents will have covered
-  double weight_s_ = 0, share_ = 0, per_second_ = 0;  // of gains, of gains, and of all
+  double weight_s_ = 0, share_ = 0, per_second_ = 0;  // of gains, share of gains, and factor of all
   Sensors sensors_;
   std::vector<Controller> controllers_;  // by kind
   std::vector<Agent> agents_;

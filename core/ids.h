@@ -27,7 +27,7 @@ inline constexpr int kMaxAgents = 1024;
 /// Limit (Team): incarnations of one agent. Beyond it: no further incarnation is admitted; messages
 /// are refused with `limit`.
 inline constexpr int kMaxIncarnationsPerAgent = 16;
-/// With separation.lease_s each agent echoes all others in one message.
+/// The most agents of a mission with separation.lease_s: each echoes all others in one message.
 /// Limit (Scenario): agents of a mission with `separation { lease_s }`. Beyond it: the scenario is
 /// refused.
 inline constexpr int kMostLeasedAgents = 256;
@@ -35,6 +35,8 @@ inline constexpr int kMostLeasedAgents = 256;
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
 /// Limit (Scenario): modes along an axis. Beyond it: the scenario is refused.
 inline constexpr int kMaxModesPerAxis = 64;
+inline constexpr int kMaxModes = 4096;  ///< of all axes together
+/// The most modes of a free domain: the time to compute them grows with the square of their number.
 /// Limit (Scenario): modes of all axes together. Beyond it: the scenario is refused.
 inline constexpr int kMaxModes = 4096;
 /// Limit (Scenario): modes with `basis { free_domain: true }`, whose computation takes time with

@@ -9,8 +9,8 @@
 // sums by g, so S_00 = T and |S| ≤ T hold as for points. Receivers weigh a row by its q, which
 // follows from plan and roster. An agent steers by Σ λ g (ĉ − μ) ∇f over the modes of its band.
 //
-// A mission without kinds has one that nobody names, with the law's values and a sensor that sees a
-// point. Kinds have numbers, in the order of the plan.
+// A mission without kinds has one kind without a name, with the law's values and a sensor that sees
+// a point. Kinds are numbered in the order of the plan.
 #pragma once
 
 #include <optional>
@@ -27,7 +27,7 @@ struct Sensor {
   Coefficients g;      ///< empty: all 1
   double quality = 1;  ///< q
 
-  /// g as the tables take it; null if all are 1.
+  /// g in the form that the tables take; null if all are 1.
   const double* footprint() const { return g.size() == 0 ? nullptr : g.data(); }
 
   /// Adds q g f dt to mode_count() sums; returns q dt, which the place adds to the time.
@@ -40,12 +40,12 @@ Coefficients footprint_of(const Basis& basis, const Box& domain, double sigma_m)
 /// The sensors of all kinds of a mission; at least one.
 class Sensors {
  public:
-  Sensors() : Sensors(Mission()) {}  ///< of a mission without kinds
+  Sensors() : Sensors(Mission()) {}  ///< those of a mission without kinds
   explicit Sensors(const Mission& mission);
 
   /// Whether a row's sums depend on its kind at all.
   bool uniform() const { return uniform_; }
-  /// Of kind 0, if the mission has no kind `kind`.
+  /// The sensor of `kind`, or of kind 0 if the mission has no such kind.
   const Sensor& of(int kind) const;
 
  private:
@@ -59,17 +59,17 @@ int planned_kind(const Mission& mission, AgentId id);
 /// The number of the kind `name`; nothing if the mission has none of this name.
 std::optional<int> kind_named(const Mission& mission, const std::string& name);
 
-/// Why no agent of the kind `name` can take part, or not under the number `id`, whose body may be
-/// another vehicle, as a sentence; nothing if it can, or if `name` is empty.
+/// A sentence that says why no agent of the kind `name` can take part, or none under the number
+/// `id`, whose body may be another vehicle. Nothing if one can, or if `name` is empty.
 /// @param id  kUnassigned: any number
 std::optional<std::string> why_not_of_kind(const Mission& mission, const std::string& name,
                                            AgentId id);
 
-/// Its name; empty if the mission has no kind `kind`.
+/// The name of a kind; empty if the mission has no kind `kind`.
 const std::string& name_of_kind(const Mission& mission, int kind);
 
-/// The law as an agent of `kind` flies it. The look-ahead has the team's u_max_mps all the same,
-/// so that everybody forecasts alike.
+/// The law that an agent of `kind` follows. The look-ahead still uses the team's u_max_mps, so that
+/// all agents compute the same forecast.
 ControlLaw law_of(const Mission& mission, int kind);
 
 /// λ_k g_k for the modes of the band of `kind`, 0 for all others: what an agent of it steers by.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables that begin with a line of the cache: vectors of four doubles then never lie across two.
+// Tables that begin at a cache line: a vector of four doubles then never lies across two lines.
 #pragma once
 
 #include <cstddef>

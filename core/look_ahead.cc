@@ -11,7 +11,7 @@
 namespace ergocast {
 namespace {
 
-/// A teammate that is silent for so many announced periods has no forecast any more.
+/// A teammate that has been silent for this many announced periods has no forecast any more.
 constexpr Tick kPeriods = 8;
 
 /// The share of mode m in the mean along an axis of length 1, and in the mean of the square.
@@ -73,7 +73,7 @@ double target_spread_m(const Eigen::Matrix3d& covariance_m2) {
 }
 
 double shared_dimensions(const Eigen::Matrix3d& covariance_m2) {
-  // Divided first, so that the square of a small domain's is not lost.
+  // The division comes first, so that the square of a small domain's trace does not underflow.
   const double trace_m2 = covariance_m2.trace();
   return trace_m2 > 0 ? std::min(2.0, 1 / (covariance_m2 / trace_m2).squaredNorm()) : 2;
 }
@@ -103,7 +103,7 @@ double LookAhead::horizon_s(int n, Tick tick) const {
 }
 
 double LookAhead::weight_s(double horizon_s, Tick span, Tick age, Tick period) const {
-  // What is announced may be anything, also the past.
+  // A message may announce anything, also a past tick.
   const Tick believed = std::clamp<Tick>(period, 0, longest_period_);
   const double cap_s = static_cast<double>(kPeriods * believed) * dt_s_;
   const double age_s = static_cast<double>(age) * dt_s_;

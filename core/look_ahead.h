@@ -37,15 +37,15 @@ class LookAhead {
   bool any() const { return alone_s_ > 0; }
 
   /// h = a s √(d/2) / (u_max n^(1/d)) [s] for a team of `n`, with d = shared_dimensions(): about
-  /// the time to cross an agent's share. With ends_with_plan at most the time left at `tick`, which
-  /// is 0 after the end, and at most T − s / u_max, with T the plan's duration: a mission in which
-  /// nobody can cross the target leaves no time to share it out.
+  /// the time to cross an agent's share. With ends_with_plan it is at most the time left at `tick`,
+  /// which is 0 after the end. It is then also at most T − s / u_max, with T the plan's duration: a
+  /// mission in which no agent can cross the target leaves no time to share it out.
   double horizon_s(int n, Tick tick) const;
 
   /// For how long [s] a teammate's rate over `span` ticks, last known `age` ticks ago, is assumed
   /// to hold, past and future together:
   ///   w = h + min(span dt, cap) + age dt,   0 if age dt > max(h, cap),   cap = 8 periods
-  /// @param period  announced by the teammate, any number; it is limited to what the plan allows
+  /// @param period  as announced by the teammate; any number is limited to what the plan allows
   double weight_s(double horizon_s, Tick span, Tick age, Tick period) const;
 
   /// The longest time between two broadcasts that the plan allows.
@@ -58,7 +58,7 @@ class LookAhead {
   double alone_s_;             // h of a team of one
   double most_s_;              // of h, in a short mission
   double inverse_dimensions_;  // 1 / d
-  Tick end_tick_;              // where h ends at the latest
+  Tick end_tick_;              // the latest end of the horizon
   Tick longest_period_;
 };
 

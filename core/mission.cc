@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moves a vehicle by one step, and says when an agent broadcasts and where it starts.
+// Moves a vehicle by one step, and computes when an agent broadcasts and where it starts.
 #include "core/mission.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ Mission in_cosines(Mission mission) {
 }
 
 Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps) {
-  // Divided first, so that no length overflows.
+  // The division comes first, so that no length overflows.
   const double greatest_mps = v_mps.cwiseAbs().maxCoeff();
   if (greatest_mps == 0) return v_mps;
   const Eigen::Vector3d share = v_mps / greatest_mps;
@@ -54,7 +54,7 @@ Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block) {
   const Tick period = mission.timing.broadcast_period_ticks;
   const Tick factor = block == 0 ? 1 : mission.timing.high_mode_period_factor;
   const Tick team = std::max<Tick>(1, static_cast<Tick>(mission.starts_m.size()));
-  // High modes go along with low ones.
+  // High modes are sent together with low ones.
   const Tick turn = id * period / team % period + id * factor / team % factor * period;
   const Tick between = period * factor;
   const Tick next = tick + between - (tick - turn + between) % between;

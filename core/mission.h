@@ -51,8 +51,8 @@ enum class OnTimeout { kEndMission, kEvict };
 struct Timing {
   double dt_s = 0.1;
   Tick tick_count = 0;              ///< the mission has ticks 0 … tick_count − 1
-  int broadcast_period_ticks = 1;   ///< an agent broadcasts its coverage every so many ticks
-  int high_mode_period_factor = 1;  ///< all but the lowest modes every so many periods
+  int broadcast_period_ticks = 1;   ///< ticks between an agent's broadcasts of its coverage
+  int high_mode_period_factor = 1;  ///< periods between broadcasts of all but the lowest modes
   Pace pace = Pace::kLockstep;
   double realtime_factor = 1;       ///< mission seconds per wall second
   double lockstep_timeout_s = 10;   ///< wall time a tick may stay unanswered
@@ -66,19 +66,20 @@ struct Timing {
 /// How far bodies keep from each other, and what is known of their motion; core/separation.h.
 struct Separation {
   double distance_m = 0;        ///< D, between the places of two bodies; 0: none is kept
-  double position_error_m = 0;  ///< how far a body may be from where it is said to be
+  double position_error_m = 0;  ///< how far a body may be from its reported place
   double disturbance_m = 0;     ///< what the world may add to a body's step; it cuts the rest
   double response_s = 0;        ///< how long a body takes to follow a command, T
   bool guard = false;           ///< real time: the world filters the commands again
-  /// Real time: each body knows its own place alone, and agents tell each other theirs. Who is not
-  /// known to be heard by a teammate for so long stands; 0: the world knows all places.
+  /// Real time: each body knows only its own place, and agents send each other theirs. An agent
+  /// stops if for this long it has no proof that a teammate receives it. 0: the world knows all
+  /// places.
   double lease_s = 0;
 };
 
 enum class VehicleKind {
   kPoint,         ///< takes every velocity at once
   kAcceleration,  ///< changes its velocity by at most max_acceleration_mps2 · dt in a tick
-  kUnicycle,      ///< moves where it looks, and turns, also on the spot, by at most ω dt in a tick
+  kUnicycle,      ///< moves where it looks, and turns by at most ω dt in a tick, also on the spot
   kFixedWing,     ///< never slower than min_speed_mps, and turns by at most ω dt in a tick
 };
 
@@ -95,17 +96,17 @@ struct VehicleLimits {
 /// Agents that move and see alike; core/kinds.h.
 struct AgentKind {
   std::string name;
-  int count = 1;  ///< so many agents, with the numbers after those of the kinds before
+  int count = 1;  ///< number of its agents; their ids follow those of the kinds before
   double u_max_mps = 1;
   double noise_intensity = 0, noise_ceiling = 0;  ///< as in ControlLaw [m/√s]
-  double footprint_sigma_m = 0;                   ///< w; 0: its sensor sees a point
+  double footprint_sigma_m = 0;                   ///< w; 0: its sensor sees only a point
   double quality = 1;                             ///< q
-  double band_from = 0, band_to = 0;  ///< of |k|, by which it steers; to 0: without an end
+  double band_from = 0, band_to = 0;  ///< range of |k| by which it steers; band_to 0: no upper end
   std::optional<VehicleLimits> vehicle = std::nullopt;  ///< nothing: the mission's
   double speed_limit_mps = 0;                           ///< 0: the mission's
-  /// Where its agents are at the end: one for each, one for all, or none; core/station.h.
+  /// Where its agents are at the end: one place for each, one for all, or none; core/station.h.
   std::vector<Eigen::Vector3d> stations_m{};
-  double reserve_s = 0;  ///< so long before the end
+  double reserve_s = 0;  ///< time before the end at which they are there
 };
 
 struct Mission {
@@ -123,7 +124,7 @@ struct Mission {
   double forget_silent_after_s = 0;  ///< wall time; 0: a silent agent's coverage counts for ever
   double goal_ergodic_metric = 0;    ///< the goal for φ²; 0: none
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]
-  double radio_range_m = 0;          ///< how far agents hear each other; 0: everywhere
+  double radio_range_m = 0;          ///< range within which agents receive each other; 0: unlimited
   double speed_limit_mps = 0;        ///< of vehicles whose kind has none of its own; 0: none
   Rings walls;                       ///< solid: where an odd number of rings is around
   double wall_clearance_m = 0;       ///< how far bodies keep from them
@@ -134,7 +135,8 @@ struct Mission {
       true;  ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
 
-/// The same mission with the cosines (2) as its basis, to judge by them what flies by other modes.
+/// The same mission with the cosines (2) as its basis. It judges by cosines a team that steers by
+/// other modes.
 Mission in_cosines(Mission mission);
 
 /// `v_mps` bit for bit, or a vector of length `limit_mps` in its direction. @pre limit_mps > 0
@@ -151,14 +153,15 @@ inline Tick longest_period_ticks(const Timing& timing) {
   return Tick{timing.broadcast_period_ticks} * timing.high_mode_period_factor;
 }
 
-/// The first tick after `tick` at which agent `id` broadcasts a block: the planned agents take
-/// turns within the period, and with blocks of high modes within its multiple. One that will rest
-/// (core/station.h) says all once more at its last tick before, and then nothing till the end.
+/// The first tick after `tick` at which agent `id` broadcasts a block. The planned agents take
+/// turns within the period, and with blocks of high modes within its multiple. An agent that will
+/// rest (core/station.h) sends all blocks once more at its last tick before, and then nothing till
+/// the end.
 Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block = 0);
 
 /// The start of agent `id`: as planned, or beyond the plan drawn from the seed, outside all walls.
 Eigen::Vector3d start_of(const Mission& mission, AgentId id);
-/// A draw: uniform in the domain.
+/// A random place, uniform in the domain.
 Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id, int attempt = 0);
 
 }  // namespace ergocast

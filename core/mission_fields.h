@@ -22,17 +22,17 @@ namespace ergocast {
 /// The words of an enumeration in scenario.proto, in the order of its values in core/mission.h.
 using Words = std::initializer_list<const char*>;
 
-/// The kinds of fields: number in the plan, name, value. A visitor derives from this, which ignores
-/// all, and hides what it uses.
+/// The kinds of fields: number in the plan, name, value. A visitor derives from this class, which
+/// ignores every field, and hides the functions that it uses.
 struct FieldVisitor {
-  /// Unless the last argument holds, the number is 0 and in no scenario.
+  /// If the last argument is false, the number is 0 and in no scenario.
   void number(int, const char*, auto&, const Limits&, bool = true) {}
-  /// Where the number is the last argument, plans and texts do not say it.
+  /// If the number equals the last argument, plans and texts omit it.
   void number_unless(int, const char*, auto&, const Limits&, double) {}
-  /// A number along z; in a plane it is the last argument and in no scenario.
+  /// A number along z. In a plane it equals the last argument and is in no scenario.
   void height(int, const char*, auto&, const Limits&, double) {}
   void flag(int, const char*, auto&) {}
-  /// Unless the last argument holds, it is its first word, and a text does not say it.
+  /// If the last argument is false, the choice is its first word, and a text omits it.
   void choice(int, const char*, auto&, Words, bool = true) {}
   void seed(int, const char*, auto&) {}
   void name(int, const char*, auto&) {}
@@ -41,7 +41,7 @@ struct FieldVisitor {
   void duration(int, auto&) {}     ///< Timing::tick_count, which follows from a duration
   void target(int, auto&) {}       ///< μ: agents receive it, so only one processor rounds it
   void starts(int, int, auto&) {}  ///< x and y of each; z
-  void stations(int, int, const char*, auto&) {}  ///< as starts(), of a kind; may be none
+  void stations(int, int, const char*, auto&) {}  ///< as starts(), for a kind; may be empty
   void kinds(int, const char*, auto&) {}          ///< each as a part of its own
   void kind_name(int, const char*, auto&) {}
   void own_vehicle(int, const char*, auto&) {}  ///< a part that may be absent
@@ -156,7 +156,7 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.part(7, "law", m.law);
   io.part(8, "time", m.timing);
   io.starts(9, 17, m.starts_m);
-  // The greatest number, and never 0: a truncated plan lacks it.
+  // The greatest field number, and its value is never 0: a truncated plan lacks it.
   io.number(100, "agents.quorum", m.quorum, limits::kTeam);
   io.number(10, "agents.forget_silent_after_s", m.forget_silent_after_s, limits::between(0, 1e6));
   io.flag(15, "agents.dead_reckoning", m.dead_reckoning);

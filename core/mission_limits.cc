@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds a mission against its limits, field by field.
+// Checks a mission against its limits, field by field.
 #include "core/mission_limits.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ bool is_place(const Eigen::Vector3d& x_m) {
          limits::kCoordinate_m.contain(x_m.z());
 }
 
-/// Holds each field by itself.
+/// Checks each field by itself.
 class EachWithinLimits : public FieldVisitor {
  public:
   bool ok = true;
@@ -58,7 +58,7 @@ class EachWithinLimits : public FieldVisitor {
   }
 };
 
-/// Of a plane the height is 0.
+/// A plane has the height 0.
 bool fits(const Box& domain) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(std::abs(domain.origin_m[axis]) <= limits::kMaxOriginPerSize * domain.size_m[axis]))
@@ -67,7 +67,7 @@ bool fits(const Box& domain) {
   return true;
 }
 
-/// A single mode tells no two places apart, and in a plane there is one along z.
+/// A single mode cannot distinguish two places, and a plane has one mode along z.
 bool fit_together(const Basis& basis, const Box& domain) {
   return basis.mode_count() >= 2 && basis.mode_count() <= kMaxModes &&
          (basis.planar() || !domain.planar());
@@ -85,7 +85,7 @@ bool is_target(const Coefficients& target, const Basis& basis) {
   return target[0] == 1 && std::all_of(target.begin(), target.end(), is_coefficient);
 }
 
-/// A plan names the table, and with it has μ of the cosines, too. A blur and a band are cosines'.
+/// A plan that names a table also has μ in cosines. Footprints and bands need cosines.
 bool fits(const Basis& basis, const Mission& mission) {
   if (!basis.free_domain) return basis.table_hash == 0 && mission.cosine_target.size() == 0;
   const auto sees_points = [](const AgentKind& kind) {
@@ -109,8 +109,8 @@ bool fits(const Timing& timing) {
          (!realtime || timing.dt_s / timing.realtime_factor >= limits::kMinWallStep_s);
 }
 
-/// No step of input, noise or contraction is longer than the domain, and the input holds its own
-/// against the contraction everywhere.
+/// No step of input, noise or contraction is longer than the domain, and the input is as fast as
+/// the contraction everywhere.
 /// @pre each of them is within its own limits
 bool fit_together(const ControlLaw& law, double disturbance_intensity, const Box& domain,
                   double dt_s) {
@@ -133,7 +133,8 @@ bool fits(const VehicleLimits& vehicle) {
          (vehicle.max_turn_radps > 0) == turns && (vehicle.min_speed_mps > 0) == has_wings;
 }
 
-/// A speed limit if it or the mission relies on one, and room: to brake, or to loiter.
+/// Whether a vehicle has a speed limit if it or the mission relies on one, and room to brake or to
+/// loiter.
 bool fits(const Motion& motion, double u_max_mps, const Separation& separation) {
   const VehicleLimits& vehicle = motion.vehicle;
   const double step_m = motion.speed_limit_mps * motion.dt_s;
@@ -147,7 +148,7 @@ bool fits(const Motion& motion, double u_max_mps, const Separation& separation) 
          longest_braking_path_m(motion) <= room_m && loiter_radius_m(motion) <= room_m;
 }
 
-/// Each body can move in the domain as the mission says.
+/// Whether each body can move in the domain as the mission requires.
 bool bodies_fit(const Mission& mission) {
   if (!fits(mission.vehicle)) return false;
   for (int kind = 0; kind < std::max<int>(1, static_cast<int>(mission.kinds.size())); ++kind) {
@@ -162,7 +163,7 @@ bool bodies_fit(const Mission& mission) {
   return true;
 }
 
-/// Nobody else knows the places, and all hear each other.
+/// A lease requires that no other process knows the places, and that all agents receive each other.
 bool lease_fits(const Mission& mission) {
   if (mission.separation.lease_s == 0) return true;
   const Tick ticks = lease_ticks(mission);
@@ -171,7 +172,7 @@ bool lease_fits(const Mission& mission) {
          mission.starts_m.size() <= kMostLeasedAgents;
 }
 
-/// Everything that keeps bodies apart relies on room.
+/// Whether bodies have the room that keeping a distance needs.
 bool fits(const Separation& separation, const Mission& mission) {
   if (separation.distance_m == 0) return !separation.guard && separation.lease_s == 0;
   if (!lease_fits(mission)) return false;

@@ -39,7 +39,7 @@ inline constexpr Limits kTimeout_s = above(0, 86400);
 inline constexpr Limits kDuration_s = above(0, 1e7);
 /// Limit (Time): steps of a mission. Beyond it: the scenario is refused.
 inline constexpr double kMaxTicks = 1e8;
-/// Between two broadcasts of any block.
+/// Ticks between two broadcasts of any block.
 inline constexpr Limits kPeriod_ticks = between(1, 1000);
 /// In real time, the least wall time of a step.
 /// Limit (Time): length of a step by the wall clock in real time, at least [s]. Below it: the
@@ -66,11 +66,11 @@ bool is_name(std::string_view name);
 /// Whether `name` is such a name of at most kMaxKindNameLength characters.
 bool is_kind_name(std::string_view name);
 
-/// How long the mission lasts: tick_count · dt_s, but no more than a scenario may say [s].
+/// How long the mission lasts: tick_count · dt_s, but no more than a scenario may set [s].
 double duration_s(const Timing& timing);
 
-/// Whether `mission` is one that a scenario can say: each number within its limits, and those
-/// beside each other fit together. μ is finite, |μ| ≤ 1 but for rounding, and μ_00 = 1.
+/// Whether a scenario can describe `mission`: each number is within its limits, and related numbers
+/// fit together. μ is finite, |μ| ≤ 1 but for rounding, and μ_00 = 1.
 bool within_limits(const Mission& mission);
 
 }  // namespace ergocast

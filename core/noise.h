@@ -19,7 +19,7 @@ enum class Purpose : std::uint32_t {
   kAnswer = 6,        ///< random delays before answers
   kPush = 7,          ///< the part of an adaptive perturbation that is held for several steps
   kSide = 8,          ///< on which side a blocked body tries to pass
-  kHand = 9,          ///< on which side of a wall an agent goes that the wall holds up
+  kHand = 9,          ///< on which side an agent goes along a wall that holds it up
 };
 
 /// Two independent 64-bit words (Philox 4×32-10, Salmon et al. 2011).

@@ -55,7 +55,7 @@ Eigen::Vector3d push_in_space(double epsilon, const FieldAt& field, const Eigen:
 
 Tick push_ticks(const ControlLaw& law, double dt_s) {
   const double held_s = std::pow(law.noise_ceiling / law.u_max_mps, 2);
-  // Not for longer than any mission lasts.
+  // No longer than any mission lasts.
   return static_cast<Tick>(std::clamp(std::ceil(held_s / dt_s - 1e-9), 1.0, 1e9));
 }
 

@@ -44,8 +44,8 @@ double distance_m(const Segment& one, const Segment& other);
 struct EdgePair {
   std::size_t ring, corner, other_ring, other_corner;
 };
-/// The first pair of edges that cross or touch, but for neighbours at their common corner; those
-/// only where one goes back along the other.
+/// The first pair of edges that cross or touch. Neighbours may touch at their common corner, unless
+/// one goes back along the other.
 std::optional<EdgePair> touching_edges(const Rings& rings);
 
 /// Area of a ring that does not cross itself [m²], positive in either orientation.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Takes the step of a point that is nearest to the wanted one; or one sideways, where that is next
-// to none. Says how far apart bodies begin.
+// Takes the allowed step of a point that is nearest to the wanted one, or a sideways step if that
+// one is very short. Computes how far apart bodies begin.
 #include "core/separation.h"
 
 #include <algorithm>
@@ -16,15 +16,15 @@
 namespace ergocast {
 namespace {
 
-/// Unbroken contact of so many ticks loses no more to rounding than D' has more than D.
+/// In this many ticks of unbroken contact, rounding takes no more than D' − D.
 constexpr double kContactTicks = 1e6;
-/// The longest step, as a share of V dt: the velocity that it is made from is not cut by rounding.
+/// The longest step, as a share of V dt: rounding then does not cut its velocity.
 constexpr double kReachShare = 1 - 5e-13;
 /// A step shorter than this share of the wanted one is blocked.
 constexpr double kBlockedShare = 0.1;
-/// A blocked body tries one side for so many ticks.
+/// For how many ticks a blocked body tries one side.
 constexpr Tick kSideTicks = 15;
-/// How much of the wanted step stays in one sideways.
+/// The share of the wanted step in a sideways step.
 constexpr double kForwardShare = 0.2;
 
 /// The greatest coordinate that a place in `domain` can have.
@@ -105,8 +105,8 @@ double SeparationFilter::contact_m(AgentId one, AgentId other) const {
   return pair_of(one, other).kept_m;
 }
 
-/// What disturbance and response time add to D. A disturbance closes 2 w in a tick, and where one
-/// of the two bodies cannot move away, the other opens κ/2 of the gap that is missing.
+/// What disturbance and response time add to D. A disturbance closes 2 w in a tick. If one of the
+/// two bodies cannot move away, the other opens κ/2 of the gap that is missing.
 double SeparationFilter::margin_m(double fastest_mps) const {
   const Separation& rule = mission_.separation;
   return 4 * rule.disturbance_m / gain_ + rule.response_s * fastest_mps;
@@ -122,8 +122,8 @@ double SeparationFilter::uncertainty_m(const Mover& self, const Neighbour& other
          2 * rule.position_error_m;
 }
 
-/// Forgets all others. The domain, seen from the body, stays: a step that leaves it would be folded
-/// back at its edge, into whoever is there.
+/// Forgets all others. Only the domain, seen from the body, remains: a step out of it would be
+/// folded back at its edge, perhaps into another body.
 void SeparationFilter::begin(const Mover& self, double reach_m) {
   const Separation& rule = mission_.separation;
   const Box& domain = mission_.domain;
@@ -153,7 +153,8 @@ SafeVelocity SeparationFilter::blocked_by(const Eigen::Vector3d& wanted_m) const
   return {{0, 0, 0}, true, by, most >= 0 && by == kUnassigned};
 }
 
-/// ±1: all on one side would still block each other, so each draws its side, again and again.
+/// ±1. If all took the same side they would still block each other, so each draws its side again
+/// every kSideTicks.
 double SeparationFilter::side(const Mover& self) const {
   const RandomBits bits =
       random_words(mission_.seed, Purpose::kSide, static_cast<std::uint32_t>(self.id),
@@ -181,14 +182,14 @@ SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wa
   return safe_step(self, wanted_mps, others);
 }
 
-/// It stands, brakes as hard as it can or loiters, since `other` may be anywhere around.
+/// The body stands, brakes as hard as it can, or loiters, because `other` may be anywhere around.
 SafeVelocity SeparationFilter::stopped(const Mover& self, const Neighbour& other) const {
   return {executed(motion_of(self.id), self.velocity_mps, {0, 0, 0}), true, other.id, false, true};
 }
 
 // ---- points ----
 
-/// Across the wanted step, and a little along it.
+/// A step across the wanted one, and a little along it.
 Eigen::Vector3d SeparationFilter::sideways(const Mover& self,
                                            const Eigen::Vector3d& wanted_m) const {
   return kForwardShare * wanted_m + side(self) * Eigen::Vector3d(-wanted_m.y(), wanted_m.x(), 0);
@@ -207,7 +208,7 @@ SafeVelocity SeparationFilter::safe_step(const Mover& self, const Eigen::Vector3
   SafeVelocity safe = blocked_by(wanted_m);
   Eigen::Vector3d step_m = constraints_.nearest(wanted_m);
   const double shortest_m = kBlockedShare * length_of(wanted_m);
-  // Who faces a wall goes along it for longer, core/wall_following.h.
+  // An agent that faces a wall goes along it for longer, core/wall_following.h.
   if (length_of(step_m) < shortest_m && !safe.wall) {
     const Eigen::Vector3d beside_m = constraints_.nearest(sideways(self, wanted_m));
     const bool better = constraints_.allow(beside_m) && length_of(beside_m) > length_of(step_m);
@@ -220,14 +221,14 @@ SafeVelocity SeparationFilter::safe_step(const Mover& self, const Eigen::Vector3
 
 namespace {
 
-/// How far a body gets in so many ticks.
+/// How far a body moves in `ticks` ticks.
 double moved_m(const Mission& mission, const Motion& motion, Tick ticks) {
   const double step_m = (motion.speed_limit_mps + motion.vehicle.min_speed_mps) * motion.dt_s +
                         mission.separation.disturbance_m;
   return static_cast<double>(ticks) * step_m;
 }
 
-/// What a body adds to D where it begins. The loiter centres of two wings may lie between them.
+/// What a body adds to D at its start. The loiter centres of two fixed wings may lie between them.
 double start_margin_m(const Mission& mission, AgentId id) {
   const Motion motion = motion_of(mission, id);
   return bulge_m(motion) + 2 * loiter_radius_m(motion) +
@@ -281,7 +282,7 @@ double packing(const Mission& mission, std::size_t bodies) {
   for (AgentId id = 0; id < static_cast<AgentId>(bodies); ++id) {
     const double diameter_m = start_distance_m(mission, id, id);
     const double disc = std::numbers::pi / 4 * diameter_m * diameter_m / (size_m.x() * size_m.y());
-    // A ball is two thirds of a disc as thick as the ball is wide.
+    // The volume of a ball is two thirds of a disc that is as thick as the ball is wide.
     sum += mission.domain.planar() ? disc : disc * 2 / 3 * diameter_m / size_m.z();
   }
   return sum;

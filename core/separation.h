@@ -7,22 +7,22 @@
 //   R = V_j dt a + H dt (V_i + V_j) + e_i + e_j + w a + 2 H w
 //
 // a: age of y in ticks; H: ticks for which a command may be held; e: position error; w: what the
-// world may add to a step. It takes the step d nearest to what it wants of those with ‖d‖ ≤ V_i dt,
-// x_i + d in the domain, and for each j
+// world may add to a step. Among the steps with ‖d‖ ≤ V_i dt and x_i + d in the domain, it takes
+// the one nearest to the wanted step that satisfies, for each j,
 //
 //   u·d ≤ κ s (ρ − R − D')  for every unit vector u within asin(R/ρ) of y,  s = V_i / (V_i + V_j).
 //
-// The bound is at least 0 unless disturbance or response time ask for more. κ = 1 and D' = D but
-// for both, and for rounding. Two bodies that both do so, and are D' apart, stay D' apart: the true
-// unit vector n between them is such a u for both, so together they use at most the gap.
+// The bound is at least 0 unless disturbance or response time ask for more. Without them, and up to
+// rounding, κ = 1 and D' = D. If two bodies both do so and are D' apart, they stay D' apart: the
+// true unit vector n between them is such a u for both, so together they use at most the gap.
 //
-// Walls bound steps in the same way. They take no share, so a body may use the whole gap; the
-// nearest point of each of their edges says u. core/separation_walls.cc has the sets.
+// Walls bound steps in the same way. They do not move, so a body may use the whole gap; the nearest
+// point of each of their edges gives u. core/separation_walls.cc has the sets.
 //
-// Bodies that are no points cannot stand at once. What they keep apart is what stays of them under
-// commands of 0, core/separation_pairs.cc; D' grows by what their bodies depart from that. So each
-// of a pair may have another kind of vehicle.
-// docs/safety.md has the conditions and the proof.
+// Bodies that are no points cannot stop at once. They keep apart the set that stays in place under
+// commands of 0, core/separation_pairs.cc. D' grows by how far the bodies may be from that set. So
+// the two bodies of a pair may be different kinds of vehicles. docs/safety.md has the conditions
+// and the proof.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,13 +38,13 @@
 
 namespace ergocast {
 
-/// A body, as another one knows it. Its number says what its vehicle can do, core/vehicle.h.
+/// A body, as another one knows it. Its number determines its vehicle, core/vehicle.h.
 struct Neighbour {
   AgentId id = kUnassigned;
   Eigen::Vector3d position_m{0, 0, 0};
   double max_speed_mps = 0;               ///< above 0; its hard limit
-  Tick age_ticks = 0;                     ///< of the position; never less than it is
-  bool known = true;                      ///< false: it exists, and nobody has said where
+  Tick age_ticks = 0;                     ///< of the position; never less than the true age
+  bool known = true;                      ///< false: it exists at an unknown place
   Eigen::Vector3d velocity_mps{0, 0, 0};  ///< at the tick
 };
 
@@ -59,11 +59,11 @@ struct Mover {
 
 struct SafeVelocity {
   Eigen::Vector3d velocity_mps{0, 0, 0};
-  /// Whether a body or an edge leaves next to nothing of it: less than a tenth of what was wanted,
-  /// or of a vehicle with inertia, that it brakes, and of a fixed wing, that it loiters.
+  /// Whether a body or an edge leaves almost nothing: less than a tenth of the wanted step. A
+  /// vehicle with inertia then brakes, and a fixed wing loiters.
   bool blocked = false;
-  /// The neighbour that the wanted step would come too close to; kUnassigned: none, or a wall or an
-  /// edge of the domain.
+  /// The neighbour that the wanted step would come too close to; kUnassigned if there is none, or
+  /// if it is a wall or an edge of the domain.
   AgentId by = kUnassigned;
   /// Whether it is a wall that the wanted step would come too close to.
   bool wall = false;
@@ -73,33 +73,33 @@ struct SafeVelocity {
 
 class SeparationFilter {
  public:
-  /// Where the mission keeps no distance, only walls, edges and the vehicle's own limits count.
+  /// If the mission keeps no distance, only walls, edges and the vehicle's own limits count.
   /// @param hold_ticks  for how many ticks after its own one a command may still be executed
   SeparationFilter(const Mission& mission, Tick hold_ticks);
 
-  /// What `self` may execute of `wanted_mps`: all of it, bit for bit, if that is allowed. Of
-  /// vehicles that are no points, the velocity at the tick's end, which the vehicle can reach.
-  /// A pure function. In a lockstep mission all positions are those of `self.tick`. No call
-  /// allocates memory.
-  /// @param others  in ascending order of their numbers; an entry of `self` is passed over
+  /// The part of `wanted_mps` that `self` may execute: all of it, bit for bit, if that is allowed.
+  /// For vehicles that are no points it is the velocity at the tick's end, which the vehicle can
+  /// reach. The result depends on the arguments alone. In a lockstep mission all positions are
+  /// those of `self.tick`. No call allocates memory.
+  /// @param others  in ascending order of their numbers; an entry of `self` is ignored
   SafeVelocity safe(const Mover& self, const Eigen::Vector3d& wanted_mps,
                     std::span<const Neighbour> others);
 
-  /// How near two bodies count as in contact: their D' [m]. Of fixed wings, how near their loiter
-  /// centres.
+  /// The distance at which two bodies count as in contact: their D' [m]. For fixed wings it is the
+  /// distance of their loiter centres.
   double contact_m(AgentId one, AgentId other) const;
 
  private:
-  /// What stays of a body under commands of 0: the places [from, from + along].
+  /// The set that a body keeps under commands of 0: the places [from, from + along].
   struct HoldingSet {
     Eigen::Vector3d from_m, along_m;
   };
 
-  /// What one body needs to know of another one for their kinds alone.
+  /// What follows for two bodies from their kinds alone.
   struct Pair {
     double kept_m;    ///< D'
-    double around_m;  ///< how far what stays of them may be from both their places, added up
-    double reach_m;   ///< of the one in a tick
+    double around_m;  ///< distances of the two bodies from their holding sets, added up
+    double reach_m;   ///< how far the first can move in a tick
   };
 
   const Motion& motion_of(AgentId id) const;
@@ -138,7 +138,7 @@ class SeparationFilter {
   double hold_ticks_, gain_, rounding_m_;
   std::vector<Pair> pairs_;  // of each kind with each
   StepConstraints constraints_;
-  std::vector<AgentId> taken_;  // whose constraint has which number; kUnassigned: a wall's
+  std::vector<AgentId> taken_;             // body of each constraint; kUnassigned: a wall
   std::vector<double> kept_from_walls_m_;  // by each kind of agents
 };
 
@@ -148,44 +148,45 @@ struct Placed {
   Eigen::Vector3d position_m{0, 0, 0};
 };
 
-/// κ, the share of a gap that the two bodies beside it may close in a tick: 1, unless they follow
-/// their commands late; then min(1, dt/4T). A greater share would have them overshoot.
+/// κ, the share of a gap that two bodies may close in a tick: 1, or min(1, dt/4T) if they follow
+/// their commands late. With a greater share they would overshoot.
 double closing_gain(const Mission& mission);
 
-/// What body `id` keeps from edges and walls if it follows late: V T + 2 e; else 0 [m].
+/// The distance that body `id` keeps from edges and walls if it follows late: V T + 2 e; else 0
+/// [m].
 double late_edge_margin_m(const Mission& mission, AgentId id);
 
-/// Where body `id` may begin if the plan does not say it: room_to_begin() of its vehicle without
-/// late_edge_margin_m(), of which a quarter of the shorter side counts at most.
+/// Where body `id` may begin if the plan gives no start: room_to_begin() of its vehicle, less
+/// late_edge_margin_m() or a quarter of the shorter side, whichever is less.
 Box room_to_begin(const Mission& mission, AgentId id);
 
-/// How far apart two bodies must begin, D + 2 R and what their vehicles need: nearer ones might
-/// never move [m]. 0 where no distance is kept.
+/// How far apart two bodies must begin [m]: D + 2 R and what their vehicles need. Nearer bodies
+/// might never move. 0 where no distance is kept.
 double start_distance_m(const Mission& mission, AgentId one, AgentId other);
 
-/// The first planned body that begins too near to one before it, and the first of those; nothing if
-/// all begin start_distance_m() apart.
+/// The first planned body that begins too near to an earlier one, and the first such earlier one;
+/// nothing if all begin start_distance_m() apart.
 std::optional<std::pair<AgentId, AgentId>> too_near_at_start(const Mission& mission,
                                                              AgentId from = 0);
 
-/// Of any two of `places_m`; the greatest number if there is only one [m].
+/// The least distance of any two of `places_m` [m]; the greatest number if there is only one.
 double least_distance_m(std::span<const Eigen::Vector3d> places_m);
 
 /// The share of the domain that discs, in space balls, around the first `bodies` take up, each as
 /// wide as the start_distance_m() of two of its kind.
 double packing(const Mission& mission, std::size_t bodies);
-/// Above the first, a team blocks itself often, and above the second most of the time.
-inline constexpr double kTightPacking = 0.1;
+/// A team blocks itself often above the first packing, and most of the time above the second.
+inline constexpr double kTightPacking = 0.1, kHopelessPacking = 0.3;
 /// Limit (Scenario): share of the area that agents take up, each as wide as the distance of two
 /// starts. Beyond it: the scenario is refused.
 inline constexpr double kHopelessPacking = 0.3;
 
-/// How far from body `other` the body `newcomer` must appear among bodies that move: none of them
-/// knows of it until it has executed the commands that it holds [m].
+/// How far from body `other` the body `newcomer` must appear among moving bodies [m]. A moving body
+/// does not know of it until it has executed the commands that it holds.
 double join_distance_m(const Mission& mission, AgentId newcomer, AgentId other);
 
-/// Where agent `id` begins if the plan does not say it: drawn from the seed, as often as needed to
-/// be distance_m(mission, id, other) away from each of `others`; after kMostDraws, the place that
+/// Where agent `id` begins if the plan gives no start. Places are drawn from the seed until one is
+/// distance_m(mission, id, other) away from each of `others`. After kMostDraws it is the place that
 /// lacks least.
 Eigen::Vector3d start_beside(const Mission& mission, AgentId id, std::span<const Placed> others,
                              double (*distance_m)(const Mission&, AgentId, AgentId));
@@ -194,34 +195,34 @@ inline constexpr int kMostDraws = 1000;
 /// For how many ticks after its own one the world may execute a command.
 Tick command_hold_ticks(const Timing& timing);
 
-/// H of an agent's own filter: 0 in lockstep, and where the world holds all commands to the
-/// distance again; else command_hold_ticks(), and where bodies have no common ticks one more.
+/// H of an agent's own filter: 0 in lockstep, and where the world filters all commands again; else
+/// command_hold_ticks(), and one more where bodies have no common ticks.
 Tick unguarded_hold_ticks(const Mission& mission);
 
 /// Whether the world filters commands again, with true positions.
 bool world_guards(const Mission& mission);
 
-/// Whether agents know the places of the others from these alone, team/beacon_book.h.
+/// Whether agents know the places of others only from their beacons, team/beacon_book.h.
 bool uses_beacons(const Mission& mission);
-/// Of separation.lease_s, rounded down.
+/// separation.lease_s in ticks, rounded down.
 Tick lease_ticks(const Mission& mission);
 /// Limit (Scenario): `separation { lease_s }`, at least [steps]. Below it: the scenario is refused.
 inline constexpr Tick kLeastLeaseTicks = 5;
 /// Limit (Scenario): `separation { lease_s }`, at most [steps]. Beyond it: the scenario is refused.
 inline constexpr Tick kMostLeaseTicks = 10000;
 
-/// Whether the world, or who drives the whole team, has a reason to filter the commands of points
-/// again: it guards, or there are walls, which a held command does not know.
+/// Whether the world, or one driver of the whole team, filters the commands of points again: it
+/// guards, or there are walls, which a held command does not know.
 bool filters_again(const Mission& mission);
 
-/// Whether anybody's commands pass through a SeparationFilter.
+/// Whether the commands of any body pass through a SeparationFilter.
 bool any_filtered(const Mission& mission);
 
-/// Whether all that bodies know of each other is exact: what vehicles that are no points require.
+/// Whether bodies know each other's state exactly. Vehicles that are no points require it.
 bool sure_of_bodies(const Mission& mission);
 
-/// Whether commands of body `id` pass through a SeparationFilter at all: where a distance is kept,
-/// where there are walls, and of vehicles that are no points: no edge can turn them round.
+/// Whether commands of body `id` pass through a SeparationFilter. They do where a distance is kept,
+/// where there are walls, and for vehicles that are no points, because no edge can reflect those.
 bool filters_commands(const Mission& mission, AgentId id);
 
 }  // namespace ergocast

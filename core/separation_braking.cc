@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vehicles with inertia keep their distance by their ways to brake: both ends of the next way are
-// among the allowed steps. Braking always is: it leads along the present way.
+// Vehicles with inertia keep their distance by their braking paths: both ends of the next path are
+// among the allowed steps. Braking is always allowed, because it leads along the present path.
 #include <array>
 
 #include "core/geometry.h"
@@ -15,7 +15,7 @@ struct Turn {
   double cosine, sine;
 };
 constexpr double kRootThreeHalves = 0.86602540378443865;
-/// Ways around, each at full and at half speed: 0°, 30° … 180° off the wanted velocity.
+/// Alternatives, each at full and at half speed: 0°, 30° … 180° off the wanted velocity.
 constexpr std::array<Turn, 7> kTurns = {{{1, 0},
                                          {kRootThreeHalves, 0.5},
                                          {0.5, kRootThreeHalves},
@@ -31,7 +31,7 @@ Eigen::Vector3d turned(const Eigen::Vector3d& v, const Turn& turn, double hand) 
 
 }  // namespace
 
-/// Whether both ends of the next way are allowed, if the vehicle now goes over to `v_mps`.
+/// Whether both ends of the next braking path are allowed if the vehicle now changes to `v_mps`.
 bool SeparationFilter::allows(const Mover& self, const Eigen::Vector3d& v_mps) const {
   const Motion& motion = motion_of(self.id);
   const Eigen::Vector3d step_m = mean_velocity(motion, self.velocity_mps, v_mps) * motion.dt_s;

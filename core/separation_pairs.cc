@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What two bodies owe each other, each of whatever kind of vehicle.
+// The constraints between two bodies of any kinds of vehicles.
 //
-// Q is what stays of a body under commands of 0: a point's or a unicycle's place, the loiter centre
-// of a fixed wing, the way from x to x + s(v) of a vehicle that brakes. All bodies keep their Q at
-// least D' apart. Let n be a unit vector from one Q towards the other, and g the gap between them
-// along n, less D'. Of its next Q each takes at most its share of g:
+// Q is the set that a body keeps under commands of 0: the place of a point or a unicycle, the
+// loiter centre of a fixed wing, the path from x to x + s(v) of a vehicle that brakes. All bodies
+// keep their Q at least D' apart. Let n be a unit vector from one Q towards the other, and g the
+// gap between them along n, less D'. Each body moves its Q by at most its share of g:
 //
 //   n·z ≤ max over the present Q of n·y + share · g  for each z of the next Q.
 //
 // So the next Q are D' apart along n. A command of 0 is always allowed: then the next Q is part of
-// the present one. Both bodies find n from the same places and velocities, so they have the same
-// one. For which n there is a gap does not matter to safety; the nearest points give the widest.
+// the present one. Both bodies compute n from the same places and velocities, so they find the same
+// n. Any n with a gap is safe; the nearest points give the widest gap.
 #include <algorithm>
 #include <cmath>
 
@@ -24,12 +24,12 @@ double share_of(double value, double whole) {
   return whole > 0 ? std::clamp(value / whole, 0.0, 1.0) : 0;
 }
 
-/// Shares of V_i and V_j add up to 1.
+/// The share of `self` in V_i + V_j; the two shares add up to 1.
 double share_of(const Mover& self, const Neighbour& other) {
   return self.max_speed_mps / (self.max_speed_mps + other.max_speed_mps);
 }
 
-/// From the point of `a` to that of `b` that are nearest to each other; each has from_m and
+/// The vector between the nearest points of `a` and `b`, from `a` to `b`; each has from_m and
 /// along_m.
 Eigen::Vector3d shortest_between_m(const auto& a, const auto& b) {
   const Eigen::Vector3d apart_m = a.from_m - b.from_m;
@@ -50,7 +50,7 @@ SeparationFilter::HoldingSet SeparationFilter::holding_set_of(const Motion& moti
   return {anchor_m(motion, x_m, v_mps), braking_path_m(motion, v_mps)};
 }
 
-/// The first neighbour that may be anywhere around; null if there is none, and the constraints of
+/// The first neighbour that may be anywhere around. Null if there is none; then the constraints of
 /// all are set.
 const Neighbour* SeparationFilter::keep_from_all(const Mover& self,
                                                  std::span<const Neighbour> others) {
@@ -78,7 +78,7 @@ bool SeparationFilter::keep_from(const Mover& self, const HoldingSet& own, const
   return keep_places_apart(self, other, theirs.from_m - own.from_m);
 }
 
-/// Of two bodies that can stay in one place, the other's at `y_m` but for what is not known.
+/// For two bodies that can stay in one place. The other one is at `y_m`, up to the uncertainty.
 bool SeparationFilter::keep_places_apart(const Mover& self, const Neighbour& other,
                                          const Eigen::Vector3d& y_m) {
   const Separation& rule = mission_.separation;
@@ -90,7 +90,8 @@ bool SeparationFilter::keep_places_apart(const Mover& self, const Neighbour& oth
   return true;
 }
 
-/// Of two bodies one of which has to brake. All is known of both: sure_of_bodies().
+/// For two bodies of which at least one has to brake. The state of both is known exactly:
+/// sure_of_bodies().
 bool SeparationFilter::keep_ways_apart(const Mover& self, const Neighbour& other,
                                        const HoldingSet& own, const HoldingSet& theirs) {
   const bool first = self.id < other.id;

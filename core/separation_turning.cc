@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vehicles that turn slowly keep their distance by what stays in its place at once.
+// Vehicles that turn slowly keep a distance between the points of them that can stop at once.
 //
-// A unicycle is a point that may stand at any moment. It turns to where a point would go, and goes
-// there as far as its arc leads through the allowed steps. These contain 0 and are convex, so that
-// every step can be shortened until it is allowed.
+// A unicycle is a point that may stop at any moment. It turns to where a point would go, and moves
+// as far as its arc stays within the allowed steps. These contain 0 and are convex, so that every
+// step can be shortened until it is allowed.
 //
-// A fixed wing never stands, but its loiter centre does if it turns as tightly as it can. The
-// centre keeps its distance like a point, and r more, since the vehicle is never farther from it.
+// A fixed wing never stops, but its loiter centre does while it turns as tightly as it can. The
+// centre keeps a distance as a point does, and r more, because the vehicle is never farther from
+// it.
 #include <algorithm>
 
 #include "core/separation.h"
@@ -15,11 +16,11 @@
 namespace ergocast {
 namespace {
 
-/// So many steps lead from the wanted velocity to the tightest turn.
+/// The number of steps from the wanted velocity to the tightest turn.
 constexpr int kTighterTurns = 8;
-/// A unicycle whose way is blocked still turns: as the direction of its velocity, however small.
+/// A blocked unicycle still turns: its velocity keeps this share, which only shows the direction.
 constexpr double kLeastShare = 1e-9;
-/// What is shortened is shortened by so much more that rounding leaves it allowed.
+/// A shortened step is shortened by this factor more, so that it is allowed after rounding.
 constexpr double kShortenedShare = 1 - 1e-9;
 
 }  // namespace
@@ -29,8 +30,8 @@ SafeVelocity SeparationFilter::safe_arc(const Mover& self, const Eigen::Vector3d
   SafeVelocity safe = safe_step(self, wanted_mps, others);
   if (safe.blind) return safe;
   const Motion& motion = motion_of(self.id);
-  // What another filter has allowed stays as it is, also a turn on the spot that a point would not
-  // have made.
+  // A command that another filter has allowed is not changed, not even a turn on the spot that a
+  // point would not have made.
   const bool filtered =
       executed(motion, self.velocity_mps, wanted_mps) == wanted_mps &&
       constraints_.allow(mean_velocity(motion, self.velocity_mps, wanted_mps) * motion.dt_s);
@@ -44,7 +45,7 @@ SafeVelocity SeparationFilter::safe_arc(const Mover& self, const Eigen::Vector3d
   return safe;
 }
 
-/// How far the loiter centre moves, if the vehicle now goes over to `v_mps`.
+/// How far the loiter centre moves if the vehicle now changes to `v_mps`.
 Eigen::Vector3d SeparationFilter::center_step_m(const Mover& self,
                                                 const Eigen::Vector3d& v_mps) const {
   const Motion& motion = motion_of(self.id);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a body owes the walls, of whatever kind of vehicle.
+// The constraints that walls put on a body of any kind of vehicle.
 //
-// Q is what stays of the body under commands of 0, core/separation_pairs.cc, and E an edge of a
-// wall. Both are convex. Let n be the unit vector from Q towards E between their nearest points,
-// and g ≥ 0 what their distance has more than K, which the body keeps. It takes a step whose next
+// Q is the set that the body keeps under commands of 0, core/separation_pairs.cc, and E an edge of
+// a wall. Both are convex. The body keeps the distance K. Let n be the unit vector from Q towards E
+// between their nearest points, and g ≥ 0 their distance less K. The body takes a step whose next
 // Q' has
 //
 //   n·z ≤ max over Q of n·y + g  for each z of Q'.
 //
-// E lies beyond the plane through its nearest point, so Q' is K from it. A body that knows its
-// place but for R, or holds its command while it moves by R, knows n but for asin(R/ρ), as of a
-// neighbour.
+// E lies beyond the plane through its nearest point, so Q' is at least K away from it. If a body
+// knows its place only up to R, or moves by R while it holds its command, it knows n up to
+// asin(R/ρ), as for a neighbour.
 #include <algorithm>
 #include <cmath>
 
@@ -21,8 +21,8 @@
 namespace ergocast {
 namespace {
 
-/// The two points of a way [from, from + along] and an edge that are nearest to each other, if the
-/// two do not cross, as a vector from the first to the second.
+/// The vector between the nearest points of a way and an edge, from the way to the edge, if the two
+/// do not cross.
 Eigen::Vector2d shortest_to_m(const Segment& way, const Segment& edge) {
   const Eigen::Vector2d candidates[] = {
       edge.nearest_m(way.from_m) - way.from_m, edge.nearest_m(way.to_m) - way.to_m,
@@ -37,12 +37,13 @@ void SeparationFilter::keep_from_walls(const Mover& self, const HoldingSet& own)
   for_segments(mission_.walls, [&](const Segment& edge) { keep_from_wall(self, own, edge); });
 }
 
-/// The edges that no step reaches need no set.
+/// An edge that no step reaches needs no set.
 void SeparationFilter::keep_from_wall(const Mover& self, const HoldingSet& own,
                                       const Segment& edge) {
   const Separation& rule = mission_.separation;
   const auto kind = static_cast<std::size_t>(planned_kind(mission_, self.id));
-  // V T and e more, if it follows late; of 2 e, one is in what is not known.
+  // V T + e more if the body follows late. late_edge_margin_m() has 2 e, and one of them is already
+  // in the uncertainty.
   const double late_m =
       rule.response_s > 0 ? late_edge_margin_m(mission_, self.id) - rule.position_error_m : 0;
   const double kept_m = kept_from_walls_m_[kind] + late_m;

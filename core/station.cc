@@ -13,12 +13,12 @@
 namespace ergocast {
 namespace {
 
-/// As core/separation.h has it for what the world may add to a step.
+/// As in core/separation.h for what the world may add to a step.
 constexpr double kPushDeviations = 6;
-/// A reserve of whole ticks stays one.
+/// Tolerance with which a reserve of whole ticks is not rounded up.
 constexpr double kWholeTick = 1e-9;
 
-/// A planned agent's kind with a station, and which of the kind it is.
+/// The kind of a planned agent that has a station, and the agent's place within the kind.
 struct AtHome {
   const AgentKind* kind = nullptr;
   int place = 0;

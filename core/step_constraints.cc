@@ -68,7 +68,7 @@ StepConstraints::Excess StepConstraints::excess_of(const Kept& kept,
   return {most.height, most.u};
 }
 
-/// A quick look without a root: most sets of a crowd are far from the step.
+/// A quick test without a root: in a crowd most sets are far from the step.
 bool StepConstraints::surely_holds(const Kept& kept, const Eigen::Vector3d& step_m) {
   const auto& [axis, sine, bound_m, hard_m] = kept.set;
   if (bound_m < 0) return false;
@@ -125,7 +125,7 @@ Eigen::Vector3d StepConstraints::nearest(const Eigen::Vector3d& wanted_m) {
       worst_excess(step_m) <= kNoCommonStep * room_.reach_m ? step_m : least_excess(step_m));
 }
 
-/// As they are at least 0, each of them allows a share of every step.
+/// Hard bounds are at least 0, so each of them allows a share of every step.
 Eigen::Vector3d StepConstraints::within_hard_bounds(const Eigen::Vector3d& step_m) const {
   double share = 1;
   for (const Kept& kept : sets_) {
@@ -136,8 +136,8 @@ Eigen::Vector3d StepConstraints::within_hard_bounds(const Eigen::Vector3d& step_
   return share < 1 ? Eigen::Vector3d(share * step_m) : step_m;
 }
 
-/// Dykstra's iteration. Box and ball are the last sets of each sweep; the ball shortens towards 0,
-/// which leaves no box that contains 0, so the result is in both.
+/// Dykstra's iteration. Box and ball are the last sets of each sweep. The ball shortens a step
+/// towards 0, and the step then stays in a box that contains 0, so the result is in both.
 Eigen::Vector3d StepConstraints::alternate(const Eigen::Vector3d& wanted_m) {
   for (Kept& kept : sets_) kept.correction.setZero();
   Eigen::Vector3d step_m = wanted_m, of_box{0, 0, 0}, of_reach{0, 0, 0};
@@ -159,7 +159,7 @@ Eigen::Vector3d StepConstraints::alternate(const Eigen::Vector3d& wanted_m) {
   return within_reach(in_box(step_m));
 }
 
-/// Each set contains 0 and is convex, and so is the box.
+/// Each set contains 0 and is convex, as the box does.
 double StepConstraints::allowed_share(const Eigen::Vector3d& step_m) const {
   double share = 1;
   for (int axis = 0; axis < 3; ++axis) {

@@ -24,7 +24,7 @@ class StepConstraints {
     Eigen::Vector3d toward{1, 0, 0};  ///< a, a unit vector
     double sine = 0;                  ///< of α; 0 ≤ sine < 1
     double bound_m = 0;               ///< b; below 0 the step 0 is not allowed either
-    /// Of a wall: the b, at least 0, that holds even where the sets have no step in common.
+    /// The b of a wall, at least 0, that holds even where the sets have no step in common.
     double hard_bound_m = kNoHardBound;
   };
   /// What begin() takes: the length of the longest step, and the box.
@@ -55,7 +55,7 @@ class StepConstraints {
   /// −1: it exceeds none.
   int most_exceeded(const Eigen::Vector3d& step_m) const;
 
-  /// `wanted_m` bit for bit if it is allowed, else a step close to the nearest that is.
+  /// `wanted_m` bit for bit if it is allowed, else a step close to the nearest allowed one.
   ///
   /// Where every bound is ≥ 0, allow() holds for the result, whether or not the iteration has
   /// converged: every set contains 0, so a step that is too long is shortened. If a bound is

@@ -20,8 +20,8 @@
 #define ERGOCAST_VECTORIZED_PART inline
 #endif
 
-// Before a loop none of whose passes reads what another one writes, though the compiler cannot see
-// it.
+// Stands before a loop in which no pass reads what another one writes, although the compiler cannot
+// see it.
 #if defined(__GNUC__) && !defined(__clang__)
 #define ERGOCAST_INDEPENDENT _Pragma("GCC ivdep")
 #else

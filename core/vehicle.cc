@@ -12,9 +12,9 @@
 namespace ergocast {
 namespace {
 
-/// What is cut is cut to this share of the limit, so that rounding does not cut it again.
+/// A velocity is cut to this share of the limit, so that rounding does not cut it again.
 constexpr double kCutShare = 1 - 5e-13;
-/// Changes of velocity, and whole ticks of braking, count as what they are but for rounding.
+/// The tolerance for rounding in changes of velocity and in whole ticks of braking.
 constexpr double kRounding = 1e-9;
 /// The speed of a unicycle that stands, as a share of its limit.
 constexpr double kStandingShare = 1e-9;
@@ -52,13 +52,13 @@ double least_speed_mps(const Motion& motion) {
                                                        : motion.vehicle.min_speed_mps;
 }
 
-/// As fast as the aim is along the new heading.
+/// The velocity after a turn towards the aim: as fast as the aim's part along the new heading.
 Eigen::Vector3d turned(const Motion& motion, const Eigen::Vector3d& now_mps,
                        const Eigen::Vector3d& aim_mps) {
   const double most = motion.vehicle.max_turn_radps * motion.dt_s / 2;
   const double least_mps = least_speed_mps(motion), aim_speed_mps = length_of(aim_mps);
   const Eigen::Vector3d h = heading_of(now_mps);
-  // Of the whole angle to the aim: sin / (1 + cos) is the tangent of its half.
+  // With the whole angle to the aim, sin / (1 + cos) is the tangent of its half.
   const double aside_mps = to_the_left(h).dot(aim_mps), ahead_mps = aim_speed_mps + h.dot(aim_mps);
   const bool in_reach = ahead_mps > 0 && std::abs(aside_mps) <= most * ahead_mps * (1 + kRounding);
   if (in_reach && aim_speed_mps >= least_mps * (1 - kRounding)) return aim_mps;
@@ -69,7 +69,7 @@ Eigen::Vector3d turned(const Motion& motion, const Eigen::Vector3d& now_mps,
   return std::max(least_mps, next.dot(aim_mps)) * next;
 }
 
-/// A unicycle that stands says only where it looks.
+/// The velocity of a standing unicycle only shows where it looks.
 Eigen::Vector3d mean_of_turn(const Motion& motion, const Eigen::Vector3d& now_mps,
                              const Eigen::Vector3d& then_mps) {
   const double speed_mps = length_of(then_mps);
@@ -190,7 +190,7 @@ double longest_braking_path_m(const Motion& motion) {
 
 double bulge_m(const Motion& motion) {
   const VehicleLimits& vehicle = motion.vehicle;
-  // The anchor's acceleration: of a turn, its speed times the rate.
+  // The anchor's acceleration; in a turn it is the speed times the rate.
   const double most_mps2 =
       vehicle.max_acceleration_mps2 +
       (motion.speed_limit_mps + vehicle.min_speed_mps) * vehicle.max_turn_radps;

@@ -8,23 +8,23 @@
 // kAcceleration: the acceleration a = (v' − v)/dt is constant within the tick, ‖a‖ ≤ A, and
 //   x' = x + (v + v')/2 dt.
 // kUnicycle, kFixedWing: the vehicle looks along the unit vector h = v/‖v‖ and moves along it. Its
-//   speed s = ‖v'‖ may change at once. Within the tick it flies an arc, so that with t, the tangent
-//   of half the angle from h to h', |t| ≤ ω dt/2:
+// speed s = ‖v'‖ may change at once. Within the tick it moves along an arc. With t, the tangent of
+// half the angle from h to h', |t| ≤ ω dt/2:
 //
 //     h' = ((1 − t²) h + 2t J h)/(1 + t²),  x' = x + s dt (h + h')/2,  J: a quarter turn to the
 //     left
 //
 //   Only + − × ÷ √: the same bits on every machine. The radius s dt/2|t| is at least s/ω, the rate
 //   of turn at most ω, and the speed s·arctan(t)/t at most s.
-//   A unicycle turns on the spot. One that stands has the velocity kStandingShare V h, which says
-//   where it looks and moves it nowhere. Without any velocity it looks along x.
-//   A fixed wing flies no slower than s_min. For a command of 0 it loiters: it turns to the left as
+//   A unicycle can turn on the spot. A standing one has the velocity kStandingShare V h, which
+//   shows where it looks and does not move it. Without any velocity it looks along x.
+//   A fixed wing moves no slower than s_min. For a command of 0 it loiters: it turns to the left as
 //   tightly as it can, about its loiter centre c = x + r J h, r = s_min/ω, which then stays.
 //
 // ‖v‖ ≤ V, the vehicle's speed limit, at every moment.
 //
-// The vehicle belongs to a body, so to its number: motion_of() is the one place that says which one
-// it is. Whoever drives the body, and whatever came before, it stays the same.
+// The vehicle belongs to a body, and so to its number. Only motion_of() determines it. It does not
+// depend on the process that drives the body, nor on anything that happened before.
 #pragma once
 
 #include <Eigen/Core>
@@ -44,15 +44,15 @@ struct Motion {
   bool has_inertia() const { return vehicle.kind == VehicleKind::kAcceleration; }
 };
 
-/// Of the agents of `kind`: their own vehicle and limit, or where they have none, the scenario's.
-/// Of a kind that the mission does not have the scenario's.
+/// The motion of agents of `kind`: their own vehicle and limit, or the scenario's where they have
+/// none. A kind that the mission does not have gets the scenario's.
 Motion motion_of_kind(const Mission& mission, int kind);
 
-/// Of the body with the number `id`: that of the kind which the plan gives to it. Beyond the plan,
-/// of the first kind.
+/// The motion of the body with the number `id`: that of its planned kind, or of the first kind
+/// beyond the plan.
 Motion motion_of(const Mission& mission, AgentId id);
 
-/// Whether an agent of `kind` can drive the body `id`: of its kind, or of one that moves alike.
+/// Whether an agent of `kind` can drive the body `id`: the body's kind is the same, or moves alike.
 bool can_drive(const Mission& mission, int kind, AgentId id);
 
 /// Whether any body of the mission is no point.
@@ -62,13 +62,12 @@ bool any_but_points(const Mission& mission);
 double fastest_mps(const Mission& mission);
 
 /// The velocity that a point executes for the command `v_mps`: the command, bit for bit, or the
-/// speed limit in its direction. In a plane nothing is executed of v_z.
-/// @pre v_mps is finite.
+/// speed limit in its direction. In a plane v_z is ignored. @pre v_mps is finite.
 Eigen::Vector3d within_speed_limit(const Motion& motion, const Eigen::Vector3d& v_mps);
 
 /// The velocity at the tick's end that comes nearest to the command `wanted_mps`, for a vehicle
-/// that now has `now_mps`. A velocity that it can reach is returned bit for bit. In a plane nothing
-/// is executed of v_z.
+/// that now has `now_mps`. A velocity that it can reach is returned bit for bit. In a plane v_z is
+/// ignored.
 /// @pre both are finite
 Eigen::Vector3d executed(const Motion& motion, const Eigen::Vector3d& now_mps,
                          const Eigen::Vector3d& wanted_mps);
@@ -81,30 +80,30 @@ Eigen::Vector3d mean_velocity(const Motion& motion, const Eigen::Vector3d& now_m
 /// domain.
 Eigen::Vector3d first_velocity(const Motion& motion, const Eigen::Vector3d& x_m);
 
-/// Where vehicles may begin: the domain, of fixed wings without its edges, r wide.
+/// Where vehicles may begin: the domain; for fixed wings without a margin of r at its edges.
 Box room_to_begin(const Motion& motion);
 
-/// Of a fixed wing r, else 0 [m].
+/// r for a fixed wing, else 0 [m].
 double loiter_radius_m(const Motion& motion);
 
-/// What stays in its place under commands of 0, at once: the loiter centre of a fixed wing, else
-/// the vehicle's own place. One with inertia needs its braking path more.
+/// The anchor: the point that stops at once under commands of 0. It is the loiter centre of a fixed
+/// wing, else the vehicle's place. A vehicle with inertia also needs its braking path.
 Eigen::Vector3d anchor_m(const Motion& motion, const Eigen::Vector3d& x_m,
                          const Eigen::Vector3d& v_mps);
 
-/// How far the anchor of a vehicle with speed limit `max_speed_mps` gets in a tick, at most; of one
-/// with inertia the end of its braking path [m].
+/// How far the anchor of a vehicle with speed limit `max_speed_mps` moves in a tick, at most [m].
+/// With inertia it is the end of the braking path.
 double reach_m(const Motion& motion, double max_speed_mps);
 
-/// From where a vehicle with inertia is to where it stands if it brakes as evenly as A allows, in k
-/// whole ticks: ½ v dt k. Commands of 0 bring it to a stop on this way. Of others 0.
+/// The path of a vehicle with inertia until it stands, if it brakes as evenly as A allows in k
+/// whole ticks: ½ v dt k. Commands of 0 stop it on this path. 0 for other vehicles.
 Eigen::Vector3d braking_path_m(const Motion& motion, const Eigen::Vector3d& v_mps);
 
 /// The length of the longest braking path, at the speed limit [m].
 double longest_braking_path_m(const Motion& motion);
 
-/// By how much the path of the anchor within a tick departs from the straight and even way between
-/// its ends, at most [m].
+/// By how much the anchor within a tick is away from a straight, even motion between its two ends,
+/// at most [m].
 double bulge_m(const Motion& motion);
 
 }  // namespace ergocast

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Looks back once in a window, and finds the way along the nearest wall that no other one ends.
+// Looks back once in a window, and finds the way along the nearest wall that no other wall ends.
 #include "core/wall_following.h"
 
 #include <algorithm>
@@ -14,9 +14,9 @@
 namespace ergocast {
 namespace {
 
-/// Of the wanted way: who gets less far is held up.
+/// An agent is held up if it gets less far than this share of the wanted way.
 constexpr double kHeldUpShare = 0.2;
-/// So near, as a multiple of the longest step, a wall is at hand.
+/// The distance within which a wall is at hand, as a multiple of the longest step.
 constexpr double kAtHandSteps = 2;
 constexpr double kMemory_s = 30;
 
@@ -78,8 +78,8 @@ Eigen::Vector3d WallFollower::aim(Tick tick, const Eigen::Vector3d& x_m,
   return std::min(length_of(wanted_mps), limit_mps_) * on_ground(way);
 }
 
-/// Of the walls at hand the one along which no other one is in the way; else of the nearest. Off
-/// the wall, as behind a corner, a little towards it.
+/// The way along a wall at hand, if possible one along which no other wall is in the way, else the
+/// nearest. Away from the wall, as behind a corner, the way leads a little towards it.
 Eigen::Vector2d WallFollower::along_wall(const Eigen::Vector2d& x_m) const {
   const double at_hand_m = kept_m_ + kAtHandSteps * reach_m_;
   double best_m = std::numeric_limits<double>::max();
@@ -100,7 +100,7 @@ Eigen::Vector2d WallFollower::along_wall(const Eigen::Vector2d& x_m) const {
   return best;
 }
 
-/// How straight a way leads into any wall at hand: 0 to 1.
+/// How directly a way leads into any wall at hand: 0 to 1.
 double WallFollower::in_the_way(const Eigen::Vector2d& x_m, const Eigen::Vector2d& way,
                                 double at_hand_m) const {
   double most = 0;

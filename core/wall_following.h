@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A way out of dead ends: an agent that walls hold up keeps a hand on the wall for a while.
 //
-// The law pulls along straight lines, which walls can end. Every kWindow_s an agent looks back. If
-// it has got less than a fifth as far as it wanted to go, and a wall was in its way for half of the
-// time, it goes along the wall for 4 s, on a random side; the next time for 8 s, and so on up to
-// 120 s. After 30 s and twice as long a time without a dead end it begins at 4 s again. At an edge
-// of the domain it turns round.
+// The law pulls along straight lines, which walls can end. Every kWindow_s an agent looks back. It
+// is in a dead end if it has moved less than a fifth as far as it wanted, and a wall was in its way
+// for half of the time. Then it goes along the wall for 4 s, on a random side; the next time for 8
+// s, and so on up to 120 s. After 30 s and twice as long a time without a dead end it begins at 4 s
+// again. At an edge of the domain it turns round.
 //
-// This changes what is asked of the filter, core/separation.h, and not what the filter allows.
+// This changes the velocity that the filter (core/separation.h) is asked for, not what the filter
+// allows.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,8 +18,8 @@
 
 namespace ergocast {
 
-/// Whether agents of a mission do so: where there are walls, and the modes of the basis do not lead
-/// around them by themselves.
+/// Whether agents of a mission do so: there are walls, and the modes of the basis do not lead
+/// around them.
 inline bool follows_walls(const Mission& mission) {
   return !mission.walls.empty() && !mission.basis.free_domain;
 }
@@ -29,11 +30,11 @@ class WallFollower {
 
   WallFollower(const Mission& mission, AgentId id);
 
-  /// What to ask the filter for at a tick: `wanted_mps` bit for bit, or as much along the wall, no
-  /// faster than the speed limit. A
-  /// function of the seed and of the calls so far. Does not allocate.
+  /// The velocity to ask the filter for at a tick: `wanted_mps` bit for bit, or the same speed
+  /// along the wall, at most the speed limit. It depends on the seed and on earlier calls. Does not
+  /// allocate.
   Eigen::Vector3d aim(Tick tick, const Eigen::Vector3d& x_m, const Eigen::Vector3d& wanted_mps);
-  /// Whether a wall was in the way of that.
+  /// Notes whether a wall was in the way of the last aim().
   void note(bool wall) { wall_ticks_ += wall ? 1 : 0; }
 
   bool follows() const { return follows_; }
@@ -55,7 +56,7 @@ class WallFollower {
   bool follows_ = false;
   double side_ = 1;      // 1: the wall is to the left
   double length_s_ = 0;  // of the last time along a wall
-  Tick since_ = 0;       // it follows, or has ceased to
+  Tick since_ = 0;       // tick since which it follows, or has ceased to
   Tick window_ = -1;     // its first tick; −1: none yet
   Eigen::Vector3d from_m_{0, 0, 0};
   double wanted_m_ = 0;  // the way asked for in the window

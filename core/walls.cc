@@ -27,7 +27,7 @@ bool in_order(const Rings& walls) {
   return true;
 }
 
-/// Of each outline without its holes, in order.
+/// Whether the area of each outline without its holes is large enough; the rings are in_order().
 bool wide_enough(const Rings& walls, const Box& domain) {
   const double side_m = domain.size_m.maxCoeff();
   const std::vector<int> depth = depths(walls);
@@ -50,7 +50,7 @@ bool is_ring(const Ring& ring, const Box& domain) {
   return true;
 }
 
-/// Unbroken contact of so many ticks loses no more to rounding than is kept in addition.
+/// In this many ticks of unbroken contact, rounding takes no more than the added margin.
 constexpr double kContactTicks = 1e6;
 
 }  // namespace

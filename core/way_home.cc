@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Says how long the way is by a table made once, and follows it from one cell in sight to the next.
+// Looks the way's length up in a table made once, and follows it from one visible cell to the next.
 #include "core/way_home.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace ergocast {
 namespace {
 
-/// Times v/A: to turn round, and to brake at half of A.
+/// Multiple of v/A that it takes to turn round, and to brake at half of A.
 constexpr double kTurnsRound = 3;
 /// Circles of a fixed wing, which turns to one side only near its station.
 constexpr double kCircles = 3;
@@ -23,17 +23,17 @@ constexpr double kCircles = 3;
 constexpr double kCorners = 3;
 /// Standard deviations of a way that is disturbed.
 constexpr double kWayDeviations = 4;
-/// Of a clearance, what rounding may take.
+/// The share of a clearance that rounding may take.
 constexpr double kRounded = 1e-9;
 /// The cosine of the angle beyond which a vehicle turns before it goes on.
 constexpr double kAhead = 0.99;
-/// The same of a fixed wing, if it does not turn farther in a tick.
+/// The same for a fixed wing, if it does not turn farther in a tick.
 constexpr double kAheadOfWings = 0.9;
-/// The speed that says where a unicycle is to look, as a share of its own.
+/// The speed of a command that only turns a unicycle, as a share of its own speed.
 constexpr double kLookingShare = 1e-6;
 
-/// How long one that follows late takes to close up to an edge: 4 T for each e-fold, down to a
-/// tick.
+/// How long a body that follows late takes to close up to an edge: 4 T for each factor of e, down
+/// to a tick.
 double closing_s(double response_s, double dt_s) {
   if (response_s <= 0) return 0;
   const double folds = std::ceil(std::log2(std::max(1.0, 2 * response_s / dt_s)));
@@ -106,7 +106,7 @@ bool WayHome::clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) con
   return clear;
 }
 
-/// Through which of the cells around it, of those that can be seen, the way is shortest.
+/// The visible cell around `x_m` through which the way is shortest.
 std::optional<int> WayHome::first_cell(const Eigen::Vector3d& x_m) const {
   std::optional<int> best;
   double best_m = std::numeric_limits<double>::infinity();
@@ -121,7 +121,7 @@ std::optional<int> WayHome::first_cell(const Eigen::Vector3d& x_m) const {
   return best ? best : region_->free_cell_near(x_m.head<2>());
 }
 
-/// The station, or of the cells on the way to it the farthest that can be seen.
+/// The station, or the farthest visible cell on the way to it.
 Eigen::Vector3d WayHome::next_place_m(const Eigen::Vector3d& x_m) {
   if (!region_ || ways_m_.empty() || clear(x_m, home_m_.head<2>())) return home_m_;
   if (!cell_ || !clear(x_m, region_->center_m(*cell_))) cell_ = first_cell(x_m);
@@ -133,7 +133,7 @@ Eigen::Vector3d WayHome::next_place_m(const Eigen::Vector3d& x_m) {
   return on_ground(region_->center_m(*cell_));
 }
 
-/// So that it stands at the end of the way: with inertia it brakes at half of A.
+/// The speed at which it still stops at the end of the way: with inertia it brakes at half of A.
 double WayHome::speed_mps(double way_m) const {
   const double dt_s = motion_.dt_s;
   if (!motion_.has_inertia()) return std::min(speed_mps_, way_m / dt_s);
@@ -150,7 +150,8 @@ Eigen::Vector3d WayHome::velocity_mps(const Eigen::Vector3d& x_m, const Eigen::V
   return to_m * (speed_mps(way_m) / apart_m);
 }
 
-/// Who looks elsewhere turns first: on the spot, or on its loiter circle, whose centre stays.
+/// A vehicle that looks elsewhere turns first: on the spot, or on its loiter circle, whose centre
+/// stays.
 Eigen::Vector3d WayHome::turning_mps(const Eigen::Vector3d& to_m, double way_m,
                                      const Eigen::Vector3d& v_mps) const {
   const double slowest_mps = motion_.vehicle.min_speed_mps, apart_m = length_of(to_m);

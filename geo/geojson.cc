@@ -12,8 +12,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A position has three: a list of two numbers. In 16 MiB there is room for fewer, as programs
-/// write them.
+/// A position has three values: a list of two numbers. Files of 16 MiB as programs write them have
+/// fewer.
 /// Limit (Files of a scenario): values in a GeoJSON file. Beyond it: the scenario is refused.
 constexpr std::size_t kMostValues = 4'000'000;
 constexpr const char* kSimplify = "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson";

@@ -21,7 +21,7 @@ struct GeoPolygon {
 
 /// All Polygons and MultiPolygons of a FeatureCollection, a Feature or a geometry, at least one.
 /// Heights are not used. Anything else is a problem: other geometries, another reference system,
-/// rings that are not closed or have fewer than four positions, places that do not exist.
+/// rings that are not closed or have fewer than four positions, impossible coordinates.
 std::variant<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
     const std::filesystem::path& file);
 std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the readers of polygons share: the text of a file, and what is wrong with one.
+// What the readers of polygons share: the text of a file, and its problems.
 #pragma once
 
 #include <filesystem>

@@ -72,7 +72,7 @@ class SvgWalk {
     return "line " + std::to_string(1 + breaks_) + ": <" + node.name() + ">";
   }
 
-  /// Runs `read`, and says where a syntax error is.
+  /// Runs `read`, and adds the place to a syntax error.
   template <class Read>
   auto in(const pugi::xml_node& node, const char* attribute, Read read) const {
     try {
@@ -82,7 +82,7 @@ class SvgWalk {
     }
   }
 
-  /// Its size; sets where it begins.
+  /// The size of the viewBox; also sets begin_.
   Eigen::Vector2d view_box(const pugi::xml_node& root) {
     const auto box = in(root, "viewBox", svg_numbers);
     if (box.size() != 4 || !(box[2] > 0) || !(box[3] > 0)) {
@@ -153,7 +153,7 @@ class SvgWalk {
     return ring;
   }
 
-  /// Corners that the transform puts at one place are one, as is a last one that closes the ring.
+  /// Merges corners that the transform puts at one place, and a last corner that closes the ring.
   void add(const pugi::xml_node& node, const std::vector<DrawnRing>& rings,
            const Eigen::Affine2d& to_drawing) {
     DrawnShape& shape = shapes_.emplace_back();

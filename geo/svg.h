@@ -19,14 +19,14 @@ struct DrawnShape {
   std::vector<std::vector<Eigen::Vector2d>> rings;  ///< corners in order, none twice in a row
 };
 
-/// In units of the drawing's viewBox, from its lower left corner: x to the right, y up.
+/// Lengths are in units of the drawing's viewBox, from its lower left corner: x to the right, y up.
 struct Drawing {
   Eigen::Vector2d size;  ///< of the viewBox; both above 0
   std::vector<DrawnShape> shapes;
 };
 
 /// The shapes of the elements rect, polygon and path, at least one; groups and their transforms
-/// count. What has fill="none" or display="none", and text, is no shape. Anything else is a
+/// count. Text, and elements with fill="none" or display="none", are no shapes. Anything else is a
 /// problem: curves, strokes without an area, pictures, copies, numbers that are not finite.
 std::variant<Drawing, PolygonFileProblem> read_svg(const std::filesystem::path& file);
 std::variant<Drawing, PolygonFileProblem> parse_svg(std::string_view text);

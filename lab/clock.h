@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A process's own clock, as wrong as the laboratory wants it.
+// A process's own clock, with the rate and offset that the laboratory sets.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One table names every field; a seed draws how strong the faults are, and what happens when.
+// One table names every field. A seed draws how strong the faults are, and when each happens.
 #include "lab/faults.h"
 
 #include <algorithm>

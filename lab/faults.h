@@ -10,7 +10,7 @@
 
 namespace ergocast::lab {
 
-/// Probabilities are per message and link (one transmitter, one receiver, one bus) unless they say
+/// Probabilities are per message and link (one transmitter, one receiver, one bus) unless stated
 /// otherwise. Times are virtual. By default nothing goes wrong.
 struct Faults {
   double loss = 0;              ///< never arrives
@@ -18,35 +18,37 @@ struct Faults {
   double corruption = 0;        ///< arrives with bytes changed, cut off or added
   double delay_mean_s = 0;      ///< every message: exponential; the order on a link is kept
   double delay_max_s = 0;       ///< cut off there
-  double reordering = 0;        ///< held back alone, so that later ones overtake it
+  double reordering = 0;        ///< held back alone, so that later messages overtake it
   double reordering_max_s = 0;  ///< for up to so long, uniform
-  double clogging = 0;          ///< begins to hold its whole link back; then all arrive at once
+  double clogging = 0;          ///< its whole link is held back; then all messages arrive at once
   double clog_max_s = 0;        ///< for up to so long, uniform
   double replay = 0;            ///< recorded by an attacker and sent once more
   double replay_max_s = 0;      ///< up to so much later, uniform
-  double partitions_per_s = 0;  ///< the processes fall into two parts that do not hear each other
-  double partition_max_s = 0;   ///< for up to so long, uniform
-  double one_way_share = 0;     ///< of the partitions: only one part is deaf to the other
+  double partitions_per_s =
+      0;  ///< the processes fall into two parts that receive nothing from each other
+  double partition_max_s = 0;      ///< for up to so long, uniform
+  double one_way_share = 0;        ///< share of partitions in which only one part receives nothing
   double agent_crashes_per_s = 0;  ///< of the whole team
   double coordinator_crashes_per_s = 0;
   double world_crashes_per_s = 0;
   double pauses_per_s = 0;        ///< an operator pauses the mission, …
-  double pause_max_s = 0;         ///< … and lets it go on after up to so long, uniform
+  double pause_max_s = 0;         ///< … and resumes it after up to so long, uniform
   double downtime_max_s = 0;      ///< until a crashed process is started again, uniform
-  double clock_rate_error = 0;    ///< a process's clock goes by 1 ± so much, uniform
-  double clock_offset_max_s = 0;  ///< and began up to so long before, uniform
-  double swarm_bus_only = 0;      ///< above 0: a vehicle and its agent share no radio, but a wire
-  /// Of the mission's time, until all is healed; 1: nothing is, and no process has to recover.
+  double clock_rate_error = 0;    ///< a process's clock runs at a rate of 1 ± so much, uniform
+  double clock_offset_max_s = 0;  ///< and started up to so long before, uniform
+  double swarm_bus_only = 0;      ///< above 0: a vehicle and its agent share a wire, not a radio
+  /// The share of the mission's time after which all is healed. 1: nothing is healed, and no
+  /// process has to recover.
   double lasting_share = 0.6;
 };
 
-/// Whether nothing happens between the world and the logger, nor to them.
+/// Whether no fault affects the world, the logger, or messages between them.
 bool spares_the_record(const Faults& faults);
 
 /// Whether faults of messages alone may keep an answer away for as long as `patience_s`.
 bool hinders(const Faults& faults, double patience_s);
 
-/// One member of Faults as people write it.
+/// One member of Faults, by the name that people write.
 struct FaultField {
   const char* name;
   double Faults::*value;
@@ -54,15 +56,15 @@ struct FaultField {
 };
 std::span<const FaultField> fault_fields();
 
-/// "Swarm testing": which kinds of fault are on, each with probability 1/2, and how strong follow
-/// from the seed. All on at once would hide what happens when only one is.
+/// "Swarm testing": the seed determines which kinds of fault are on, each with probability 1/2, and
+/// how strong they are. All at once would hide what happens with only one.
 Faults drawn(std::uint64_t seed);
 
-/// Something that happens at a moment, whatever messages are sent.
+/// A fault that happens at a given moment, independently of messages.
 struct FaultEvent {
   enum class Kind { kSplit, kOneWayCut, kAgentCrash, kCoordinatorCrash, kWorldCrash, kPause };
   Kind kind;
-  double at_s;  ///< after the mission's begin
+  double at_s;  ///< after the start of the mission
   double lasts_s;
   std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash: which agent
 };

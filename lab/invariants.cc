@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said and done: messages, refusals, ends.
+// Checks what processes send and do: messages, refusals, ends.
 #include "lab/invariants.h"
 
 #include <algorithm>
@@ -23,14 +23,15 @@ std::string to_string(const Violation& v) {
 }
 
 double recovery_bound_s(const Mission& mission, const Faults& faults) {
-  // A restarted coordinator asks (0.25 s), an agent answers (0.05 s, but 0.5 s after its last
-  // answer), other opinions are awaited (0.2 s).
+  // A restarted coordinator asks (0.25 s), an agent answers (0.05 s, or 0.5 s after its last
+  // answer), and the coordinator waits for other answers (0.2 s).
   constexpr double kTakeover_s = 1;
-  // It takes all members for living; then a predecessor must be silent for 3 s, its successor says
-  // hello (0.25 s) and hears MISSION (0.1 s). A restarted world needs as long: it waits 1.5 s and
-  // 0.55 s for the mission and 2 s for commands.
+  // It takes all members for running. Then a predecessor must be silent for 3 s, and its successor
+  // sends HELLO (0.25 s) and receives MISSION (0.1 s). A restarted world needs as long: it waits
+  // 1.5 s and 0.55 s for the mission and 2 s for commands.
   constexpr double kAdmission_s = 4.05;
-  // Who was forgotten, it may be a moment before, is remembered with as much notice in real time.
+  // In real time an agent that was forgotten, perhaps a moment ago, is remembered with as much
+  // notice.
   const double notices_s = mission.forget_silent_after_s > 0 ? 4 : 0;
   const Timing& timing = mission.timing;
   const double period_s =
@@ -71,7 +72,7 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
   if (const auto* part = std::get_if<MissionPart>(&outgoing.message))
     return void(truth_.receive(*part));
   if (const auto* command = std::get_if<Command>(&outgoing.message)) {
-    // What is said again was judged before.
+    // A repeated command was checked before.
     const bool answers = speaker != nullptr && command->header.tick == speaker->answered;
     return answers ? check(t_s, *command, *speaker) : void();
   }
@@ -97,7 +98,8 @@ void Invariants::check(double t_s, const WorldState& world) {
   }
 }
 
-/// By the true places, once all of a tick's are known. Starts may be just so far apart.
+/// Uses the true places, once all places of a tick are known. Starts may be exactly at the least
+/// distance.
 void Invariants::check_distances(double t_s, const WorldState& world) {
   bodies_.see(world);
   if (!bodies_.complete(world.header.tick)) return;
@@ -137,7 +139,7 @@ void Invariants::check(double t_s, const Command& command, const TableView& spea
   const Eigen::Vector3d xi = normal_in(mission_.domain, mission_.seed, Purpose::kPerturbation,
                                        sender, static_cast<std::uint64_t>(speaker.counted));
   const Eigen::Vector3d noise_mps = law.noise_intensity / root_dt * xi;
-  // What an adaptive law may add to that, in a direction that only the agent knows.
+  // An adaptive law may add this much, in a direction that only the agent knows.
   double push_mps = 0;
   if (law.perturbation == Perturbation::kAdaptive) {
     const double dt_s = mission_.timing.dt_s;

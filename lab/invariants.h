@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What must hold in every mission, whatever happens to its messages and processes.
 //
-// Safety holds always; liveness within a bounded time after everything has been healed. Nothing
-// here trusts the code it checks: every bound is computed again from the equations.
+// Safety holds always. Liveness holds within a bounded time after everything has been healed. This
+// code does not trust the code that it checks: it computes every bound again from the equations.
 #pragma once
 
 #include <array>
@@ -68,7 +68,7 @@ enum class Invariant : std::uint8_t {
   kGoalReached,
   kCount,
 };
-/// All of them, by number, with the names that reports call them by.
+/// All invariants by number, with their names in reports.
 inline constexpr std::array<std::pair<Invariant, std::string_view>,
                             static_cast<std::size_t>(Invariant::kCount)>
     kInvariants{{
@@ -121,16 +121,16 @@ static_assert(all_are_named(), "every invariant has a name, at its place");
 struct Violation {
   Invariant invariant;
   std::string who;
-  double t_s = 0;  ///< virtual, since the mission's begin
+  double t_s = 0;  ///< virtual, since the start of the mission
   std::string numbers;
 };
-/// "<invariant>: <who> at t = <t_s> s: <numbers>".
+/// Formatted as `<invariant>: <who> at t = <t_s> s: <numbers>`.
 std::string to_string(const Violation& violation);
 
-/// Until a row is known a hop further: two digests that name it, a round of digests apart, the
-/// first up to a round after an admission; the answer waits up to 0.25 s. Whoever learns a row late
-/// passes it on late: as long again.
-/// @param entries  of the roster
+/// The time until a row is known one hop further. Two digests must name it, a round of digests
+/// apart, the first up to a round after an admission; the answer waits up to 0.25 s. An agent that
+/// learns a row late passes it on late, which takes as long again.
+/// @param entries  number of entries of the roster
 constexpr double hop_s(std::size_t entries) {
   return 2 * (2 * AntiEntropy::round_s(entries) + 0.25);
 }
@@ -143,71 +143,71 @@ class Invariants {
  public:
   explicit Invariants(const Mission& mission);
 
-  /// A new (agent, incarnation) begins to live.
+  /// A new (agent, incarnation) has started.
   void started(const Author& author);
 
   // ---- safety ----
 
-  /// A process sends: positions in the domain, in no wall, and as far from each as the mission
-  /// says; bodies as far apart as it says, in each tick; |u| ≤ u_max, or |v| ≤ the speed limit
-  /// where a distance is kept, or on the way home; in lockstep agents with a station are there from
-  /// the reserve before the end on, or where others may be in the way, at the last tick; |S| ≤ S_00
-  /// = steps · dt; while the mission is paused nobody moves once he has braked; a digest that says
-  /// what its sender holds; at most one answer for each entry of a digest heard.
+  /// A process has sent a message. Checked are: positions are in the domain, in no wall, and as far
+  /// from each wall as the mission requires; bodies are as far apart as required, in each tick; |u|
+  /// ≤ u_max, or |v| ≤ the speed limit where a distance is kept or on the way home; in lockstep
+  /// agents with a station are there from the reserve before the end on, or where others may be in
+  /// the way, at the last tick; |S| ≤ S_00 = steps · dt; while the mission is paused no body moves
+  /// once it has braked; a digest matches what its sender holds; each entry of a received digest
+  /// gets at most one answer.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
-  /// An agent has heard a digest.
+  /// An agent has received a digest.
   void digest_received(const Author& listener, const Digest& digest);
-  /// Bytes were read: whole ones are accepted, damaged ones refused.
+  /// Bytes were decoded: whole messages are accepted, damaged ones refused.
   void decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged);
-  /// A message has reached an agent, which now knows what `listener` says; no c_k is asked for. To
-  /// be called for each MISSION, as one of them admits the agent and names its first tick.
+  /// A message has reached an agent, whose knowledge is now `listener`; its c_k is not read. Call
+  /// it for each MISSION, because one of them admits the agent and names its first tick.
   void received(const TableView& listener, const Message& message);
-  /// An agent has begun a tick, `holder.answered`, which it need not have answered yet: it has more
-  /// steps than before if the tick counts, and no more if not. To be called for each, before it
-  /// hears anything else.
+  /// An agent has begun the tick `holder.answered`, and may not have answered it yet. It has more
+  /// steps than before if the tick counts, and no more if not. Call it for each tick, before the
+  /// agent receives anything else.
   void began(double t_s, const TableView& holder);
-  /// An agent has answered a tick: what it holds never shrinks, no author's steps exceed the ticks
-  /// there were that count, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1, and ĉ_k, where its
-  /// law looks ahead, follows by the equation of core/forecast.h from what has reached it
-  /// (lab/shadow.h).
+  /// An agent has answered a tick. What it holds never shrinks; no author's steps exceed the ticks
+  /// so far that count; c_k is Σ S / Σ elapsed of what it holds; c_00 = 1. Where its law looks
+  /// ahead, ĉ_k follows by the equation of core/forecast.h from what has reached it (lab/shadow.h).
   void answered(double t_s, const TableView& holder);
-  /// An agent's core has refused so many messages, of which none was damaged.
+  /// An agent's core has refused `counts` messages, none of them damaged.
   void refused(double t_s, const Author& who, const RefusalCounts& counts);
   /// An agent has ended by itself.
   void finished(double t_s, const Author& who, const std::string& reason, bool mission_over);
   /// A process wants to be woken at a time that has passed: it would run at full load.
   void wakeup(double t_s, const std::string& who, bool in_the_past);
-  /// The world goes on at `tick` without the logger.
-  /// @param acknowledged  the newest tick of which an acknowledgement has reached it
+  /// The world continues at `tick` without the logger.
+  /// @param acknowledged  the newest tick whose acknowledgement has reached it
   void gave_up_logger(double t_s, std::optional<Tick> acknowledged, Tick tick);
 
   // ---- liveness ----
 
-  /// To be called from recovery_bound_s() after healing on. Every living agent holds the rows that
-  /// any holds, of authors that have left the newest; |c − c_true|_∞ ≤ 2 δ / (T − δ), where δ sums
-  /// what the authors that still speak may not have said or delivered yet. Between two calls no
+  /// Call it from recovery_bound_s() after healing on. Every running agent holds each row that any
+  /// agent holds, and the newest version if its author has left. |c − c_true|_∞ ≤ 2 δ / (T − δ),
+  /// where δ sums what active authors may not have sent or delivered yet. Between two calls no
   /// agent repeats anything.
   ///
-  /// With a radio range an agent learns what another has, through others too, only where each on
-  /// the way has heard the next for long enough: then it holds what the other held that long ago. δ
-  /// is what it lacks, and repeats may go on.
+  /// With a radio range an agent learns another's rows, also through others, only if each on the
+  /// way has received from the next for long enough. Then it holds what the other held that long
+  /// ago. δ is what it lacks, and repeats may go on.
   void recovered(double t_s, const std::vector<TableView>& living);
-  /// To be called with it: what the coordinator thinks of every running process.
+  /// Call it together with recovered(): checks what the coordinator knows of every running process.
   void coordinated(double t_s, const Coordinator& coordinator, Instant now,
                    const std::vector<TableView>& living);
-  /// All processes have ended, or the time is up.
+  /// All processes have ended, or the time is over.
   /// @param excused  ticks whose states may have been kept from the logger
   void ended(double t_s, const std::string& still_running, const std::string& failure,
              const RunFacts& facts, Tick excused);
 
   const std::optional<Violation>& violation() const { return violation_; }
-  /// Only measures how far these are from c_true, for largest_view_error().
+  /// Only measures how far these views are from c_true, for largest_view_error().
   void compare_views(const std::vector<TableView>& living);
   /// max_a √(Σ λ (c_a − c_true)²) of the last recovered() or compare_views().
   double largest_view_error() const { return largest_view_error_; }
   Tick last_tick() const { return last_tick_; }
-  /// Every author there has been.
+  /// Every author so far.
   const std::vector<Author>& authors() const { return authors_; }
 
  private:
@@ -251,14 +251,16 @@ class Invariants {
   std::optional<Violation> violation_;
   std::vector<Author> authors_;
   std::map<AgentId, int> incarnation_count_;
-  MissionFollower truth_;                                  // of all that was said of the mission
+  MissionFollower truth_;                                  // follows all messages about the mission
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, std::int64_t> own_steps_;               // after the tick begun last
-  std::map<Author, Shadow> shadows_;  // of each life of an agent, from its first admission on
+  std::map<Author, Shadow>
+      shadows_;  // of each incarnation of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
-  std::map<AgentId, Tick> home_from_;               // where agents have stations
-  Bodies bodies_;                                   // where a distance is kept
-  std::map<AgentId, Eigen::Vector3d> positions_m_;  // with a radio range only, as what follows
+  std::map<AgentId, Tick> home_from_;  // where agents have stations
+  Bodies bodies_;                      // where a distance is kept
+  std::map<AgentId, Eigen::Vector3d>
+      positions_m_;  // only with a radio range, like the next members
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first
   struct Memory {
     double t_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where agents are that have a station, computed again.
+// Checks the places of agents that have a station, and computes them again.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -39,7 +39,7 @@ double tolerated_m(const Mission& mission, AgentId id) {
 
 }  // namespace
 
-/// In lockstep, where no tick is lost, of the agents that the mission began with.
+/// Checks the agents that the mission began with, in lockstep, where no tick is lost.
 void Invariants::check_home(double t_s, const WorldState& world) {
   const Timing& timing = mission_.timing;
   if (home_from_.empty() || timing.pace == Pace::kRealtime ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known: what agents hold, compute from it and learn from each other.
+// Checks what agents hold, what they compute from it, and what they learn from each other.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace ergocast::lab {
 namespace {
 
-/// No multiple of a usual period, so that blocks of every age are met.
+/// Not a multiple of a usual period, so that blocks of every age are checked.
 constexpr Tick kTicksBetweenAverages = 11;
 
 }  // namespace
@@ -34,8 +34,8 @@ void Invariants::answered(double t_s, const TableView& holder) {
   const bool looks_ahead =
       mission_.law.anticipation > 0 && holder.foreseen != nullptr && !holder.held;
   if (looks_ahead) shadows_.at(holder.self).answer(mission_, holder);
-  // Costs as much as the control step itself: now and then is enough to find what is wrong for
-  // good.
+  // This costs as much as the control step itself. Every few ticks is enough to find a lasting
+  // error.
   if (holder.answered % kTicksBetweenAverages != 0) return;
   check_average(t_s, holder);
   if (looks_ahead) check_forecast(t_s, holder);
@@ -54,7 +54,7 @@ void Invariants::check_steps(double t_s, const TableView& holder) {
     before = steps;
     steps_of_id[author.agent] += steps;
   }
-  // In real time who does not know that the mission is paused covers on.
+  // In real time an agent that does not know of a pause yet continues to sample.
   const bool exact = mission_.timing.pace == Pace::kLockstep;
   const Tick counted = counted_ticks(truth_.holds(), last_tick_ + 1);
   const Tick unknown = exact ? 0 : last_tick_ + 1 - counted;
@@ -75,8 +75,8 @@ void Invariants::check_average(double t_s, const TableView& holder) {
     violate(t_s, Invariant::kAverageOfWhatIsHeld, name_of(holder.self),
             text("differs by ", error, " at tick ", holder.answered));
   }
-  // Before its own first tick, where a restarted world may stand, and while the mission is paused,
-  // a newcomer covers nothing itself.
+  // A newcomer covers nothing itself while the mission is paused, nor before its own first tick, to
+  // which a restarted world may go back.
   if (holder.held) return;
   const auto shadow = shadows_.find(holder.self);
   if (shadow != shadows_.end() && holder.counted < shadow->second.active_from()) return;
@@ -117,13 +117,13 @@ std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
   return best;
 }
 
-/// By the plan: in the laboratory nobody brings a kind of his own.
+/// The plan decides: in the laboratory no agent brings a kind of its own.
 double Invariants::quality_of(const Author& author) const {
   if (mission_.kinds.empty()) return 1;
   return mission_.kinds[static_cast<std::size_t>(planned_kind(mission_, author.agent))].quality;
 }
 
-/// (4) from the blocks alone, weighted by quality and by the time each covers.
+/// (4) from the blocks alone, weighted by quality and by the time that each covers.
 Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& rows) const {
   Coefficients c = Coefficients::Zero(mission_.basis.mode_count());
   for (std::size_t b = 0; b < wire_modes_.size(); ++b) {
@@ -192,16 +192,16 @@ void Invariants::check_view(double t_s, const TableView& holder,
       continue;
     }
     if (entry == nullptr || entry->active_until >= 0) continue;
-    // Two periods until a digest complains, two ticks on the way.
+    // Two periods until a digest asks for it, and two ticks on the way.
     const Tick period = holder.table->announced_period(author);
     stale_s += static_cast<double>(2 * period + 2) * weight_s;
   }
-  // Of what it holds now: an agent whose ticks do not come computes no c_k.
+  // This is c_k of what it holds now, because an agent without ticks computes none.
   Coefficients c = Coefficients::Zero(mission_.basis.mode_count());
   holder.table->average(c);
   const double error = (c - c_true).cwiseAbs().maxCoeff();
   if (covered_s <= stale_s) return;
-  // Of each row one holder may have the author's own sums, another what has travelled.
+  // One holder may have the author's own sums of a row, and another the sums that have travelled.
   const double most =
       2 * stale_s / (covered_s - stale_s) + 2 * rounding_of(mission_.timing.contribution_encoding);
   if (error <= most) return;
@@ -218,7 +218,7 @@ void Invariants::check_rows(double t_s, const TableView& holder,
           return a.steps < b.steps;
         })->steps;
     const RosterEntry* entry = entry_of(*holder.roster, author);
-    // The coordinator died before it told any other process of this admission: no member.
+    // The coordinator stopped before it sent this admission to any other process: no member.
     if (entry == nullptr) continue;
     const bool speaks = entry->active_until < 0;
     const Tick period = holder.table->announced_period(author);
@@ -254,7 +254,8 @@ void Invariants::check_neighbours(double t_s, const std::vector<TableView>& livi
   }
 }
 
-/// Whom `self` has heard for so long without a break, through at most so many others less one.
+/// The authors from which `self` has received for `heard_for_s` without a break, over at most
+/// `hops` hops.
 std::set<Author> Invariants::within(int hops, const Author& self, double heard_for_s, double t_s,
                                     const std::vector<TableView>& living) const {
   const auto receives = [&](const Author& a, const Author& b) {
@@ -277,7 +278,7 @@ void Invariants::check_learned(double t_s, const TableView& holder, const Author
   for (const auto& [author, then] : held_then) {
     const RosterEntry* entry = entry_of(*holder.roster, author);
     if (entry == nullptr || author == holder.self) continue;
-    // No agent repeats what a running author will soon send itself: a slack for each on the way.
+    // No agent repeats what a running author will soon send itself, so each hop adds a slack.
     const Tick period = holder.table->announced_period(author);
     const std::int64_t tolerated = entry->active_until < 0 ? hops * (2 * period + 2) : 0;
     const std::int64_t held = steps_of(*holder.table, author);

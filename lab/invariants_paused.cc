@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds while the mission is paused, and only then: nothing counts, and who has braked stands
-// or loiters.
+// Checks what holds only while the mission is paused: nothing counts, and a vehicle that has braked
+// stands or loiters.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -14,16 +14,16 @@
 namespace ergocast::lab {
 namespace {
 
-/// A unicycle that stands says where it looks by a velocity of 1e-9 of its limit.
+/// A standing unicycle shows where it looks by a velocity of 1e-9 of its limit.
 constexpr double kStanding = 1e-8;
 
-/// Whether bodies may be told to move apart although all stand.
+/// Whether bodies may be commanded to move apart although all stand.
 bool may_give_way(const Separation& separation) {
   return separation.position_error_m > 0 || separation.disturbance_m > 0 ||
          separation.response_s > 0;
 }
 
-/// So many ticks after a command of 0 a vehicle stands, or flies as slowly as it can.
+/// The number of ticks after a command of 0 until a vehicle stands, or moves as slowly as it can.
 Tick braking_ticks(const Motion& motion, double dt_s) {
   if (motion.vehicle.kind != VehicleKind::kAcceleration) return 1;
   const double most_mps = motion.vehicle.max_acceleration_mps2 * dt_s;
@@ -41,7 +41,8 @@ void Invariants::check_paused(double t_s, const Command& command) {
           text("|v| = ", command.velocity_mps.norm(), " m/s at tick ", command.header.tick));
 }
 
-/// In lockstep everybody knows it. In real time commands are held, and some may not know it yet.
+/// In lockstep all agents know of the pause. In real time commands are held, and some agents may
+/// not know of it yet.
 void Invariants::check_paused(double t_s, const WorldState& world) {
   const Tick tick = world.header.tick;
   if (mission_.timing.pace == Pace::kRealtime || may_give_way(mission_.separation)) return;
@@ -67,7 +68,7 @@ void Invariants::began(double t_s, const TableView& holder) {
   const auto [last, is_first] = own_steps_.try_emplace(holder.self, steps);
   const std::int64_t before = std::exchange(last->second, steps);
   if (is_first) return;
-  // In lockstep all that was said of the mission decides, in real time what the agent knows of it.
+  // In lockstep all messages about the mission decide; in real time, what the agent knows of them.
   const bool exact = mission_.timing.pace == Pace::kLockstep;
   const std::span<const Hold> holds = exact ? std::span<const Hold>(truth_.holds()) : holder.holds;
   const bool idle = is_held(holds, holder.answered) ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where bodies are among walls, computed again.
+// Checks the places of bodies among walls, and computes distances again.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 namespace ergocast::lab {
 namespace {
 
-/// Of the longer side: what rounding may make of a clearance.
+/// The error that rounding may cause in a clearance, as a share of the longer side.
 constexpr double kRounding = 1e-9;
 
 /// How often the ray from `x_m` downwards meets the rings.
@@ -26,7 +26,8 @@ int crossings_below(const Rings& walls, const Eigen::Vector2d& x_m) {
   return count;
 }
 
-/// By the height of the triangle that `x_m` makes with an edge, or by its nearer end.
+/// The distance from the nearest edge: the height of the triangle of `x_m` and an edge, or the
+/// distance from the nearer end.
 double nearest_edge_m(const Rings& walls, const Eigen::Vector2d& x_m) {
   double least_m = std::numeric_limits<double>::max();
   for_segments(walls, [&](const Segment& edge) {
@@ -41,7 +42,7 @@ double nearest_edge_m(const Rings& walls, const Eigen::Vector2d& x_m) {
 
 }  // namespace
 
-/// By the true place. Loiter circles and ways to brake are the bodies' own affair.
+/// Checks the true place alone. Loiter circles and braking paths are not checked.
 void Invariants::check_wall(double t_s, const Vehicle& vehicle) {
   const Eigen::Vector2d x_m = vehicle.position_m.head<2>();
   const bool solid = crossings_below(mission_.walls, x_m) % 2 == 1;

@@ -9,7 +9,7 @@
 namespace ergocast::lab {
 namespace {
 
-constexpr double kOnIt = 1e-9;  // of the sides
+constexpr double kOnIt = 1e-9;  // as a share of the sides
 constexpr double kEscapedShare = 0.01;
 
 bool near(double a, double b) { return std::abs(a - b) <= kOnIt; }

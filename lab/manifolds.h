@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sets of Proposition 1 that symmetric targets make invariant, and how far off them one is.
+// The sets of Proposition 1 that symmetric targets make invariant, and the distance from them.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,11 +27,11 @@ struct Manifold {
 };
 
 /// The smallest of these sets that `x_m` lies on, up to 1e-9 of the domain's sides; none for a
-/// point in general position. Where two lines cross, the set is the point. Of a place in space it
-/// is that of x and y.
+/// point in general position. Where two lines cross, the set is the point. For a place in space
+/// only x and y count.
 std::optional<Manifold> manifold_at(const Eigen::Vector3d& x_m, const Box& domain);
 
-/// Farther off than 1 % of the shorter side counts as escaped.
+/// An agent has escaped if it is farther off than this: 1 % of the shorter side.
 double escape_distance_m(const Box& domain);
 
 }  // namespace ergocast::lab

@@ -12,7 +12,7 @@
 namespace ergocast::lab {
 namespace {
 
-/// Random streams beside those of lab/faults.cc: one for each link and question.
+/// Random streams beside those of lab/faults.cc: one for each link and purpose.
 constexpr std::uint32_t kWhether = 1U << 20, kHowLong = 2U << 20, kDamage = 3U << 20,
                         kReplay = 4U << 20;
 
@@ -46,12 +46,12 @@ int Network::send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId 
     push(now + latency_, {bus, transmitter, to, std::move(read)});
     return 0;
   }
-  NodeSet at_once;  // all whom nothing special happens to
+  NodeSet at_once;  // all nodes that the message reaches without a fault
   int corrupted = 0;
   for (NodeId node = 0; node < nodes_; ++node) {
     const auto bit = static_cast<std::size_t>(node);
     if (!to.test(bit)) continue;
-    if (node == from) {  // one's own voice does not cross the network
+    if (node == from) {  // a node's own messages do not cross the network
       at_once.set(bit);
       continue;
     }
@@ -93,7 +93,7 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
     ++counted_.replayed;
     fate.is_replayed = now + latency_ + seconds(faults_.replay_max_s * replay.y());
   }
-  // One draw for what excludes each other.
+  // One draw for faults that exclude each other.
   const double what = upper(random.first);
   if (what < faults_.loss) {
     ++counted_.lost;
@@ -138,7 +138,7 @@ Instant Network::arrival(Instant now, Link& link, std::uint32_t link_index, doub
 }
 
 void Network::push(Instant at, Delivery delivery) {
-  // Most come after all that is on its way.
+  // Most arrive after everything that is on its way.
   queue_.emplace_hint(queue_.end(), std::pair(at, pushed_++), std::move(delivery));
 }
 
@@ -154,7 +154,7 @@ void Network::heal(Instant now) {
   quiet_ = true;
   std::fill(link_cuts_.begin(), link_cuts_.end(), 0);
   cuts_ = 0;
-  // What is still held back comes in the order in which it would have come.
+  // Messages that are still held back arrive in the order in which they would have arrived.
   for (auto& [when, delivery] : std::exchange(queue_, {})) {
     push(std::min(when.first, now + latency_), std::move(delivery));
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Three buses on which things go wrong: messages on their way, ordered by (time, insertion).
+// Three buses with faults: messages on their way, ordered by (time, insertion).
 //
-// What happens to a message on a link follows from the seed, the link and how many messages the
-// link has carried, and from nothing else. One event carries a message to all whom it reaches at
+// What happens to a message on a link follows only from the seed, the link and the number of
+// messages that the link has carried. One event carries a message to all nodes that it reaches at
 // the same moment.
 #pragma once
 
@@ -33,7 +33,7 @@ struct MessageFaults {
                reordered = 0, clogs = 0, clogged = 0;
 };
 
-/// What comes of the bytes of a message.
+/// The result of decoding the bytes of a message.
 using Decoded = std::variant<Message, Refusal>;
 
 struct Delivery {
@@ -45,12 +45,12 @@ struct Delivery {
 
 class Network {
  public:
-  /// @param latency  how long a message takes that nothing happens to
+  /// @param latency  how long a message without faults takes
   Network(std::uint64_t seed, const Faults& faults, int nodes, PacingClock::duration latency);
 
   /// Puts a message on its way from one node to others.
   /// @param transmitter  as receivers see it
-  /// @return  how many copies are to be corrupted; they are the caller's to damage and to refuse
+  /// @return  how many copies are to be corrupted; the caller damages and refuses them
   int send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId transmitter,
            std::shared_ptr<Decoded> read);
 
@@ -58,7 +58,7 @@ class Network {
   Instant next() const { return queue_.empty() ? Instant::max() : queue_.begin()->first.first; }
   Delivery pop();
 
-  /// From now on, `from` is not heard by `to`, until join() has been called as often.
+  /// From now on `to` receives nothing from `from`, until join() has been called as often.
   void cut(NodeId from, NodeId to) { ++link_cuts_[pair_index(from, to)], ++cuts_; }
   void join(NodeId from, NodeId to) { --link_cuts_[pair_index(from, to)], --cuts_; }
   /// No more faults: cuts end, and what clogged links hold arrives within the latency.
@@ -86,7 +86,7 @@ class Network {
 
   std::uint64_t seed_;
   Faults faults_;
-  bool quiet_;  // nothing can happen to a message, but that it is cut off
+  bool quiet_;  // the only possible fault is a cut link
   int nodes_;
   PacingClock::duration latency_;
   std::vector<Link> links_;
@@ -97,7 +97,7 @@ class Network {
   MessageFaults counted_;
 };
 
-/// Changes some of `bytes`, cuts some off or adds some, as the seed says; never to what they were.
+/// Changes, cuts off or adds some of `bytes`, as the seed determines. The result always differs.
 void damage(std::vector<std::byte>& bytes, std::uint64_t seed, std::uint64_t copy);
 
 }  // namespace ergocast::lab

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stream of random numbers that follows from a seed and a name alone.
+// A stream of random numbers that follows from a seed and a stream number alone.
 #pragma once
 
 #include <cmath>

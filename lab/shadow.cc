@@ -13,7 +13,7 @@
 namespace ergocast::lab {
 namespace {
 
-/// A teammate that is silent for so many announced periods has no forecast any more.
+/// A teammate that has been silent for this many announced periods has no forecast any more.
 constexpr Tick kPeriodsUntilDead = 8;
 
 /// ∫ (x/L)^power cos(mπx/L) dx / L over [0, L], for the powers 0, 1 and 2.
@@ -90,8 +90,8 @@ Eigen::Matrix3d target_covariance(const Mission& mission) {
   return all_m2;
 }
 
-/// h for a team of n: a s √(d/2) / (u_max n^(1/d)). Where the plan says so it is at most what is
-/// left, and at most what a way of the length s leaves of the whole mission.
+/// h for a team of n: a s √(d/2) / (u_max n^(1/d)). If the plan asks for it, h is at most the time
+/// left, and at most the mission's duration less the time for a way of length s.
 double horizon_s(const Mission& mission, const Eigen::Matrix3d& covariance_m2, int n, Tick tick) {
   const double variance_m2 = std::max(0.0, covariance_m2.trace());
   double dimensions = 2;
@@ -109,7 +109,8 @@ double horizon_s(const Mission& mission, const Eigen::Matrix3d& covariance_m2, i
   return std::max(0.0, std::min({h_s, left_s, beside_s}));
 }
 
-/// w = h + min(span, cap) + age, or 0 for who has been silent for longer than h and the cap.
+/// w = h + min(span, cap) + age, or 0 for a teammate that has been silent for longer than h and the
+/// cap.
 double weight_s(const Mission& mission, double h_s, Tick span, Tick age, Tick period) {
   const Tick cap =
       kPeriodsUntilDead * std::min(period, Tick{mission.timing.broadcast_period_ticks} *
@@ -124,7 +125,7 @@ const AgentKind& kind_in(const Mission& mission, int kind) {
   return mission.kinds.at(static_cast<std::size_t>(kind));
 }
 
-/// How much what it covers counts.
+/// How much the coverage of an agent counts.
 double quality_of(const Mission& mission, const RosterEntry* entry) {
   return mission.kinds.empty() || entry == nullptr ? 1 : kind_in(mission, entry->kind).quality;
 }
@@ -153,7 +154,7 @@ Coefficients gain_at(const Mission& mission, const Eigen::Vector3d& x_m) {
   return gain;
 }
 
-/// What the sensor of an author sees of that: a Gaussian blurs each cosine by itself.
+/// The part of gain_at() that the sensor of an author sees: a Gaussian blurs each cosine by itself.
 Coefficients seen_at(const Mission& mission, int kind, const Eigen::Vector3d& x_m) {
   Coefficients gain = gain_at(mission, x_m);
   const double width_m = mission.kinds.empty() ? 0 : kind_in(mission, kind).footprint_sigma_m;
@@ -187,7 +188,7 @@ std::vector<double> vector_of(const BlockSums& sums, int size) {
   return all;
 }
 
-/// Whether it takes part in the tick and is the newest life of its number.
+/// Whether it takes part in the tick and is the newest incarnation of its number.
 bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, Tick tick) {
   return one.active_at(tick) &&
          std::none_of(roster.begin(), roster.end(), [&](const RosterEntry& other) {
@@ -211,7 +212,8 @@ void Shadow::receive(const Mission& mission, const TableView& agent, const Messa
   if (const auto* world = std::get_if<WorldState>(&message)) note_places(mission, agent, *world);
 }
 
-/// What a block says is taken from the message itself; from the table, only whether it is held now.
+/// Takes a block's content from the message itself. Only whether the block is held now comes from
+/// the table.
 void Shadow::take(const TableView& agent, const Contribution& theirs) {
   if (theirs.author() == agent.self) return;
   Row& row = rows_[theirs.author()];
@@ -266,7 +268,8 @@ void Shadow::answer(const Mission& mission, const TableView& agent) {
   for (auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
     const bool dead_reckoned = entry != nullptr && has_forecast(mission, agent, *entry);
-    // Of the roster as it is now: an admission may be lost with its coordinator, and come anew.
+    // Uses the roster as it is now: an admission may be lost with its coordinator, and be sent
+    // again.
     if (!dead_reckoned || row.active_from != entry->active_from) {
       for (Block& block : row.blocks) block.since.clear();
       row.newest.reset();
@@ -278,7 +281,7 @@ void Shadow::answer(const Mission& mission, const TableView& agent) {
   }
 }
 
-/// Each block gets the places after it that are of its author's life; the next block replaces them.
+/// Each block gets the later places of the same incarnation; the next block replaces them.
 void Shadow::dead_reckon(const RosterEntry& entry, Row& row) const {
   const auto found = places_.find(entry.author.agent);
   if (found == places_.end()) return;
@@ -299,10 +302,11 @@ void Shadow::dead_reckon(const RosterEntry& entry, Row& row) const {
 
 // ---- the equation ----
 
-/// By its blocks alone.
+/// The part of a block without dead reckoning.
 Shadow::Part Shadow::part_of(const Mission& mission, const Block& block) const {
   const Snapshot& held = block.held;
-  // What was said before an agent's own time may be this or that, whichever way it came to know it.
+  // A block from before the agent's first tick may differ with the way on which it arrived, so it
+  // is not used.
   const Snapshot before = block.before.tick >= active_from_ ? block.before : Snapshot{};
   const int size = block_size(mission);
   Part part{vector_of(held.sums, size),

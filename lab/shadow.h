@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one agent has to foresee: ĉ of core/forecast.h again, by its equation, from what reached it.
+// What one agent has to forecast: ĉ of core/forecast.h, computed again by its equation from the
+// messages that reached the agent.
 //
-// A shadow keeps the blocks and the places that its agent heard. It uses nothing of the forecast,
-// of its weights or of the gains in the agent's table, so that no fault of theirs is a fault here,
-// too.
+// A shadow keeps the blocks and the places that its agent received. It does not use the forecast,
+// its weights or the gains in the agent's table, so it does not repeat their errors.
 #pragma once
 
 #include <array>
@@ -25,15 +25,15 @@ namespace ergocast::lab {
 
 class Shadow {
  public:
-  /// @param active_from  the agent's first tick, as its first admission said. That one counts: it
-  ///                     may be lost with its coordinator, and a later one may name another tick.
+  /// @param active_from  the agent's first tick, from its first admission. The first one counts
+  /// even if it was lost with its coordinator; a later admission may name another tick.
   explicit Shadow(Tick active_from) : active_from_(active_from) {}
   Tick active_from() const { return active_from_; }
 
-  /// A message has reached the agent, which now is as `agent` says.
+  /// A message has reached the agent, whose state is now `agent`.
   void receive(const Mission& mission, const TableView& agent, const Message& message);
 
-  /// The agent has answered a tick. To be called for each, as each adds places to the rows.
+  /// The agent has answered a tick. Call it for each tick, because each adds places to the rows.
   void answer(const Mission& mission, const TableView& agent);
 
   /// ĉ at the tick that the agent has answered.
@@ -47,23 +47,24 @@ class Shadow {
   struct Snapshot {
     std::int64_t steps = 0;
     Tick tick = 0, next_tick = 0;
-    BlockSums sums, gains;  ///< the latter, and its steps, as told by its author
+    BlockSums sums, gains;  ///< `gains` and their steps as the author has sent them
     std::int64_t gained_steps = 0;
   };
   struct Block {
-    Snapshot held, before;                 ///< the latter by steps, whenever older ones came
+    Snapshot held,
+        before;  ///< `before` is the previous one by steps, even if older blocks arrived later
     std::vector<Place> since;              ///< where its author was after `held`, as it was known
-    std::int64_t dead_reckoned_steps = 0;  ///< of the block that `since` goes on from
+    std::int64_t dead_reckoned_steps = 0;  ///< steps of the block that `since` continues
   };
   struct Row {
     std::vector<Block> blocks;
-    std::optional<Tick> active_from;  ///< of the admission that `since` and `newest` are of
+    std::optional<Tick> active_from;  ///< of the admission that `since` and `newest` belong to
     std::optional<Place> newest;      ///< where its author was last
   };
   /// What one row adds to one block of ĉ.
   struct Part {
     std::vector<double> sums, gains;
-    std::int64_t steps = 0, gained_steps = 0;  ///< the latter 0: it has no forecast
+    std::int64_t steps = 0, gained_steps = 0;  ///< gained_steps 0: it has no forecast
     Tick tick = 0, period = 0;
     double quality = 1;
     Tick until = std::numeric_limits<Tick>::max();  ///< its author rests from then on
@@ -78,14 +79,14 @@ class Shadow {
                              bool has_forecast) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
-  /// Of the one mission of its life.
+  /// The modes of the one mission that this shadow follows.
   const WireModes& modes(const Mission& mission) const;
 
   mutable WireModes modes_;
   mutable std::optional<Eigen::Matrix3d> covariance_m2_;  // of the target
   Tick active_from_;
   std::map<Author, Row> rows_;
-  std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest go
+  std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest are dropped
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // for the radio range, of the newest …
   Tick positions_tick_ = -1;                        // … world state
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Jumps to the earliest event, delivers what is due, and advances every process that heard
+// Jumps to the earliest event, delivers what is due, and advances every process that received
 // something or wakes up.
 #include "lab/simulation.h"
 
@@ -179,7 +179,7 @@ void Simulation::publish(NodeId from) {
   outbox_.clear();
 }
 
-/// A message takes a kilobyte: it is decoded to where it stays, and that is used again.
+/// A message takes a kilobyte, so it is decoded in place, and the memory is used again.
 std::shared_ptr<Decoded> Simulation::read(std::span<const std::byte> bytes) {
   if (spare_.empty()) return std::make_shared<Decoded>(decode(bytes, run_));
   auto decoded = std::move(spare_.back());
@@ -189,7 +189,7 @@ std::shared_ptr<Decoded> Simulation::read(std::span<const std::byte> bytes) {
   return decoded;
 }
 
-/// What the faults and the counts go by.
+/// Updates what the faults and the counts depend on.
 void Simulation::note(NodeId from, const Outgoing& sent) {
   ++counts_.messages;
   counts_.relayed += sent.relayer != kUnassigned;

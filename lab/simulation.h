@@ -2,10 +2,10 @@
 // A whole team in one process: the cores and the codec of the real processes, in virtual time.
 // Everything follows from the plan, its seed and the faults.
 //
-// A step jumps to the next event, delivers what is due and advances every process that heard
+// A step jumps to the next event, delivers what is due and advances every process that received
 // something or wakes up. Without latency and faults, messages arrive in the order in which they
-// were sent, and before time passes. simulation.cc has time and messages, simulation_faults.cc what
-// is done to processes and links.
+// were sent, and before time passes. simulation.cc has time and messages, simulation_faults.cc the
+// faults of processes and links.
 #pragma once
 
 #include <cstdint>
@@ -37,17 +37,18 @@ struct SimulationOptions {
   std::vector<std::byte> plan;  ///< compiled; its seed is the simulation's
   Faults faults{};
   std::string version{};
-  SubscriptionTable subscriptions = kSubscriptions;  ///< what tests take away is not heard
+  SubscriptionTable subscriptions =
+      kSubscriptions;  ///< without a subscription a process receives nothing; tests remove some
   std::string host = "laboratory";
-  PacingClock::duration latency{};  ///< of a message that nothing happens to
+  PacingClock::duration latency{};  ///< of a message without faults
   std::vector<Hold> holds{};        ///< ticks in which the mission is paused; are_holds()
   PhysicsMaker physics{};           ///< what moves the bodies of the world; sim/physics.h
-  /// For tests: whether a message that `to` subscribes to does not reach it. Healing does not end
-  /// it.
+  /// For tests: whether a message that `to` subscribes to is dropped. Healing does not end the
+  /// drops.
   std::function<bool(const Message&, NodeId to)> drop{};
 };
 
-/// What was said and done so far.
+/// What has happened so far.
 struct SimulationCounts {
   std::int64_t messages = 0, contributions = 0, digests = 0, relayed = 0;
   MessageFaults faults;
@@ -56,20 +57,20 @@ struct SimulationCounts {
   std::int64_t pauses = 0;
 };
 
-/// Hears of what happens in a simulation, at once.
+/// Is called at once for each event of a simulation.
 class SimulationObserver {
  public:
   virtual ~SimulationObserver() = default;
   /// `again`: in place of a process that crashed.
   virtual void started(NodeId, Incarnation, bool /*again*/) {}
-  /// All that a process says at this moment, before any of it is encoded.
+  /// All that a process sends at this moment, before any of it is encoded.
   virtual void sends(NodeId, const Outbox&) {}
   virtual void decoded(const Decoded&, bool /*damaged*/) {}
-  /// Also what the process does not subscribe to, or what is dropped.
+  /// Called also for messages that the process does not subscribe to or that are dropped.
   virtual void arrives(NodeId, const Message&) {}
   virtual void received(NodeId, const Message&) {}
   /// `hurries`: the process asks to be woken at a time that has passed. It would run at full load,
-  /// and time would not pass here: unless this is overridden, it throws std::logic_error.
+  /// and time would not pass here. Unless overridden, this throws std::logic_error.
   virtual void advanced(NodeId, bool hurries);
   virtual void healed() {}
 };
@@ -82,15 +83,15 @@ class Simulation {
   Simulation(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics,
              SimulationObserver* observer = nullptr);
 
-  /// Passes on to the next event, at most to `until`. False, and nothing happens, once all
-  /// processes have finished, or wait for what never comes.
+  /// Advances to the next event, at most to `until`. Returns false and does nothing once all
+  /// processes have finished, or wait for something that never happens.
   bool step(Instant until = Instant::max());
-  /// Until nothing happens any more, or `limit` of virtual time has passed.
+  /// Steps until nothing happens any more, or `limit` of virtual time has passed.
   void run(PacingClock::duration limit = PacingClock::duration::max());
   /// Has the coordinator end the mission in order.
   void end(std::string reason);
 
-  // ---- who is there ----
+  // ---- processes ----
 
   int agent_count() const { return agent_count_; }
   int node_count() const { return agent_count_ + 3; }
@@ -98,7 +99,7 @@ class Simulation {
   NodeId world_node() const { return agent_count_ + 1; }
   NodeId logger_node() const { return agent_count_ + 2; }
   std::string name_of(NodeId node) const;
-  /// The newest incarnation of each, also while it is down.
+  /// The newest incarnation of each process, also while it is down.
   const Agent& agent(NodeId node) const { return core<Agent>(node); }
   const Coordinator& coordinator() const { return core<Coordinator>(coordinator_node()); }
   const World& world() const { return core<World>(world_node()); }
@@ -106,21 +107,22 @@ class Simulation {
   bool up(NodeId node) const { return at(node).up; }
   bool finished(NodeId node) const;
 
-  // ---- how far it is ----
+  // ---- progress ----
 
   Instant now() const { return now_; }
   Instant local_time(NodeId node) const { return at(node).clock.local(now_); }
-  /// What the schedule of the faults goes by. A lockstep mission takes no time where no message is
-  /// late, so there it is mission time; but a mission that stands still is to be healed as well.
+  /// The time that the schedule of faults uses. A lockstep mission takes no virtual time while no
+  /// message is late, so mission time counts there. A mission that makes no progress has to be
+  /// healed as well.
   double progress_s() const;
   /// Virtual time that the whole mission takes.
   double planned_s() const;
-  /// Of the world; −1 before its first.
+  /// The world's last tick; −1 before its first.
   Tick last_tick() const { return last_tick_; }
-  /// The last tick was published, or a coordinator has said the end.
+  /// The last tick was published, or a coordinator has announced the end.
   bool mission_over() const { return end_announced_ || counted_ >= mission_.timing.tick_count; }
-  /// The last moment at which a process was down or cut off, or messages were so late or so few
-  /// that recovery cannot be judged.
+  /// The last moment at which a process was down or cut off, or at which messages were too late or
+  /// too few to judge recovery.
   std::optional<Instant> hindered() const { return hindered_; }
   SimulationCounts counts() const;
 
@@ -133,7 +135,7 @@ class Simulation {
     Instant wakeup{}, restart{};  // the latter while it is down
     std::uint32_t starts = 0;
     bool up = false, received = false;
-    bool answered = false;  // an agent that lives: a tick
+    bool answered = false;  // a running agent has answered a tick
   };
   struct FaultEnd {
     Instant at;
@@ -159,7 +161,7 @@ class Simulation {
   std::shared_ptr<Decoded> read(std::span<const std::byte> bytes);
   void note(NodeId from, const Outgoing& sent);
 
-  // What is done to processes and links.
+  // Faults of processes and links.
   void set_up_faults();
   Instant next_fault() const;
   bool comes(double at_s) const;
@@ -187,11 +189,11 @@ class Simulation {
   std::vector<NodeId> listeners_[kBusCount][kMessageTypeCount];
 
   Instant now_{};
-  Tick last_tick_ = -1, counted_ = -1;  // the latter of ticks before it that count
+  Tick last_tick_ = -1, counted_ = -1;  // counted_: the ticks before last_tick_ that count
   bool end_announced_ = false;          // by a coordinator
   Outbox outbox_;
   std::vector<std::byte> bytes_, damaged_;
-  std::vector<std::shared_ptr<Decoded>> spare_;  // to use again
+  std::vector<std::shared_ptr<Decoded>> spare_;  // for reuse
   SimulationCounts counts_;
 
   std::vector<FaultEvent> events_;
@@ -200,9 +202,9 @@ class Simulation {
   std::optional<Instant> paused_until_;  // an operator wants the mission to be paused
   Instant next_operator_message_;        // until its wish is obeyed
   std::int64_t operator_messages_ = 0;   // messages of that operator
-  double faulty_s_;                      // of progress_s(), until all is healed
+  double faulty_s_;                      // progress_s() at which all is healed
   bool healed_ = false;
-  bool hinders_;  // even what happens to messages alone
+  bool hinders_;  // even if only messages have faults
   std::optional<Instant> hindered_;
 };
 

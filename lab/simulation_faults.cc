@@ -35,7 +35,7 @@ void Simulation::set_up_faults() {
   const Timing& timing = mission_.timing;
   hinders_ = hinders(faults, timing.lockstep_timeout_s);
   faulty_s_ = faults.lasting_share * planned_s();
-  // To the end means to the end of a mission that began late, too.
+  // A share of 1 lasts to the end, also of a mission that began late.
   if (faults.lasting_share >= 1) faulty_s_ += timing.admission_timeout_s;
   events_ = fault_events(faults, mission_.seed, agent_count_, faulty_s_);
   if (faults.clock_rate_error <= 0 && faults.clock_offset_max_s <= 0) return;
@@ -47,7 +47,7 @@ void Simulation::set_up_faults() {
   }
 }
 
-/// The end of the last is healing, which ends all others.
+/// The last event is healing, which ends all faults.
 Instant Simulation::next_fault() const {
   if (healed_) return Instant::max();
   const bool any = next_fault_ < events_.size();
@@ -56,7 +56,8 @@ Instant Simulation::next_fault() const {
   return std::min(next, paused_until_.value_or(next));
 }
 
-/// Time passes in whole nanoseconds: it may have come although progress_s() is a rounding short.
+/// Time passes in whole nanoseconds: a moment may have come although progress_s() is a rounding
+/// error short.
 bool Simulation::comes(double at_s) const { return Instant(seconds(at_s)) <= now_; }
 
 void Simulation::do_faults() {
@@ -155,8 +156,8 @@ bool Simulation::anybody_else_knows_the_mission(NodeId but) const {
 }
 
 /// Only the world and, by its last commands, the agent know a vehicle's position. Only the
-/// coordinator and the agents that follow it know the mission. Who alone knows something is not
-/// taken down.
+/// coordinator and the agents that follow it know the mission. A process that alone knows something
+/// does not crash.
 bool Simulation::may_crash(NodeId node) const {
   if (!up(node) || at(node).starts >= kMaxIncarnationsPerAgent - 2) return false;
   if (mission_over()) return false;
@@ -178,7 +179,7 @@ bool Simulation::crash(NodeId node, double lasts_s) {
   return true;
 }
 
-/// Like an init system: who could take nothing over starts anew.
+/// Acts like an init system: restarts a coordinator that found no mission to take over.
 void Simulation::supervise_coordinator() {
   Node& node = at(coordinator_node());
   if (healed_ || !node.up || !coordinator().finished() || mission_over()) return;

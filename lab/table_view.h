@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one agent knows, as seen from outside, and how a violation speaks of it.
+// What one agent knows, as seen from outside, and how a violation names it.
 #pragma once
 
 #include <algorithm>
@@ -24,14 +24,14 @@ struct TableView {
   const Coefficients* coverage = nullptr;            ///< its c_k, as of `answered`
   const std::vector<RosterEntry>* roster = nullptr;  ///< in ticks that count
   Tick answered = -1;
-  std::int64_t roster_revision = 0;        ///< that the world flies this tick by
+  std::int64_t roster_revision = 0;        ///< the revision that the world uses for this tick
   const Coefficients* foreseen = nullptr;  ///< its ĉ_k, as of `answered`, where its law looks ahead
-  std::span<const Hold> holds{};           ///< as far as it knows
+  std::span<const Hold> holds{};           ///< the holds that the agent knows
   Tick counted = -1;                       ///< the number of `answered` among ticks that count
   bool held = false;                       ///< whether `answered` does not count
 };
 
-/// How far a sum of so many terms ≤ dt may be from the exact one, relative.
+/// How far a sum of `steps` terms ≤ dt may be from the exact one, relative.
 inline double rounding(std::int64_t steps) { return 1e-12 + static_cast<double>(steps) * 0x1p-53; }
 
 inline std::int64_t steps_of(const CoverageTable& table, const Author& author) {
@@ -45,7 +45,7 @@ inline const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const
   return at == roster.end() ? nullptr : &*at;
 }
 
-/// Its own row an agent counts whatever others have heard of it.
+/// An agent always counts its own row, whatever others know of it.
 inline bool is_forgotten(const RosterEntry& entry, const TableView& by) {
   return entry.author != by.self && entry.forgotten_at(by.answered, by.roster_revision);
 }

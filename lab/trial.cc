@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tells the invariants all that happens in a simulation, compares the team's views after the
-// healing, and decides which failures the faults excuse.
+// Reports all events of a simulation to the invariants, compares the team's views after healing,
+// and decides which failures the faults excuse.
 #include "lab/trial.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class Trial : SimulationObserver {
   };
   struct AgentState {
     Tick begun = -1, answered = -1;
-    bool judged = false;  // it has finished, and whether it may have is said
+    bool judged = false;  // it has finished, and finished() has checked whether it may
     std::optional<Recovery> recovery;
   };
 
@@ -78,16 +78,15 @@ class Trial : SimulationObserver {
   const Mission mission_;
   Invariants invariants_;
   std::vector<AgentState> agents_;
-  Simulation simulation_;  // tells us of its starts while it is made
+  Simulation simulation_;  // calls us for each start while it is constructed
 
   std::optional<Instant> failed_since_;
   Tick excused_ = 0;  // ticks whose states may have been kept from the logger
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
-  std::optional<Tick>
-      acknowledged_;          // by the logger, as far as it has reached the world that lives
-  bool logger_lost_ = false;  // says that world
+  std::optional<Tick> acknowledged_;  // by the logger, as far as the running world has received it
+  bool logger_lost_ = false;          // from that world's view
   Tick newest_tick_ = -1;
-  std::int64_t messages_before_ = 0;  // were sent before that tick
+  std::int64_t messages_before_ = 0;  // number of messages sent before that tick
   double recovery_sum_s_ = 0;
   TrialFigures figures_;
 };
@@ -107,7 +106,7 @@ void Trial::started(NodeId node, Incarnation incarnation, bool again) {
 
 void Trial::sends(NodeId node, const Outbox& outbox) {
   if (is_agent(node)) note_tick(node);
-  // Once for all: c_k is added up for who holds it.
+  // Computed once for all messages, because adding up c_k takes long.
   const TableView view = is_agent(node) ? view_of(node) : TableView();
   for (const Outgoing& sent : outbox) {
     invariants_.sent(t_s(), sent, view.table != nullptr ? &view : nullptr);
@@ -116,7 +115,7 @@ void Trial::sends(NodeId node, const Outbox& outbox) {
   }
 }
 
-/// Once for each tick that an agent begins.
+/// Called once for each tick that an agent begins.
 void Trial::note_tick(NodeId node) {
   const Agent& agent = simulation_.agent(node);
   // The tick after the last one is not begun.
@@ -128,7 +127,7 @@ void Trial::note_tick(NodeId node) {
   invariants_.began(t_s(), view);
 }
 
-/// Once for each tick that an agent answers.
+/// Called once for each tick that an agent answers.
 void Trial::note_answer(NodeId node, const Command& command, const TableView& view) {
   if (command.header.tick <= at(node).answered) return;
   at(node).answered = command.header.tick;
@@ -160,7 +159,7 @@ void Trial::advanced(NodeId node, bool hurries) {
     invariants_.refused(t_s(), agent.author(), agent.refused());
     look_for_recovery(node);
     if (!agent.finished() || at(node).judged) return;
-    at(node).judged = true;  // by what is wrong at this moment
+    at(node).judged = true;  // by the state at this moment
     const bool over = simulation_.mission_over() || evicted(node);
     invariants_.finished(t_s(), agent.author(), agent.reason(), over);
   } else if (node == simulation_.world_node()) {
@@ -181,7 +180,7 @@ void Trial::healed() {
                                     (1 - faults_.clock_rate_error));
 }
 
-// ---- who is back ----
+// ---- recovery ----
 
 void Trial::expect_back(NodeId node) {
   Recovery recovery{simulation_.now(), {}};
@@ -225,7 +224,7 @@ TableView Trial::view_of(NodeId node) const {
           agent.held()};
 }
 
-/// Of all agents that are up. Who has reached the plan's end has finished.
+/// The views of all agents that are up. An agent that has reached the plan's end has finished.
 std::vector<TableView> Trial::views(bool also_finished) const {
   std::vector<TableView> views;
   for (NodeId node = 0; is_agent(node); ++node) {
@@ -263,27 +262,27 @@ std::string Trial::still_running() const {
   return names;
 }
 
-/// Whether what went wrong then may be due to what we have done: after each hindrance all
-/// processes have the time to recover.
+/// Whether a failure at `at` may be due to our faults: after each hindrance all processes need time
+/// to recover.
 bool Trial::our_doing(Instant at) const {
   const auto hindered = simulation_.hindered();
   return hindered && at < *hindered + seconds(recovery_bound_s(mission_, faults_));
 }
 
-/// Whether it has left the team as the scenario says, after it could not answer in time.
+/// Whether the agent was evicted, as the scenario allows, because it did not answer in time.
 bool Trial::evicted(NodeId node) const {
   return mission_.timing.on_timeout == OnTimeout::kEvict && struck(node) &&
          our_doing(simulation_.now());
 }
 
-/// From the roster.
+/// Whether the agent is struck off the roster.
 bool Trial::struck(NodeId node) const {
   const Agent& agent = simulation_.agent(node);
   const RosterEntry* entry = agent.follower().entry_of(agent.author().incarnation);
   return entry != nullptr && entry->active_until >= 0;
 }
 
-/// A coordinator that came back when all was over has no mission that could fail.
+/// A coordinator that restarted after the end has no mission that could fail.
 bool Trial::failed() const {
   const Coordinator& coordinator = simulation_.coordinator();
   return coordinator.state() == MissionState::kFailed && coordinator.mission() != nullptr;
@@ -310,7 +309,7 @@ TrialResult Trial::run() {
 
 TrialResult Trial::result() {
   TrialResult result;
-  // A mission was given up because of what we did to it.
+  // The mission was given up because of our faults.
   result.timed_out = failed_since_ && our_doing(*failed_since_);
   if (!result.timed_out && !invariants_.violation()) {
     if (faults_.lasting_share < 1) invariants_.recovered(t_s(), views(false));

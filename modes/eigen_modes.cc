@@ -17,7 +17,7 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Times the cells' area: its entries are of order 1.
+/// The Laplacian times the cells' area, so that its entries are of order 1.
 Sparse laplacian(const FreeGrid& grid) {
   const double wide_m = grid.size_m.x() / grid.columns, high_m = grid.size_m.y() / grid.rows;
   std::vector<Eigen::Triplet<double>> entries;
@@ -82,7 +82,7 @@ std::optional<EigenModes> eigen_modes(const FreeGrid& grid, int count) {
   if (solver.info() != Spectra::CompInfo::Successful) return std::nullopt;
   const double cell_m2 = grid.size_m.prod() / grid.columns / grid.rows;
   EigenModes modes{solver.eigenvalues() / cell_m2, solver.eigenvectors(count)};
-  // Exactly the area's share, and no rounding of it.
+  // Exact, without rounding.
   modes.eigenvalues_per_m2[0] = 0;
   modes.values.col(0).setOnes();
   for (int k = 1; k < count; ++k) settle(modes.values.col(k));

@@ -14,8 +14,8 @@ struct EigenModes {
   Eigen::MatrixXd values;              ///< a column each, max |value| 1; the first all 1
 };
 
-/// Of equal grids and the same program the same bits: order, signs and what is drawn are fixed.
-/// Takes a second or more.
+/// The lowest `count` modes of a grid. Equal grids and the same program give the same bits: order,
+/// signs and random numbers are fixed. Takes a second or more.
 /// @return  nothing if it does not converge, which has not been seen
 /// @pre 2 ≤ count ≤ cells / 4
 std::optional<EigenModes> eigen_modes(const FreeGrid& grid, int count);

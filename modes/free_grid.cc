@@ -15,10 +15,11 @@ namespace {
 
 constexpr double kCellsAlongSide = 80;
 constexpr int kFewestCells = 8, kMostCells = 640;
-/// What may be cut off: corners behind a wall that is nearer to a side than a cell is wide.
+/// The share of free cells that may be cut off, such as corners behind a wall that is nearer to a
+/// side than a cell's width.
 constexpr double kMostCutOff = 0.01;
 
-/// Sees from one cell to the next; every cell of the grid has a number, column · rows + row.
+/// Finds which cells see each other. Every cell of the grid has a number, column · rows + row.
 class GridBuilder {
  public:
   GridBuilder(const Box& domain, const Sees& sees) : sees_(sees) {
@@ -50,13 +51,13 @@ class GridBuilder {
   Eigen::Vector2d at_m(double column, double row) const {
     return Eigen::Vector2d(column / grid_.columns, row / grid_.rows).cwiseProduct(grid_.size_m);
   }
-  /// The cell so far from another one; −1 outside of the grid.
+  /// The cell (a, b) away from another one; −1 outside the grid.
   int beside(int at, int a, int b) const {
     const int column = at / grid_.rows + a, row = at % grid_.rows + b;
     const bool inside = column >= 0 && column < grid_.columns && row >= 0 && row < grid_.rows;
     return inside ? column * grid_.rows + row : -1;
   }
-  /// Whether one sees the cell beside it, along one axis.
+  /// Whether a cell sees the cell beside it, along one axis.
   bool open(int at, int a, int b) const {
     const int other = beside(at, a, b);
     if (at < 0 || other < 0) return false;
@@ -129,7 +130,7 @@ class GridBuilder {
   }
   int number(int at) const { return number_[static_cast<std::size_t>(at)]; }
 
-  /// What a cell sees there: by one step, or by two around a corner.
+  /// The cell that a cell sees at (a, b): by one step, or by two around a corner.
   int seen_from(int at, int a, int b) const {
     const bool along_x = a != 0 && open(at, a, 0), along_y = b != 0 && open(at, 0, b);
     if (a != 0 && b != 0) {
@@ -162,7 +163,8 @@ class GridBuilder {
     }
   }
 
-  /// The nearest free cell of the nine around that a place sees; else the nearest of any.
+  /// The nearest of the nine free cells around that a place sees; else the nearest free cell of
+  /// all.
   int owner_of(const Eigen::Vector2d& x_m, int at, const std::vector<int>& nearest) const {
     int best = -1, best_seen = -1;
     double distance_m = 0, seen_m = 0;
@@ -180,7 +182,7 @@ class GridBuilder {
     return best >= 0 ? best : nearest[static_cast<std::size_t>(at)];
   }
 
-  /// Of each cell of the grid, by steps along the axes.
+  /// The nearest free cell of each cell of the grid, by steps along the axes.
   std::vector<int> nearest_free_cells() const {
     std::vector<int> nearest(free_.size(), -1);
     std::vector<int> reached = {grid_.place.begin(), grid_.place.end()};

@@ -14,8 +14,8 @@
 
 namespace ergocast {
 
-/// Whether the straight way from one place to another is free; of a place to itself, whether it is.
-/// Places are from the domain's lower left corner.
+/// Whether the straight way from one place to another is free. For a place and itself: whether the
+/// place is free. Places are from the domain's lower left corner.
 using Sees = std::function<bool(const Eigen::Vector2d&, const Eigen::Vector2d&)>;
 
 /// A grid of nearly square cells over a domain; its numbers are those of FreeModes.
@@ -29,9 +29,9 @@ struct FreeGrid {
   int cell_count() const { return static_cast<int>(place.size()); }
 };
 
-/// About 80 × 80 cells, whatever the domain's shape is. A cell is free if its middle is, and its
-/// middle sees those of its neighbours or does not. Free cells that are cut off from the most of
-/// them count as walls.
+/// About 80 × 80 cells, whatever the domain's shape is. A cell is free if its middle is free. Two
+/// neighbours see each other if their middles do. Free cells that are cut off from the largest part
+/// count as walls.
 /// @return  or a sentence: nothing is free, or more than a hundredth of it is cut off
 std::variant<FreeGrid, std::string> free_grid(const Box& domain, const Sees& sees);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps tables by what they were computed from, and computes those that nobody has handed over.
+// Keeps tables by what they were computed from, and computes those that were not handed over.
 #include "modes/provide.h"
 
 #include <xxhash.h>
@@ -29,7 +29,7 @@ Shelf& shelf() {
   return the_one;
 }
 
-/// One of those `tables` of the shelf; null: none fits.
+/// One of the shelf's `tables` that fits; null if none does.
 template <class Fits>
 ModesTable known_table(const Fits& fits, std::vector<ModesTable> Shelf::*tables = &Shelf::tables) {
   Shelf& all = shelf();
@@ -38,7 +38,7 @@ ModesTable known_table(const Fits& fits, std::vector<ModesTable> Shelf::*tables 
   return at == (all.*tables).end() ? nullptr : *at;
 }
 
-/// Of what a table is computed from.
+/// The hash of what a table is computed from.
 std::uint64_t key_of(const Mission& mission) {
   std::vector<double> numbers = {mission.domain.origin_m.x(), mission.domain.origin_m.y(),
                                  mission.domain.size_m.x(), mission.domain.size_m.y(),

@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic = {'E', 'R', 'G', 'O', 'M', 'O', 'D', 'E'};
 constexpr std::uint32_t kFormat = 1;
-/// No grid has more cells on a side, nor more modes than an axis has twice over.
+/// No grid has more cells on a side, and no table has more modes.
 constexpr std::uint32_t kMostOnSide = 640, kMostModes = 4096;
 
 struct TableHeader {
@@ -55,7 +55,7 @@ std::vector<double> mean_squares_of(const std::vector<float>& values, std::size_
   return squares;
 }
 
-/// Takes numbers off the front; too few bytes leave it broken.
+/// Reads numbers from the front. After too few bytes it is broken.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -97,7 +97,7 @@ bool all_between(std::span<const std::int32_t> numbers, std::int32_t end) {
   return std::ranges::all_of(numbers, [=](std::int32_t n) { return n >= 0 && n < end; });
 }
 
-/// Whether every number is one that a table may have: what reads it need not look again.
+/// Whether every number is one that a table may have, so that no reader has to check again.
 bool is_sound(const FreeModes& modes) {
   const auto& nu = modes.eigenvalues_per_m2;
   const auto positive = [](double number) { return std::isfinite(number) && number > 0; };

@@ -29,9 +29,8 @@ using ModesTable = std::shared_ptr<const FreeModes>;
 std::vector<std::byte> encode_table(const FreeGrid& grid, const EigenModes& modes,
                                     std::uint64_t key);
 
-/// The table that these bytes are, which point into `storage`. They come from a file that anybody
-/// may have written: a sentence for bytes that are no table, are of another version, or hold a
-/// number that no table has.
+/// The table in these bytes, which point into `storage`. Anybody may have written them. Returns a
+/// sentence if they are no table, have another version, or contain a number that no table has.
 std::variant<ModesTable, std::string> decode_table(std::span<const std::byte> bytes,
                                                    std::shared_ptr<const void> storage);
 

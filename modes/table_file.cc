@@ -23,14 +23,15 @@ namespace {
 /// Far above any table: 102400 cells of 4096 modes would be more, but take hours to compute.
 constexpr off_t kMostBytes = off_t{1} << 30;
 
-/// Bytes, and what they stay valid with; null: there are none.
+/// Bytes, and the storage that keeps them valid; null if there are none.
 struct Loaded {
   std::shared_ptr<const void> storage;
   std::span<const std::byte> bytes;
 };
 
-/// Whether nobody can shorten or overwrite the file: a process that maps another one is killed when
-/// somebody shortens it, and its numbers change under its hands.
+/// Whether no process can shorten or overwrite the file. If another process shortened a mapped
+/// file, the system would kill this one. If it overwrote the file, the numbers would change during
+/// use.
 bool is_sealed(int opened) {
   constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_WRITE;
   const int seals = fcntl(opened, F_GET_SEALS);
@@ -44,7 +45,7 @@ Loaded mapped(int opened, std::size_t size) {
           {static_cast<const std::byte*>(begin), size}};
 }
 
-/// As many bytes as there are, if the file becomes shorter meanwhile.
+/// A copy of the file's bytes; fewer if the file becomes shorter meanwhile.
 Loaded copied(int opened, std::size_t size) {
   const auto bytes = std::make_shared<std::vector<std::byte>>(size);
   std::size_t got = 0;

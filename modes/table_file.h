@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tables of modes in files: each is named by its hash.
 //
-// No change of a file reaches a process that has loaded it. A file that is sealed against changes
-// is mapped, so that processes share one copy in memory; any other is copied first, then checked.
+// A process does not see changes of a file that it has loaded. A file that is sealed against
+// changes is mapped, so that processes share one copy in memory. Any other file is copied first,
+// then checked.
 #pragma once
 
 #include <filesystem>
@@ -17,10 +18,10 @@ namespace ergocast {
 /// "modes-<16 hex digits>.bin"
 std::string table_file_name(std::uint64_t hash);
 
-/// The table in `file`, checked; or a sentence that names the file and why it is none.
+/// The table in `file`, checked; or a sentence that names the file and the problem.
 std::variant<ModesTable, std::string> load_table(const std::filesystem::path& file);
 
-/// Writes the table into `folder`, unless it is there, and appears at once or not at all.
+/// Writes the table into `folder`, unless it is there. The file appears completely or not at all.
 /// @return  why it could not
 std::optional<std::string> save_table(const FreeModes& table, const std::filesystem::path& folder);
 

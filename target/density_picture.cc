@@ -117,7 +117,7 @@ void add_plane(double weight, const PlaneGaussian& gaussian, const Eigen::Vector
   }
 }
 
-/// What of a Gaussian is between two heights.
+/// Adds the part of a Gaussian between two heights.
 void add_gaussian(const Gaussian& gaussian, const Heights& between, const Eigen::Vector3d& size_m,
                   DensityGrid& sum) {
   constexpr int kHeights = 32;

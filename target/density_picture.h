@@ -34,9 +34,9 @@ class RasterPicture {
 };
 
 /// Σ of the target's parts seen from above, along z added up [1/m²], before the division by its
-/// mass. `maps` holds the weighted densities of the maps in each storey. Exact are regions,
-/// the shares of cells that keep-outs leave, and Gaussians without correlation; those with
-/// correlation are averages of 4 × 4 points, and of 32 heights a storey if it is one with z.
+/// mass. `maps` holds the weighted densities of the maps in each storey. Regions, the shares of
+/// cells that keep-outs leave, and Gaussians without correlation are exact. Gaussians with
+/// correlation are averages of 4 × 4 points, and of 32 heights a storey if z is correlated.
 /// @param size_m  of the domain
 DensityGrid density_picture(const TargetDensity& target, std::span<const DensityGrid> maps,
                             const Eigen::Vector3d& size_m);

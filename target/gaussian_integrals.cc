@@ -150,7 +150,7 @@ PlaneIntegrals integrals_over(const PlaneGaussian& g, std::span<const Trapezoid>
   while (result.error_bound > kTolerance && refinement < kMostRefined) {
     refinement *= 2;
     PlaneCoefficients finer = integrals_by(g, pieces, size_m, basis, refinement);
-    // The rules' agreement says nothing of the rounding that they share.
+    // The agreement of the rules does not show the rounding that they share.
     result.error_bound = (finer - result.values).cwiseAbs().maxCoeff() + 1e-14;
     result.values = std::move(finer);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A domain along z: what a density along z makes of each mode.
+// A domain along z, and the integrals of a density along z with each mode.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,12 +18,13 @@ struct Heights {
   bool contain(double z_m) const { return z_m >= low_m && z_m <= high_m; }
 };
 
-/// Those of a domain.
+/// The heights of a domain.
 inline Heights heights_of(const Box& domain) {
   return {domain.origin_m.z(), domain.origin_m.z() + domain.size_m.z()};
 }
 
-/// From the domain's floor: its own floor and ceiling become exactly 0 and its height.
+/// The same heights from the domain's floor: its own floor and ceiling become exactly 0 and its
+/// height.
 inline Heights above_floor(const Heights& heights, const Box& domain) {
   const double ceiling_m = heights_of(domain).high_m;
   const auto above = [&](double z_m) {
@@ -40,9 +41,9 @@ class AlongZ {
   /// @param height_m  of the domain; 0 is a plane
   AlongZ(double height_m, const Basis& basis);
 
-  /// Of the density that is constant in `part` and has the mass 1.
+  /// The integrals of the density that is constant in `part` and has the mass 1.
   Eigen::VectorXd uniform(const Heights& part, const Heights& within) const;
-  /// Of N(z; mean, deviation²), exact to rounding.
+  /// The integrals of N(z; mean, deviation²), exact to rounding.
   Eigen::VectorXd gaussian(double mean_m, double deviation_m, const Heights& within) const;
 
  private:

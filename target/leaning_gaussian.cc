@@ -12,7 +12,7 @@
 namespace ergocast {
 namespace {
 
-/// Widths of the Gaussian that a panel has: its eight nodes are then good to 1e-11.
+/// The width of a panel in widths of the Gaussian: its eight nodes are then accurate to 1e-11.
 constexpr double kWidth = 2;
 
 TargetCoefficients integrals_by(const Gaussian& gaussian, std::span<const Trapezoid> pieces,
@@ -71,7 +71,7 @@ void add_leaning(const Gaussian& gaussian, std::span<const Trapezoid> pieces,
   do {
     refinement *= 2;
     TargetCoefficients finer = integrals_by(gaussian, pieces, part, size_m, basis, refinement);
-    // The rules' agreement says nothing of the rounding that they share.
+    // The agreement of the rules does not show the rounding that they share.
     finer.error_bound =
         (finer.values - result.values).cwiseAbs().maxCoeff() + 1e-14 * gaussian.weight;
     result = std::move(finer);

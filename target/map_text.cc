@@ -46,7 +46,7 @@ std::variant<double, MapProblem> density_in(std::string_view text, const std::st
 std::string_view WordReader::next() {
   constexpr std::size_t kMost = 64;
   constexpr int kEnd = InputFile::traits_type::eof();
-  if (file_.rdbuf() == nullptr) return {};  // somebody has taken it away meanwhile
+  if (file_.rdbuf() == nullptr) return {};  // the file has been removed meanwhile
   std::streambuf& bytes = *file_.rdbuf();
   const auto is_space = [](int c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
   word_.clear();

@@ -16,7 +16,7 @@
 
 namespace ergocast {
 
-/// Every function says nothing, or an empty text, where the file does not have what is asked for.
+/// Every function returns nothing, or an empty text, if the file does not have what is asked for.
 class NetcdfFile {
  public:
   static std::variant<std::shared_ptr<NetcdfFile>, MapProblem> open(
@@ -37,7 +37,7 @@ class NetcdfFile {
   std::vector<std::string> variables() const;
   std::vector<Dimension> dimensions(Variable variable) const;
   bool holds_numbers(Variable variable) const;
-  /// Why read() would take too much memory, or read what is not there. To be asked first.
+  /// Why read() would take too much memory, or read what is not there. Call it before read().
   std::optional<MapProblem> objection(Variable variable) const;
 
   std::string text(Variable variable, const char* attribute) const;

@@ -12,7 +12,7 @@
 namespace ergocast {
 namespace {
 
-/// What libnetcdf writes where a program wrote nothing: NC_FILL_FLOAT, NC_FILL_DOUBLE.
+/// The value that libnetcdf stores where a program wrote nothing: NC_FILL_FLOAT, NC_FILL_DOUBLE.
 constexpr double kUnwritten = 9.9692099683868690e+36;
 
 std::string listed(const std::vector<std::string>& names) {
@@ -75,7 +75,7 @@ class Grid : public NetcdfGrid {
   }
 
  private:
-  /// Whether each dimension that was named exists, and once.
+  /// Whether each named dimension exists, and is named once.
   std::optional<MapProblem> check_names(const std::array<std::string, 4>& names) const {
     std::vector<std::string> there;
     for (const auto& dimension : file_->dimensions(variable_)) there.push_back(dimension.name);
@@ -90,7 +90,8 @@ class Grid : public NetcdfGrid {
     return std::nullopt;
   }
 
-  /// By the scenario where it names the dimension or another one of that kind, else by the file.
+  /// The kind of a dimension: from the scenario if it names this dimension or another one of that
+  /// kind, else from the file.
   AxisKind kind_by(const NetcdfChoice& choice, const std::string& dimension) const {
     constexpr std::array kKinds = {AxisKind::kX, AxisKind::kY, AxisKind::kZ, AxisKind::kTime};
     const auto& names = choice.dimensions;
@@ -103,7 +104,7 @@ class Grid : public NetcdfGrid {
     return taken ? AxisKind::kOther : kind;
   }
 
-  /// Which dimension is x, y and z; one of time is left at the index of the choice.
+  /// Finds the dimensions of x, y and z. A dimension of time stays at the index of the choice.
   std::optional<MapProblem> find_axes(const NetcdfChoice& choice) {
     const auto dimensions = file_->dimensions(variable_);
     start_.assign(dimensions.size(), 0);

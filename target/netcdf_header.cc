@@ -45,7 +45,7 @@ class HeaderReader {
     if (version_ != 1 && version_ != 2 && version_ != 5) return {};
     left_ -= 4;
     const std::uint64_t records = count();
-    // A program that still writes does not say how many.
+    // A program that still writes the file does not store how many.
     const bool still_grows = records == (version_ == 5 ? ~std::uint64_t{0} : 0xffffffffU);
     records_ = still_grows ? 0 : records;
     read_dimensions();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks the header of a NetCDF file in the classic format, before libnetcdf believes it.
+// Checks the header of a NetCDF file in the classic format, before libnetcdf relies on it.
 //
 // The header announces lengths of names, attributes and variables. libnetcdf takes memory for them,
 // and reads zeros where the file has ended: 1.7 kB can become gigabytes.

@@ -9,7 +9,7 @@
 namespace ergocast {
 namespace {
 
-/// Their functions above are the same.
+/// The functions above are the same in all these releases.
 constexpr const char* kNames[] = {"libnetcdf.so.19", "libnetcdf.so.22", "libnetcdf.so.18",
                                   "libnetcdf.so"};
 

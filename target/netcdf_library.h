@@ -7,7 +7,7 @@
 
 namespace ergocast {
 
-/// With the names and types of netcdf.h, version 4.
+/// The functions with the names and types of netcdf.h, version 4.
 struct NetcdfLibrary {
   int (*nc_open)(const char* path, int mode, int* file);
   int (*nc_close)(int file);

@@ -5,9 +5,9 @@
 // coefficients are products, and a plane is the case of the factor 1. Keep-outs divide the height
 // into storeys (target/storeys.h), in each of which this holds.
 //
-// The functions here take any coordinates. What they call has lengths from the domain's lowest
-// corner alone, where the domain is exactly [0, size]: origin + size − origin may be another number
-// than size.
+// The functions here take any coordinates. The functions that they call use only lengths from the
+// domain's lowest corner. There the domain is exactly [0, size], while origin + size − origin may
+// differ from size.
 #pragma once
 
 #include <Eigen/Core>

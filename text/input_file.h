@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one way by which files that somebody names are opened for reading.
+// Opens files that a user names for reading: the only way to do so.
 //
 // Only regular files are opened, and opening never waits. A pipe without a writer would hold the
 // program, a device may never end, and opening one may change it.
@@ -38,7 +38,7 @@ using StdioFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 /// The file for the functions of C.
 std::variant<StdioFile, FileProblem> open_input(const std::filesystem::path& file);
 
-/// All bytes of a file that has at most so many. A larger one is refused before it takes memory.
+/// All bytes of a file of at most `most_bytes`. A larger file is refused before it takes memory.
 std::variant<std::string, FileProblem> read_whole(const std::filesystem::path& file,
                                                   std::size_t most_bytes);
 

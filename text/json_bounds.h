@@ -2,7 +2,7 @@
 // Bounds for the memory that a JSON text takes once it is parsed.
 //
 // A value of one byte, such as "[", takes a hundred bytes in memory. So a limit of the file's size
-// is none of the memory. The text is read twice: first its values and levels are counted, which
+// does not limit the memory. The text is read twice: first its values and levels are counted, which
 // takes no memory. The parser's callback could count them in one pass, but takes a time that grows
 // with the square of a list's length.
 #pragma once
@@ -15,12 +15,12 @@
 
 namespace ergocast {
 
-/// Its text tells what there is too much of: "is nested in more than 64 levels".
+/// Its text describes the excess: "is nested in more than 64 levels".
 struct JsonTooLarge : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Counts what nlohmann::json::sax_parse() tells of a text, and stops it above a limit.
+/// Counts what nlohmann::json::sax_parse() reports of a text, and stops it above a limit.
 class JsonBounds {
  public:
   /// Limit (Files of a scenario): levels of nested values in any JSON file. Beyond it: the file is
@@ -29,7 +29,7 @@ class JsonBounds {
 
   explicit JsonBounds(std::size_t most_values) : most_values_(most_values) {}
 
-  /// What there is too much of; empty: nothing.
+  /// The excess; empty if there is none.
   const std::string& problem() const { return problem_; }
 
   bool null() { return count(); }

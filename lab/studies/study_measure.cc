@@ -17,7 +17,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int kTicksInDecade = 20;
 
-/// The first ticks at or after kLadder_s, up to `last`. A time that dt divides but for rounding is
+/// The first ticks at or after kLadder_s, up to `last`. A time that dt divides up to rounding is
 /// that multiple.
 std::vector<Tick> ladder_ticks(double dt_s, Tick last) {
   std::vector<Tick> ticks;

@@ -17,9 +17,9 @@ class StudyMeasure {
 
   /// Agent `agent` was at `x_m` at `tick`. Ticks of one agent ascend.
   void position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m);
-  /// One command of one agent, as its vehicle does it.
+  /// One command of one agent, as its vehicle executes it.
   void command(const Eigen::Vector3d& v_mps);
-  /// Whether φ² at `tick` is of interest: then it is expected.
+  /// Whether φ² at `tick` is wanted. Then metric() has to be called for it.
   bool wants_metric(Tick tick) const { return next_ < ticks_.size() && tick >= ticks_[next_]; }
   void metric(Tick tick, double metric);
 
@@ -33,7 +33,7 @@ class StudyMeasure {
   const Mission& mission_;
   double escape_distance_m_, at_edge_m_;
   std::vector<std::optional<lab::Manifold>> manifolds_;
-  std::vector<Tick> ladder_, decade_;  // first ticks at or after kLadder_s; those the slope is of
+  std::vector<Tick> ladder_, decade_;  // first ticks at or after kLadder_s; ticks of the slope
   std::vector<Tick> ticks_;            // all at which φ² is wanted, ascending
   std::vector<double> metrics_;        // φ² at ticks_
   std::size_t next_ = 0;

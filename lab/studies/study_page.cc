@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Chooses what the page needs of each point, with as few digits as it shows.
+// Chooses what the page needs of each point, with only the digits that it shows.
 #include "lab/studies/study_page.h"
 
 #include <algorithm>

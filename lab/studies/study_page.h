@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A study as a page and as lines on a terminal.
+// Shows a study as a page and as lines on a terminal.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace ergocast::studies {
 struct StudyFacts {
   const Study& study;
   std::string version;
-  std::string command;                      ///< that makes it
-  std::vector<std::string> point_commands;  ///< one a point: flies it once
+  std::string command;                      ///< that makes the study
+  std::vector<std::string> point_commands;  ///< one a point: runs its mission once
 };
 
 /// report.html: one page that needs nothing but itself.

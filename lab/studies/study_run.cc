@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flies the mission with an ideal team where that gives the same numbers, and with messages
+// Runs the mission with an ideal team where that gives the same numbers, and with messages
 // elsewhere.
 #include "lab/studies/study_run.h"
 
@@ -21,7 +21,8 @@
 namespace ergocast::studies {
 namespace {
 
-/// Of the whole team: each agent tells what it covered at its first tick, and in its turns.
+/// The broadcasts of the whole team: each agent sends its coverage at its first tick, and in its
+/// turns.
 std::int64_t broadcasts_of(const Mission& mission, int block) {
   std::int64_t count = 0;
   for (AgentId id = 0; id < static_cast<AgentId>(mission.starts_m.size()); ++id) {
@@ -54,7 +55,7 @@ class Judge {
   ergocast::Observer observer_;
 };
 
-/// Hears what the logger hears.
+/// Receives what the logger receives.
 class Observer : public lab::SimulationObserver {
  public:
   explicit Observer(const Mission& mission)
@@ -78,7 +79,7 @@ class Observer : public lab::SimulationObserver {
 
  private:
   void receive(const WorldState& world) {
-    if (world.header.tick <= tick_) return;  // said again
+    if (world.header.tick <= tick_) return;  // a repeat
     if (world.header.tick != gathering_) {
       gathering_ = world.header.tick;
       parts_ = 0;
@@ -91,7 +92,7 @@ class Observer : public lab::SimulationObserver {
     if (++parts_ == world.parts) take(world.header.tick);
   }
 
-  /// All of one tick, agent by agent.
+  /// Takes in all of one tick, agent by agent.
   void take(Tick tick) {
     tick_ = tick;
     const bool ended = tick >= mission_.timing.tick_count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the runs of one point of a study say together.
+// Summarises the runs of each point of a study.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct PointSummary {
   /// φ² at the end against the study's first point: the geometric mean of the ratios of equal
   /// seeds. Nothing if they share none.
   std::optional<Estimate> ratio;
-  /// t [s] and the median of φ², at the times all runs have, the end last.
+  /// t [s] and the median of φ², at the times that all runs have; the end is last.
   std::vector<std::pair<double, Estimate>> metric_over_time;
   std::optional<double> slope;  ///< median
   /// One for each agent of each run that starts on a manifold, ascending; infinite at the end.

@@ -23,7 +23,7 @@ struct StudyPoint {
 };
 
 struct Study {
-  std::vector<std::string> fields;  ///< that are varied, by path
+  std::vector<std::string> fields;  ///< varied fields, by path
   std::vector<StudyPoint> points;
 
   bool operator==(const Study&) const = default;
@@ -38,8 +38,8 @@ struct StudyRow {
   StudyFigures figures;
 };
 
-/// The columns that a study needs; docs/studies.md says what they mean. Numbers are written so that
-/// they read back exactly; nan is an empty cell.
+/// The columns that a study needs; docs/studies.md explains them. Numbers are written so that they
+/// read back exactly; nan is an empty cell.
 class StudyTable {
  public:
   explicit StudyTable(const Study& study);
@@ -54,7 +54,7 @@ class StudyTable {
 
   const Study& study_;
   std::size_t agents_ = 0,
-              steps_ = 0;  // that have columns: of the largest team, the longest mission
+              steps_ = 0;  // columns for the largest team and the longest mission
 };
 
 }  // namespace ergocast::studies

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The CSV files that tables and figures are made of: numbers by column.
+// Reads the CSV files for tables and figures: numbers by column.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Teams of several kinds under three laws: the figures of docs/kinds.md. All laws of a team fly the
-// same seeds, and one judge holds them against the target: φ² of what the true sensors have seen.
+// Teams of several kinds under three laws: the figures of docs/kinds.md. All laws of a team run
+// with the same seeds. One judge compares them with the target: φ² of what the true sensors have
+// seen.
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -56,7 +57,8 @@ const Team kTeams[] = {
 
 enum class Law { kUnaware, kAware, kBands };
 
-/// The same speeds and starts for each; unaware agents believe that they see points.
+/// The mission of a team under a law. Speeds and starts are the same for each law; unaware agents
+/// assume that they see points.
 Mission mission_of(const Target& target, const Team& team, Law law, std::uint64_t seed) {
   std::string kinds;
   for (const Kind& kind : team.kinds) {

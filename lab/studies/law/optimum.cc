@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How low φ² could have come: whole missions flown by one mind that knows the end, for docs/law.md.
+// How low φ² could be if one planner knew the whole mission in advance, for docs/law.md.
 //
 //   minimise φ²(T) over all velocities ‖v_i(t)‖ ≤ u_max,   x_i(0) given
 //
-// by Adam with the exact gradient. What it finds are local optima, from a flight of the default law
-// and from random ones: no bound, and no law, because each velocity answers to the whole future.
-// Where a path leaves the domain f goes on evenly, so its reflection covers the same.
+// by Adam with the exact gradient. The results are local optima, from a run of the default law and
+// from random paths. They are no bound. They are no law either, because each velocity depends on
+// the whole future. Outside the domain f continues evenly, so a path that leaves the domain covers
+// the same as its reflection.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -86,7 +87,7 @@ void limit(Paths& velocities, double u_max_mps) {
   }
 }
 
-/// The least φ²(T) on the way down from `velocities`; steps shrink to nothing.
+/// The least φ²(T) of a descent from `velocities`; the steps shrink to 0.
 double descend(const Mission& mission, Paths velocities) {
   const Whole whole(mission);
   limit(velocities, mission.law.u_max_mps);
@@ -112,7 +113,7 @@ double descend(const Mission& mission, Paths velocities) {
   return least;
 }
 
-/// What the law flies, and its φ²(T).
+/// The velocities of the law, and its φ²(T).
 std::pair<Paths, double> velocities_of_the_law(const Mission& mission) {
   lab::IdealTeam team(mission);
   Paths velocities;

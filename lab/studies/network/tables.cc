@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// One thing that is varied; FOLDER/<name>-<source>-<agents>-<value>.csv has the seeds of one
-/// point. They are compared with the same seeds where every agent knows everything,
+/// point. They are compared with runs of the same seeds in which every agent knows everything,
 /// FOLDER/central-<agents>/study.csv.
 struct Study {
   std::string name, x_title;
@@ -60,7 +60,7 @@ Metrics metrics_of(const Table& table) {
   return metrics;
 }
 
-/// Of the seeds that both have. Throws std::runtime_error if there is none.
+/// Compares the seeds that both have. Throws std::runtime_error if there is none.
 Estimate compare(const Metrics& ours, const Metrics& theirs) {
   std::vector<double> numerators, denominators;
   for (const auto& [seed, metric] : ours) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Evaluates the bounds of Theorem 2 and Corollary 1, and flies teams to measure the same
-// quantities.
+// Evaluates the bounds of Theorem 2 and Corollary 1, and runs teams to measure the same quantities.
 #include "lab/studies/theorems/bounds.h"
 
 #include <algorithm>
@@ -22,7 +21,7 @@ double contracted_m(const Mission& mission, double start_m, double kept) {
   return kept * start_m + reach_m(mission.law) * (1 - kept);
 }
 
-/// Numbers drawn one after the other.
+/// Draws numbers one after the other.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : seed_(seed) {}

@@ -18,7 +18,7 @@ double mean_square_bound_m2(const Mission& mission, std::size_t agent);
 struct MeanSquare {
   double t_s = 0, mean_m2 = 0, standard_error_m2 = 0;
 };
-/// For seeds 1 … `seeds`, at `points` times up to the mission's end.
+/// The mean squares over seeds 1 … `seeds`, at `points` times up to the mission's end.
 std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges edges, int seeds,
                                                   int points);
 
@@ -26,8 +26,8 @@ std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges ed
 /// if no edge turns it back.
 std::vector<double> shares_outside(Mission mission, int seeds);
 
-/// One agent that is driven in one direction for ever: a single mode, whose target is never
-/// reached. Input, centre and gain are such that it is always `law.u_max_mps` long.
+/// One agent that is always driven in one direction, by a single mode whose target is never
+/// reached. Input, centre and gain are such that the input always has the length `law.u_max_mps`.
 Mission driven_outward(const ControlLaw& law, double dt_s, double duration_s);
 
 /// ‖x_n − c‖ ≤ qⁿ ‖x_0 − c‖ + (u_max/k)(1 − qⁿ), q = 1 − k·dt: the bound of Corollary 1 for the
@@ -35,11 +35,12 @@ Mission driven_outward(const ControlLaw& law, double dt_s, double duration_s);
 double discrete_bound_m(const Mission& mission, double start_distance_m, Tick n);
 double continuous_bound_m(const Mission& mission, double start_distance_m, Tick n);
 
-/// How one run without noise keeps to Corollary 1.
+/// How well one run without noise satisfies Corollary 1.
 struct Contraction {
-  std::int64_t checked = 0;     ///< agents × steps
-  std::int64_t violations = 0;  ///< of the discrete bound, beyond the allowance for rounding
-  double largest_share = 0;     ///< ‖x_n − c‖ / discrete bound
+  std::int64_t checked = 0;  ///< agents × steps
+  std::int64_t violations =
+      0;  ///< violations of the discrete bound, beyond the allowance for rounding
+  double largest_share = 0;             ///< ‖x_n − c‖ / discrete bound
   double largest_continuous_share = 0;  ///< ‖x_n − c‖ / continuous bound, n ≥ 1
   double allowance_m = 0;  ///< 8 units of rounding of the largest coordinate for each step
 };

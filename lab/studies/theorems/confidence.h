@@ -8,19 +8,19 @@
 namespace ergocast::studies {
 
 /// Dvoretzky, Kiefer, Wolfowitz and Massart: the empirical distribution of `count` draws is nowhere
-/// farther from the true one than this, but with probability `error`.
+/// farther from the true one than this, except with probability `error`.
 double dkw_distance(std::size_t count, double error);
 
 /// Clopper and Pearson: if all of `count` draws succeed, the probability of success is at least
-/// this, but with probability `error`.
+/// this, except with probability `error`.
 double least_probability(std::size_t count, double error);
 
 /// Maurer and Pontil's empirical Bernstein inequality: the mean of a quantity between 0 and `limit`
-/// is at most this, but with probability `error`, given independent draws of it.
+/// is at most this, except with probability `error`, given independent draws of it.
 double upper_mean(const std::vector<double>& draws, double limit, double error);
 
-/// Birgé: a noncentral χ² of `freedom` degrees and noncentrality `shift` is within these limits,
-/// each but with probability `error`.
+/// Birgé: a noncentral χ² of `freedom` degrees and noncentrality `shift` is within these limits;
+/// each holds except with probability `error`.
 struct Limits {
   double low, high;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corollary 1: how runs without noise keep to its discrete form, and break the continuous one.
+// Corollary 1: how runs without noise satisfy its discrete form, and violate the continuous one.
 #include <cmath>
 #include <cstdio>
 
@@ -26,7 +26,7 @@ void write_random(Edges edges, int seeds, std::ostream& out) {
   }
 }
 
-/// An agent driven outward from the centre at speed u_max for three time constants: what meets the
+/// An agent driven outward from the centre at speed u_max for three time constants. It reaches the
 /// discrete bound.
 Contraction worst_case(double k_dt) {
   ControlLaw law;

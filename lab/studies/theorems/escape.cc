@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flies one agent from a set until it is far enough away, and predicts that time from the growth
-// of its spread.
+// Runs one agent from a set until it is far enough away, and predicts that time from the growth of
+// its spread.
 #include "lab/studies/theorems/escape.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@ struct Start {
   std::string set;  ///< as Proposition 1 writes it
   Eigen::Vector3d x_m, center_m;
 };
-/// On each set of Proposition 1, in the square of the paper's figures.
+/// A start on each set of Proposition 1, in the square of the paper's figures.
 std::span<const Start> starts();
 
 /// `mission` with one agent, at `start`.
@@ -31,12 +31,12 @@ std::optional<double> escape_time_s(const Mission& mission, double far_m, double
 /// The same for each seed from 1 on; infinite where it does not escape.
 std::vector<double> escape_times_s(Mission mission, int seeds, double far_m, double until_s);
 
-/// What the linearised recursion says about the time of escape. As long as the spread grows, how
-/// far off an agent gets is its standard deviation times one number z drawn at the beginning, and
-/// it escapes when spread · |z| reaches `far_m`.
+/// The distribution of the escape time by the linearised recursion. While the spread grows, an
+/// agent's distance is its standard deviation times one number z drawn at the beginning. The agent
+/// escapes when spread · |z| reaches `far_m`.
 class EscapeLaw {
  public:
-  /// @param spread  of δ for σ = 1, step by step
+  /// @param spread  standard deviation of δ for σ = 1, step by step
   EscapeLaw(std::vector<double> spread, const Mission& mission, double far_m);
 
   /// Probability to have escaped by `t_s`.

@@ -93,7 +93,7 @@ double Row::share_by(double t_s) const {
 std::vector<Row> read_rows(const std::filesystem::path& folder) {
   std::vector<Row> rows;
   for (const Point& p : all_points()) {
-    // σ only scales the spread, so one does for all of a set's.
+    // σ only scales the spread, so one spread serves all points of a set.
     const bool same = !rows.empty() && p.start == rows.back().point.start &&
                       p.exponent == rows.back().point.exponent &&
                       p.epsilon == rows.back().point.epsilon;

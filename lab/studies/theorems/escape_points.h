@@ -14,25 +14,26 @@ namespace ergocast::studies {
 inline constexpr double kPaperEnd_s = 150, kUntil_s = 600;
 inline constexpr double kPaperSigma = 1e-5, kPaperEpsilon = 1e-3;
 inline constexpr double kExponents[] = {1, 1.5};
-/// Nearer than the finest mode's wavelength by far, where the linearised recursion should be exact.
+/// A distance far below the finest mode's wavelength, where the linearised recursion should be
+/// exact.
 inline constexpr double kNear_m = 0.5;
-/// Of the sets that are alike by the square's symmetry, one each: indices of starts().
+/// Indices of starts(): one of each group of sets that are equal by the square's symmetry.
 inline constexpr int kOneOfEach[] = {0, 1, 3, 5};
 bool is_one_of_each(int start);
 
 struct Point {
   int start;  ///< of starts()
   double exponent, epsilon, sigma;
-  bool near = false;  ///< farther off than kNear_m counts, in place of the usual distance
+  bool near = false;  ///< escape means farther off than kNear_m, instead of the usual distance
 };
 std::vector<Point> all_points();
-/// Of its file, without ".csv".
+/// The name of a point's file, without ".csv".
 std::string name_of(const Point& point);
 Mission mission_of(const Point& point);
 /// How far off counts as escaped.
 double far_m(const Point& point);
 
-/// Of one set under one law: for σ = 1, with and without what the past does.
+/// The spreads of one set under one law, for σ = 1: with and without the effect of the past.
 struct Spreads {
   std::vector<double> counted, neglected;
 };

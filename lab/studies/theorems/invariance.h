@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Proposition 1 in floating point: how far from 0 the normal part of B is, and what comes of it.
+// Proposition 1 in floating point: how far from 0 the normal part of B is, and its effect.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace ergocast::studies {
 
-/// A set of Proposition 1 and a team whose first agent is on it, while the others, if the premises
-/// are to hold, mirror each other at it.
+/// A set of Proposition 1 and a team whose first agent is on it. If the premises are to hold, the
+/// other agents mirror each other at it.
 struct InvariantSet {
   std::string name, text;
-  /// From two numbers in (0, 1).
+  /// Makes a team from two numbers in (0, 1).
   std::vector<Eigen::Vector2d> (*team)(const Eigen::Vector2d& share, const Rectangle& domain);
-  bool is_point = false;       ///< there is one place only
+  bool is_point = false;       ///< the set is a single point
   bool symmetric_team = true;  ///< whether the premises are met
 };
 std::span<const InvariantSet> invariant_sets();
@@ -31,7 +31,7 @@ Mission classical(const InvariantSet& set, Mission mission, std::uint64_t seed);
 /// on.
 struct NormalResidual {
   /// In units of 2⁻⁵³ Σ |λ_k (c_k − μ_k)| (|n_x| mπ/Lx + |n_y| nπ/Ly): roundings of the summands,
-  /// each taken as large as it gets.
+  /// each at its largest possible value.
   double units = 0;
   double share_of_b = 0;  ///< |B·n| / ‖B‖; 0 if B = 0
 };

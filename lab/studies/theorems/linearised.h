@@ -9,8 +9,9 @@
 //   γ = −u_max nᵀHn/ρ − k,    H = Σ λ_k (c_k − μ_k) ∇²f_k(x̄(t)),
 //   K(t, τ) = Σ λ_k (n·∇f_k(x̄(t))) (n·∇f_k(x̄(τ))).
 //
-// The integral is what the deviation of the past path does to c_k. It is of first order too, but
-// for edges and corners, where n·∇f_k = 0 for every mode. All here is for the discrete recursion.
+// The integral is what the deviation of the past path does to c_k. It is of first order too, except
+// on edges and corners, where n·∇f_k = 0 for every mode. Everything here is for the discrete
+// recursion.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,8 +37,8 @@ struct Normal {
 /// @pre one agent, which starts on an edge, a midline, a diagonal or at a corner
 Normal normal_of(const Mission& mission);
 
-/// The recursion along the noise-free path of `mission`'s one agent, which is held on the set
-/// against rounding.
+/// The recursion along the noise-free path of `mission`'s one agent. The path is kept on the set in
+/// spite of rounding.
 /// @pre as normal_of(); the centre of contraction lies on the set; ε > 0, or B ≠ 0 on the path
 std::vector<LinearStep> linearised(const Mission& mission, Tick steps);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Proposition 1: what rounding leaves of it, and how fast rounding alone drives agents off.
+// Proposition 1: how well it holds with rounding, and how fast rounding alone drives agents off.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

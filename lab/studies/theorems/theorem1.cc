@@ -42,7 +42,7 @@ void print_sets(const std::vector<Row>& rows, double exponent, bool near) {
   std::printf("\n");
 }
 
-/// Medians, predictions and shares of one set each, by what is varied.
+/// Medians, predictions and shares of each set, by the varied parameter.
 void print_varied(const std::vector<Row>& rows, const char* title, double Point::*varied) {
   std::map<double, std::string> lines;
   double farthest = 0;
@@ -64,7 +64,7 @@ void print_varied(const std::vector<Row>& rows, const char* title, double Point:
   std::printf("\nLargest distance for σ < 1, without the origin: %.3f\n\n", farthest);
 }
 
-/// γ along the path, and what it makes of a noise of σ = 1.
+/// γ along the path, and the spread of a noise of σ = 1.
 void print_growth(double exponent) {
   std::printf(
       "| set | γ at 0 s | 5 s | 20 s | 80 s | 150 s [1/s] | spread at 150 s [m] | past neglected "
@@ -85,7 +85,7 @@ void print_growth(double exponent) {
   std::printf("\n");
 }
 
-/// Those at the usual distance with the exponent that satisfy `wanted`.
+/// The rows at the usual distance with the exponent that satisfy `wanted`.
 std::vector<Row> chosen(const std::vector<Row>& rows, double exponent,
                         bool (*wanted)(const Point&)) {
   std::vector<Row> some;

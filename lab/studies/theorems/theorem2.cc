@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using lab::Edges;
 
 constexpr int kPoints = 60;
-constexpr int kRunsPerSeed = 10;  // means of squares need more of them than times do
+constexpr int kRunsPerSeed = 10;  // means of squares need more runs than times do
 
 struct Case {
   std::string name, text;
@@ -23,7 +23,7 @@ struct Case {
   Edges edges;
 };
 
-/// The paper's square and target with a stronger law about the centre, from there.
+/// The paper's square and target with a stronger contraction, from its centre.
 Mission strong(double gain_per_s, double sigma) {
   Mission mission = paper_mission();
   mission.law.contraction_gain_per_s = gain_per_s;

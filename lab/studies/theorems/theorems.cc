@@ -29,7 +29,7 @@ std::vector<Part> all_parts(int seeds) {
   return all;
 }
 
-/// A part that is there is left alone; one that was interrupted has no file of that name.
+/// Skips a part whose file exists. An interrupted part has no file of that name.
 void simulate(const std::string& name, const fs::path& folder, int seeds) {
   const fs::path file = folder / (name + ".csv"), unfinished = folder / (name + ".part");
   if (fs::exists(file)) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What docs/theorems.md reports: parts that are simulated, each into a file of its own, and the
-// tables and figures that are made of them.
+// The contents of docs/theorems.md: simulated parts, each with a file of its own, and the tables
+// and figures made from them.
 #pragma once
 
 #include <filesystem>
