@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Sourced by docker_test.sh after debian.sh (bash): a separate container engine for the test. It
 # changes neither this machine's network nor a running engine. Engine and containers are in the
-# test's process and mount namespaces, so they end with it. shellcheck shell=bash disable=SC2154  #
-# work and root are debian.sh's
+# test's process and mount namespaces, so they end with it.
+# shellcheck shell=bash disable=SC2154  # work and root are debian.sh's
 
 export DOCKER_HOST=unix://$work/engine.sock
 

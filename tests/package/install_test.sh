@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # The package installs on a bare Debian 12, runs a mission there, and leaves nothing when it is
-# purged. shellcheck source=tests/package/debian.sh
+# purged.
+# shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
 
 check_contents() {

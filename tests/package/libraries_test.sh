@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # libergocast-dev and python3-ergocast on a bare Debian 12: each header compiles alone, the example
-# runs in a team of the packaged processes, Python reads the record, and nothing is left. shellcheck
-# source=tests/package/debian.sh
+# runs in a team of the packaged processes, Python reads the record, and nothing is left.
+# shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
 
 source=$(cd "$(dirname "$0")/../.." && pwd)

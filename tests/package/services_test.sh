@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # The installed services under a separate systemd (systemd-nspawn): they run a mission, restart
-# after crashes, exit normally, take a mission key, and are sandboxed. shellcheck disable=SC2034
+# after crashes, exit normally, take a mission key, and are sandboxed.
+# shellcheck disable=SC2034
 more_tools='systemd-nspawn nsenter pgrep'
 
 # nspawn makes control groups below its own; none may remain.
