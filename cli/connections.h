@@ -43,9 +43,6 @@ class Connections {
   /// The longest request line with all its headers. A longer one gets 431.
   /// Limit (Page): length of the head of a request [bytes]. Beyond it: the answer is 431.
   static constexpr std::size_t kLongestHead = 16 << 10;
-  /// The time to send the whole head; a client that needs longer gets 408.
-  static constexpr auto kHeadPatience = std::chrono::seconds(5);
-  /// How long a client may take no byte of the data that waits for it.
   /// Limit (Page): time in which the head of a request must arrive [s]. Beyond it: the answer is
   /// 408.
   static constexpr auto kHeadPatience = std::chrono::seconds(5);

@@ -25,8 +25,6 @@ namespace ergocast {
 class LiveTeam {
  public:
   static constexpr Role kRole = Role::kMonitor;
-  /// The limits of the history; above them the oldest lines and incidents are dropped.
-  static constexpr std::size_t kMostLines = 400, kMostIncidents = 500;
   /// Limit (Page): log lines on the page. Beyond it: the oldest is removed.
   static constexpr std::size_t kMostLines = 400;
   /// Limit (Page): incidents on the page. Beyond it: the oldest is removed.

@@ -35,8 +35,6 @@ inline constexpr int kMostLeasedAgents = 256;
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
 /// Limit (Scenario): modes along an axis. Beyond it: the scenario is refused.
 inline constexpr int kMaxModesPerAxis = 64;
-inline constexpr int kMaxModes = 4096;  ///< of all axes together
-/// The most modes of a free domain: the time to compute them grows with the square of their number.
 /// Limit (Scenario): modes of all axes together. Beyond it: the scenario is refused.
 inline constexpr int kMaxModes = 4096;
 /// Limit (Scenario): modes with `basis { free_domain: true }`, whose computation takes time with

@@ -176,7 +176,7 @@ double least_distance_m(std::span<const Eigen::Vector3d> places_m);
 /// wide as the start_distance_m() of two of its kind.
 double packing(const Mission& mission, std::size_t bodies);
 /// A team blocks itself often above the first packing, and most of the time above the second.
-inline constexpr double kTightPacking = 0.1, kHopelessPacking = 0.3;
+inline constexpr double kTightPacking = 0.1;
 /// Limit (Scenario): share of the area that agents take up, each as wide as the distance of two
 /// starts. Beyond it: the scenario is refused.
 inline constexpr double kHopelessPacking = 0.3;
