@@ -16,8 +16,8 @@ namespace ergocast {
 /// @pre the defaults are filled in, and `scenario` has a separation
 void validate_separation(const proto::Scenario& scenario, Checks& checks);
 
-/// How far apart two alike of the first `bodies` begin [m]; "10 to 20" if that depends on their
-/// kind.
+/// How far apart two bodies of one kind, among the first `bodies`, must begin [m]; "10 to 20" if
+/// that depends on the kind.
 std::string spacing_text(const Mission& mission, std::size_t bodies);
 
 }  // namespace ergocast
