@@ -119,7 +119,7 @@ TEST(TargetSpread, InSpaceCountsEachAxis) {
               std::hypot(300 * deviation(0.3), 200 * deviation(0.6), 80 * deviation(0.9)), 1e-10);
 }
 
-// A place so small that all modes see it as a point: what the modes leave out is all there is.
+// A place so small that all modes see it as a point: all of the result is what the modes leave out.
 TEST(TargetSpread, IsOffByWhatTheModesLeaveOutAndNoMore) {
   const Box square{{0, 0, 0}, {2000, 2000, 0}};
   for (const int modes : {2, 4, 16, 64}) {
@@ -128,7 +128,7 @@ TEST(TargetSpread, IsOffByWhatTheModesLeaveOutAndNoMore) {
       const Mission mission = mission_of(bells({{1, on_ground(at_m), round(1)}}), square, modes);
       const double actual_m = spread_m(mission);
       ASSERT_TRUE(std::isfinite(actual_m));
-      // Of the mean square once, of the squared mean at most 2 + tail times.
+      // The tail enters the mean square once, and the squared mean at most 2 + tail times.
       const double tail = 4 / (std::numbers::pi * std::numbers::pi * (modes - 0.5));
       EXPECT_LE(actual_m * actual_m, 2 * 2000 * 2000 * tail * (3 + tail) + 2) << modes << " modes";
     }

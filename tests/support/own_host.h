@@ -23,9 +23,10 @@ bool may_mount();
 /// "agent (pid 12)" of every process in one of these network namespaces (as /proc/PID/ns/net shows
 /// them) but this one, zombies left out.
 std::vector<std::string> processes_in(const std::set<std::string>& networks);
-/// Those in this process's own.
+/// The processes in this process's own network.
 std::vector<std::string> processes_on_own_host();
-/// Those that this process has started since enter_own_host(), and theirs, on whichever network.
+/// The processes that this process has started since enter_own_host(), and their descendants, on
+/// any network.
 std::vector<std::string> descendants();
 
 }  // namespace ergocast::test

@@ -16,8 +16,7 @@ Eigen::Vector3d drawn(std::uint32_t who, int step) {
   return on_ground(normal_pair(7, Purpose::kFault, who, static_cast<std::uint64_t>(step)));
 }
 
-/// A domain off the origin with more modes along y than along x, and a target that is no
-/// symmetry's.
+/// A domain off the origin with more modes along y than along x, and a target without symmetry.
 Mission mission_of(int agents) {
   Mission mission;
   mission.seed = 5;
@@ -37,7 +36,7 @@ Mission mission_of(int agents) {
   return mission;
 }
 
-/// Three agents in the middle of a mission, the first node partly flown.
+/// Three agents in the middle of a mission, with the first node partly executed.
 Outlook outlook_of(const Mission& mission, const PlanSetting& setting, Tick tick) {
   Outlook outlook;
   outlook.durations_s.resize(static_cast<std::size_t>(setting.nodes));
@@ -89,8 +88,7 @@ TEST_P(Adjoint, IsTheSlopeByOnesOwnNodes) {
   }
 }
 
-// The last two end within the horizon: 30 s and 20.1 s are left, the first node but for 0.1 s
-// flown.
+// The last two end within the horizon: 30 s and 20.1 s are left, and 0.1 s of the first node.
 INSTANTIATE_TEST_SUITE_P(Plans, Adjoint,
                          ::testing::Values(std::pair(1, 1234), std::pair(3, 1234),
                                            std::pair(1, 2699), std::pair(2, 2799)));
@@ -203,12 +201,13 @@ TEST(PlanTeam, OfWhichNothingIsHeardFliesAsOneAgentAlone) {
   for (int tick = 0; tick < 600; ++tick) {
     for (PlanTeam* each : {&alone, &team, &unheard}) each->step();
     ASSERT_EQ(unheard.x_m(0), alone.x_m(0)) << tick;
-    // Announced at tick 1 and heard at tick 2, they change the plan there, and the place after it.
+    // Plans announced at tick 1 and received at tick 2 change the plan there, and the place after
+    // it.
     ASSERT_EQ(team.x_m(0) == alone.x_m(0), tick < 2) << tick;
   }
 }
 
-/// Nobody is nearer to the truth than one who flies what it said.
+/// An agent that follows its announcement is exactly where others expect it.
 TEST(Announcement, ContinuesAsItsAuthorFlies) {
   const Mission mission = mission_of(1);
   PlanSetting setting;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a study notes of one mission.
+// What a study records of one mission.
 #include "lab/studies/study_run.h"
 
 #include <gtest/gtest.h>
