@@ -180,9 +180,10 @@ void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
   if (relayer == kUnassigned || speaker == nullptr) return;
   ++relayed_;
   if (--relays_allowed_[speaker->self] >= 0) return;
-  violate(t_s, Invariant::kRelaysAnswerDigests, name_of(speaker->self),
-          text("has relayed more blocks than the digests it heard could ask for; the last one of ",
-               name_of(block.author())));
+  violate(
+      t_s, Invariant::kRelaysAnswerDigests, name_of(speaker->self),
+      text("has relayed more blocks than the digests it received could ask for; the last one of ",
+           name_of(block.author())));
 }
 
 void Invariants::check(double t_s, const Digest& digest, const TableView& speaker) {

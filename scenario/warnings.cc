@@ -154,8 +154,8 @@ void warn_of_crowded_ways_home(const Mission& mission, Findings& findings) {
     findings.add(indexed("agents.kind", kind) + ".reserve_s",
                  shortest(its.reserve_s) + " is little for " +
                      std::to_string(mission.starts_m.size()) +
-                     " agents that keep their distance: who gives way to others on the way home "
-                     "may come late",
+                     " agents that keep their distance: an agent that gives way to others on the "
+                     "way home may come late",
                  "write at least " + shortest(rounded_up(least_s)) + ", or accept it");
   }
 }
@@ -171,8 +171,8 @@ void warn_of_tight_stations(const Mission& mission, Findings& findings) {
       if (!their_m || (*home_m - *their_m).norm() >= passage_m) continue;
       return findings.add("agents.kind",
                           "agents " + std::to_string(other) + " and " + std::to_string(one) +
-                              " have stations that nobody passes between: who comes home first "
-                              "may shut others out",
+                              " have stations that nobody passes between: the first agent at "
+                              "home may shut others out",
                           "write stations at least " + shortest(rounded_up(passage_m)) +
                               " m apart, or accept it for one row that all can reach from a side");
     }

@@ -269,7 +269,7 @@ TEST(Weight, CountsOfTheSpanNoMoreThanEightPeriods) {
   EXPECT_NEAR(look_ahead.weight_s(30, 41, 0, kPeriod), 34, 1e-12);
   EXPECT_NEAR(look_ahead.weight_s(30, 5000, 0, kPeriod), 34, 1e-12) << "a first block";
   EXPECT_NEAR(look_ahead.weight_s(30, 5000, 0, 2), 31.6, 1e-12)
-      << "who speaks more often than it must";
+      << "an agent that broadcasts more often than it must";
 }
 
 TEST(Weight, BelievesARarerPeriodOfHighModesIfThePlanHasIt) {

@@ -153,7 +153,7 @@ TEST(LookingAhead, AMirroredTeamStaysMirroredAndItsAgentsOnTheMirrorStayOnIt) {
         ASSERT_LT((team.x_m(4) - mirror.image(team.x_m(4), side_m)).norm(), 1e-6)
             << mirror.name << ", place " << place << ", t = " << team.t_s();
       });
-      EXPECT_GT((team.x_m(0) - one).norm(), 1) << "it flies";
+      EXPECT_GT((team.x_m(0) - one).norm(), 1) << "it moves";
     }
   }
 }
