@@ -73,7 +73,7 @@ class CoverageTable {
   /// c_k = Σ_j q_j S_j / Σ_j q_j elapsed_j per block, (4) weighted by quality and by the time that
   /// each row covers.
   /// Entries of blocks without any samples are 0. Does not allocate.
-  /// @param coverage  in the order of the basis, whatever the layout is
+  /// @param coverage  in the order of the basis, for every layout
   void average(Coefficients& coverage) const;
 
   /// The fewest steps among a row's blocks; nothing if the row is unknown.

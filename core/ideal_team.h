@@ -31,9 +31,9 @@ class IdealTeam {
  public:
   explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect);
 
-  /// Whether a distributed team would compute the same: lockstep, every agent receives from every
-  /// other, all coverage is broadcast each tick or known by dead reckoning, without rounding, and
-  /// no agent goes home.
+  /// Whether a distributed team would compute the same: it is in lockstep, every agent receives
+  /// from every other, and no agent goes home; all coverage is broadcast each tick or known by dead
+  /// reckoning, without rounding.
   static bool stands_for(const Mission& mission);
 
   /// One tick: samples, commands from the common c_k, motion. Does not allocate.

@@ -65,7 +65,7 @@ void Invariants::started(const Author& author) {
   ++incarnation_count_[author.agent];
 }
 
-// ---- safety: what is said ----
+// ---- safety: what is sent ----
 
 void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);

@@ -135,7 +135,7 @@ constexpr double hop_s(std::size_t entries) {
   return 2 * (2 * AntiEntropy::round_s(entries) + 0.25);
 }
 
-/// Virtual time after healing by which every living agent is back in the mission and knows what
+/// Virtual time after healing by which every running agent is back in the mission and knows what
 /// the others know.
 double recovery_bound_s(const Mission& mission, const Faults& faults);
 

@@ -205,7 +205,7 @@ bool has_forecast(const Mission& mission, const TableView& agent, const RosterEn
 
 }  // namespace
 
-// ---- what was heard ----
+// ---- what was received ----
 
 void Shadow::receive(const Mission& mission, const TableView& agent, const Message& message) {
   if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);

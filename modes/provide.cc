@@ -101,7 +101,7 @@ std::variant<ModesTable, std::string> computed(const Mission& mission) {
   return decode_table(*bytes, bytes);
 }
 
-/// As this process computes it, whatever it was handed; it does so once.
+/// The table as this process computes it, once, independent of tables that were handed over.
 std::variant<ModesTable, std::string> own_table(const Mission& mission) {
   const std::uint64_t key = key_of(mission);
   const auto fits = [=](const ModesTable& table) { return table->key == key; };

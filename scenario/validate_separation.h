@@ -11,8 +11,8 @@
 
 namespace ergocast {
 
-/// Reports what docs/safety.md says to be impossible: its conditions on speed, holding,
-/// disturbance, room and starts.
+/// Reports what is impossible by docs/safety.md: its conditions on speed, holding, disturbance,
+/// room and starts.
 /// @pre the defaults are filled in, and `scenario` has a separation
 void validate_separation(const proto::Scenario& scenario, Checks& checks);
 

@@ -108,7 +108,7 @@ class TargetValidator {
     if (c.has_zz_m2()) variance(path + ".zz_m2", c.zz_m2());
   }
 
-  /// Whether two coordinates with these variances may covary so much.
+  /// Whether two coordinates with these variances may have this covariance.
   bool covary(double covariance_m2, double one_m2, double other_m2, const std::string& path,
               const std::string& variances) {
     const double limit_m2 = kMaxCorrelation * std::sqrt(one_m2) * std::sqrt(other_m2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The control step on a box: the law term by term, teams that move in it, and the plane that
-// remains where one axis has no height or no second mode.
+// The control step on a box: the law term by term, teams that move in it, and the plane as the case
+// without a height or without a second mode.
 #include <gtest/gtest.h>
 
 #include <cmath>

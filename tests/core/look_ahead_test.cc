@@ -153,7 +153,7 @@ TEST(SharedDimensions, AreTwoOfASquareAndOneOfAStrip) {
   EXPECT_NEAR(dimensions(mission_of(bells({}, 1), {{0, 0, 0}, {2000, 1000, 0}})), 25. / 17, 1e-12);
 }
 
-// Two peaks on a diagonal lie along a line, whatever the axes are called.
+// Two peaks on a diagonal lie along a line, so the team shares out one dimension.
 TEST(SharedDimensions, FollowTheTargetAndNotTheDomain) {
   const Box square{{-40, 3, 0}, {2000, 2000, 0}};
   const auto two = [&](double y_m, double other_y_m) {

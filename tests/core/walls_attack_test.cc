@@ -179,8 +179,8 @@ TEST(WallFilter, KeepsOutWhoIsPushed) {
   EXPECT_GE(spare_m(Attack(mission)), 0);
 }
 
-/// A body at a wall that a push may have brought nearer than its margin moves away from it, and
-/// never towards it, whatever others want it to do.
+/// A push may have brought a body nearer to a wall than its margin. It then moves away from the
+/// wall and never towards it, also when others are in its way.
 TEST(WallFilter, HoldsWallsWhereNothingElseCanBeHeld) {
   Mission mission = with_distance(3);
   mission.separation.disturbance_m = 0.4;

@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Laboratory, LockstepForesight,
                                            Telling{"ReckoningSeldom", true, 6}),
                          [](const auto& telling) { return std::string(telling.param.name); });
 
-// ---- a dead teammate ----
+// ---- a stopped teammate ----
 
 /// φ² at 600 s as agent 0 knows it, if it receives nothing from agent 3 or its vehicle from 150 s
 /// on.

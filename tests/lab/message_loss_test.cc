@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lockstep waits for nothing that is not repeated: whatever kind of message is lost, the mission
-// ends, and its trajectory is the one without losses, bit for bit. With dead reckoning it is also
-// the same however seldom the agents broadcast.
+// Lockstep waits only for what is repeated. If any kind of message is lost, the mission still ends,
+// and its trajectory is the one without losses, bit for bit. With dead reckoning it is also the
+// same however seldom the agents broadcast.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -127,8 +127,8 @@ TEST(Theorem2, InputInOneDirectionLeavesNoiseHalfOfItsPartInSmallSteps) {
   EXPECT_LT(limits.high * unit_m2 / kSeeds, 0.7 * mean_square_bound_m2(mission, 0));
 }
 
-// The basis continues as an even function beyond an edge, so without reflection an agent that noise
-// frees from a corner goes into any of the four quadrants around it, of which the domain is one.
+// The basis continues as an even function beyond an edge. So without reflection an agent that noise
+// frees from a corner goes into any of the four quadrants around it, and only one is the domain.
 // The theorem's bound, a radius of 10 km here, does not exclude that.
 TEST(Theorem2, DoesNotKeepFig2InItsDomainWithoutReflection) {
   constexpr int kSeeds = 300;

@@ -110,8 +110,8 @@ const Draw kTrue = [](Block& block, const FieldDescriptor& field, RandomStream&)
 /// A place [m] inside every domain.
 const Draw kPlace = number(1, 99);
 
-/// The rules of blocks, texts and required fields, and of values that have to be small, likely or
-/// alike for missions that are valid, short and different. All others are drawn by usual_rule().
+/// The rules of blocks, texts and required fields. Some values also have rules that keep missions
+/// valid, short and different. All other fields are drawn by usual_rule().
 const std::map<std::string, Rule>& rules() {
   static const std::map<std::string, Rule> rules = {
       {"Scenario.name", may(text({"drawn", "0", "a.b-c_d"}))},
@@ -221,7 +221,7 @@ const std::map<std::string, Rule>& rules() {
       {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
       {"Agents.kind", many(0, 3)},
       {"Kind.name", must(text({"a", "fast-1", "_b.C"}))},  // each once: see agree()
-      {"Kind.count", must(number(1, 3))},                  // of all as many as agents
+      {"Kind.count", must(number(1, 3))},                  // the counts add up to the agents
       {"Kind.u_max_mps", may(spread(2, 40))},
       {"Kind.noise_intensity", may(spread(0.01, 2))},
       {"Kind.noise_ceiling", may(spread(2, 20))},

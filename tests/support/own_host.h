@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A host of the test's own: a network namespace with multicast on its loopback, so that tests with
-// open sockets neither receive from nor disturb other programs, and can see which processes they
+// A host of the test's own: a network namespace with multicast on its loopback. Tests with open
+// sockets then do not receive from other programs or disturb them, and can see which processes they
 // left.
 #pragma once
 
