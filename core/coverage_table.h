@@ -30,8 +30,8 @@ class CoverageTable {
   ///                holder joined, so no block is compared with one that was sent before that tick.
   CoverageTable(const Basis& basis, double dt_s, Tick joined = 0);
 
-  /// From now on the table does not note what blocks gain, and gains() returns none. For holders
-  /// that do not look ahead.
+  /// From now on the table does not note what blocks gain, and gains() returns none. Holders that
+  /// do not look ahead use it.
   void forgo_gains() { notes_gains_ = false; }
 
   /// From now on blocks arrive and are returned in this layout and its encoding. Before the first

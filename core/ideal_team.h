@@ -50,7 +50,7 @@ class IdealTeam {
   std::size_t size() const { return agents_.size(); }
   /// Where an agent is now.
   const Eigen::Vector3d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
-  /// Its velocity in the last step, or with inertia at its end.
+  /// An agent's velocity in the last step, or with inertia at the step's end.
   const Eigen::Vector3d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
   /// B of (6) in the last step.
   const Eigen::Vector3d& b(std::size_t agent) const { return agents_[agent].b; }

@@ -26,7 +26,7 @@ double greatest_push_mps(const ControlLaw& law, double dt_s);
 /// adaptive √(σ²/dt + greatest_push²).
 double greatest_deviation_mps(const ControlLaw& law, double dt_s);
 
-/// What of a perturbation is the same at every step.
+/// The part of a perturbation that is the same at every step.
 struct PerturbationScale {
   PerturbationScale(const ControlLaw& law, double dt_s);
 

@@ -188,7 +188,7 @@ std::vector<double> vector_of(const BlockSums& sums, int size) {
   return all;
 }
 
-/// Whether it takes part in the tick and is the newest incarnation of its number.
+/// Whether an entry takes part in the tick and is the newest incarnation of its number.
 bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, Tick tick) {
   return one.active_at(tick) &&
          std::none_of(roster.begin(), roster.end(), [&](const RosterEntry& other) {

@@ -80,7 +80,7 @@ class Scenario {
   /// Absolute paths of the other files that its target was made from: maps and GeoJSON. GeoJSON
   /// files are listed only after load() and parse(), because print() writes their polygons.
   std::vector<std::filesystem::path> map_files() const;
-  /// Those of these files, and of the files of walls, that the scenario names by their whole path.
+  /// The files among these, and files of walls, that the scenario names by their whole path.
   const std::vector<std::filesystem::path>& files_by_whole_path() const;
 
   /// The target density in multiples of the uniform density, for people: at most 256 cells along
