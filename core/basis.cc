@@ -287,7 +287,7 @@ Eigen::Vector3d gradient_in_space(const BasisAt& at, const Basis& basis, const d
   return {in_plane.x(), in_plane.y(), across_columns(over_cos, at.cos_y, basis.modes_y)};
 }
 
-/// What one slab gives: the gradient along x and y and its Jacobian.
+/// The field of one slab: the gradient along x and y and its Jacobian.
 ERGOCAST_VECTORIZED_PART FieldAt plane_field(const BasisAt& at, const Basis& basis,
                                              const Box& domain, const ColumnSums& over) {
   const double squared = wave_number_squared(domain.size_m.y());

@@ -87,7 +87,7 @@ struct CosinesAt {
 struct BasisAt : CosinesAt {
   Table slope_x, slope_y, slope_z;  ///< −(mπ/Lx) sin(mπx/Lx) …  [1/m]; {0} for one mode
 
-  /// @pre as for CosinesAt, whose bits it has.
+  /// @pre as for CosinesAt; the cosines are bit for bit the same.
   BasisAt(const Eigen::Vector3d& x_m, const Box& domain, const Basis& basis);
 };
 

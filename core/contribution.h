@@ -35,7 +35,7 @@ struct Contribution {
   double elapsed_s = 0;          ///< time the sums cover, steps · dt
   std::int32_t block = 0;
   std::int32_t mode_count = 0;
-  BlockSums sums;  ///< Σ f_k(x) dt, not divided by h_k [s]; as many as BlockLayout::size_of()
+  BlockSums sums;  ///< Σ f_k(x) dt, not divided by h_k [s]; BlockLayout::size_of() numbers
   ContributionEncoding encoding = ContributionEncoding::kDouble;
   /// kFixed16: what the sums have gained in the last `gained_steps` steps [s]. Receivers cannot
   /// compute it from two rounded averages.

@@ -30,8 +30,8 @@ class CoverageTable {
   ///                holder joined, so no block is compared with one that was sent before that tick.
   CoverageTable(const Basis& basis, double dt_s, Tick joined = 0);
 
-  /// From now on the table does not note what blocks gain, and gains() returns none. For holders
-  /// that do not look ahead.
+  /// From now on the table does not note what blocks gain, and gains() returns none. Holders that
+  /// do not look ahead use it.
   void forgo_gains() { notes_gains_ = false; }
 
   /// From now on blocks arrive and are returned in this layout and its encoding. Before the first
@@ -73,7 +73,7 @@ class CoverageTable {
   /// c_k = Σ_j q_j S_j / Σ_j q_j elapsed_j per block, (4) weighted by quality and by the time that
   /// each row covers.
   /// Entries of blocks without any samples are 0. Does not allocate.
-  /// @param coverage  in the order of the basis, whatever the layout is
+  /// @param coverage  in the order of the basis, for every layout
   void average(Coefficients& coverage) const;
 
   /// The fewest steps among a row's blocks; nothing if the row is unknown.

@@ -57,9 +57,9 @@ class Forecast {
   /// own vehicle, for a tick that is already known, and outside the domain.
   void see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m);
 
-  /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if its author
-  /// is active in the roster without a newer incarnation and does not rest, the row counts, and
-  /// its gains are possible: n is 1 + the number of such rows, for each block. Allocates only for a
+  /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if it counts,
+  /// its gains are possible, and its author is active in the roster without a newer incarnation and
+  /// does not rest: n is 1 + the number of such rows, for each block. Allocates only for a
   /// teammate's first place and first row.
   void look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick,
                   Coefficients& coverage);

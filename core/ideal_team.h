@@ -31,9 +31,9 @@ class IdealTeam {
  public:
   explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect);
 
-  /// Whether a distributed team would compute the same: lockstep, every agent receives from every
-  /// other, all coverage is broadcast each tick or known by dead reckoning, without rounding, and
-  /// no agent goes home.
+  /// Whether a distributed team would compute the same: it is in lockstep, every agent receives
+  /// from every other, and no agent goes home; all coverage is broadcast each tick or known by dead
+  /// reckoning, without rounding.
   static bool stands_for(const Mission& mission);
 
   /// One tick: samples, commands from the common c_k, motion. Does not allocate.
@@ -50,7 +50,7 @@ class IdealTeam {
   std::size_t size() const { return agents_.size(); }
   /// Where an agent is now.
   const Eigen::Vector3d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
-  /// Its velocity in the last step, or with inertia at its end.
+  /// An agent's velocity in the last step, or with inertia at the step's end.
   const Eigen::Vector3d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
   /// B of (6) in the last step.
   const Eigen::Vector3d& b(std::size_t agent) const { return agents_[agent].b; }

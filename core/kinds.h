@@ -59,8 +59,8 @@ int planned_kind(const Mission& mission, AgentId id);
 /// The number of the kind `name`; nothing if the mission has none of this name.
 std::optional<int> kind_named(const Mission& mission, const std::string& name);
 
-/// A sentence that says why no agent of the kind `name` can take part, or none under the number
-/// `id`, whose body may be another vehicle. Nothing if one can, or if `name` is empty.
+/// A sentence that explains why no agent of the kind `name` can take part under the number `id`,
+/// whose body may be another vehicle. Nothing if one can, or if `name` is empty.
 /// @param id  kUnassigned: any number
 std::optional<std::string> why_not_of_kind(const Mission& mission, const std::string& name,
                                            AgentId id);

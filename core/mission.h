@@ -119,8 +119,9 @@ struct Mission {
   ControlLaw law;
   Timing timing;
   std::vector<Eigen::Vector3d> starts_m;  ///< where agent i begins; one per planned agent
-  std::vector<AgentKind> kinds;  ///< empty: all are alike; else their counts are all planned agents
-  int quorum = 1;                ///< agents that must be admitted before the start
+  std::vector<AgentKind>
+      kinds;       ///< empty: all agents are alike; else the counts add up to all planned agents
+  int quorum = 1;  ///< agents that must be admitted before the start
   double forget_silent_after_s = 0;  ///< wall time; 0: a silent agent's coverage counts for ever
   double goal_ergodic_metric = 0;    ///< the goal for φ²; 0: none
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]

@@ -77,7 +77,7 @@ bool in_domain(const Box& domain, const Eigen::Vector3d& x_m) {
   return domain.contains(x_m) && (x_m.z() == 0 || !domain.planar());
 }
 
-/// |∫ f ρ| ≤ 1, but for the rounding of the quadrature.
+/// |∫ f ρ| ≤ 1, up to the rounding of the quadrature.
 bool is_coefficient(double value) { return std::abs(value) <= 1 + 1e-9; }
 
 bool is_target(const Coefficients& target, const Basis& basis) {

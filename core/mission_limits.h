@@ -70,7 +70,7 @@ bool is_kind_name(std::string_view name);
 double duration_s(const Timing& timing);
 
 /// Whether a scenario can describe `mission`: each number is within its limits, and related numbers
-/// fit together. μ is finite, |μ| ≤ 1 but for rounding, and μ_00 = 1.
+/// fit together. μ is finite, |μ| ≤ 1 up to rounding, and μ_00 = 1.
 bool within_limits(const Mission& mission);
 
 }  // namespace ergocast

@@ -2,10 +2,10 @@
 // The perturbation σ dW of (9) and (10): how strong, in which direction, and for how long.
 //
 // Where agents must choose between two sides, the field does not decide: on a corner B vanishes, on
-// a midline or diagonal its part across vanishes. There the potential
-// U = Σ λ (c − μ) f, which agents descend, bends down across the set, and a deviation δ along such
-// a direction v grows by itself, δ' = −u_max (vᵀHv) / √(‖B‖² + ε²) · δ, where H = ∇B is the
-// curvature of U. Noise has to start this growth. Everywhere else it only blurs.
+// a midline or diagonal its part across vanishes. There the potential U = Σ λ (c − μ) f, which
+// agents descend, bends down across the set. A deviation δ along such a direction v grows by
+// itself, δ' = −u_max (vᵀHv) / √(‖B‖² + ε²) · δ, where H = ∇B is the curvature of U. Noise has to
+// start this growth. Everywhere else noise only blurs.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +26,7 @@ double greatest_push_mps(const ControlLaw& law, double dt_s);
 /// adaptive √(σ²/dt + greatest_push²).
 double greatest_deviation_mps(const ControlLaw& law, double dt_s);
 
-/// What of a perturbation is the same at every step.
+/// The part of a perturbation that is the same at every step.
 struct PerturbationScale {
   PerturbationScale(const ControlLaw& law, double dt_s);
 

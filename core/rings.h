@@ -17,7 +17,7 @@ using Rings = std::vector<Ring>;
 struct Segment {
   Eigen::Vector2d from_m, to_m;
 
-  /// Its point that is nearest to `x_m`.
+  /// The point of the edge that is nearest to `x_m`.
   Eigen::Vector2d nearest_m(const Eigen::Vector2d& x_m) const {
     const Eigen::Vector2d along_m = to_m - from_m;
     const double square = along_m.squaredNorm(), share = along_m.dot(x_m - from_m);

@@ -146,7 +146,7 @@ void SeparationFilter::take(AgentId whose, const StepConstraints::Set& set) {
   constraints_.add(set);
 }
 
-/// Whose set the step exceeds most: a neighbour's, a wall's, or none.
+/// The result names the neighbour or wall whose set the step exceeds most, if there is one.
 SafeVelocity SeparationFilter::blocked_by(const Eigen::Vector3d& wanted_m) const {
   const int most = constraints_.most_exceeded(wanted_m);
   const AgentId by = most < 0 ? kUnassigned : taken_[static_cast<std::size_t>(most)];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bodies that keep a distance: the last step of a command, whose result is feasible and safe.
 //
-// Body i holds the place y of every other body j relative to its own, ρ = ‖y‖, at most R from the
-// true one at each tick at which its command may be executed:
+// Body i holds the place y of every other body j relative to its own, ρ = ‖y‖. It is at most R from
+// the true one at each tick at which the command of i may be executed:
 //
 //   R = V_j dt a + H dt (V_i + V_j) + e_i + e_j + w a + 2 H w
 //
@@ -172,8 +172,8 @@ std::optional<std::pair<AgentId, AgentId>> too_near_at_start(const Mission& miss
 /// The least distance of any two of `places_m` [m]; the greatest number if there is only one.
 double least_distance_m(std::span<const Eigen::Vector3d> places_m);
 
-/// The share of the domain that discs, in space balls, around the first `bodies` take up, each as
-/// wide as the start_distance_m() of two of its kind.
+/// The share of the domain that is taken up by discs, in space balls, around the first `bodies`.
+/// Each is as wide as the start_distance_m() of two of its kind.
 double packing(const Mission& mission, std::size_t bodies);
 /// A team blocks itself often above the first packing, and most of the time above the second.
 inline constexpr double kTightPacking = 0.1;

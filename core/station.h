@@ -38,8 +38,8 @@ inline bool rests(const Mission& mission, AgentId id, Tick counted) {
   return !mission.kinds.empty() && counted >= rest_from(mission, id);
 }
 
-/// By how much a station at `x_m` is farther from all walls than required of the agent's vehicle,
-/// or of the centre of its loiter circle [m].
+/// By how much a station at `x_m` is farther from all walls than required [m]. The requirement is
+/// that of the agent's vehicle, or of the centre of its loiter circle.
 double spare_at_home_m(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m);
 
 /// How fast agent `id` goes home: by its law's u_max_mps, or its vehicle's limit if that is less.

@@ -15,7 +15,8 @@ namespace {
 constexpr int kMaxSweeps = 40;
 /// The iteration ends when a sweep moves the step by less than this share of the reach.
 constexpr double kConverged = 1e-8;
-/// Negative bounds: a greater excess, as a share of the reach, says that no step is allowed.
+/// With negative bounds, a greater excess than this share of the reach means that no step is
+/// allowed.
 constexpr double kNoCommonStep = 1e-9;
 constexpr int kLeastExcessSteps = 60;
 

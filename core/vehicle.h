@@ -11,11 +11,10 @@
 // speed s = ‖v'‖ may change at once. Within the tick it moves along an arc. With t, the tangent of
 // half the angle from h to h', |t| ≤ ω dt/2:
 //
-//     h' = ((1 − t²) h + 2t J h)/(1 + t²),  x' = x + s dt (h + h')/2,  J: a quarter turn to the
-//     left
+//     h' = ((1 − t²) h + 2t J h)/(1 + t²),  x' = x + s dt (h + h')/2
 //
-//   Only + − × ÷ √: the same bits on every machine. The radius s dt/2|t| is at least s/ω, the rate
-//   of turn at most ω, and the speed s·arctan(t)/t at most s.
+//   J is a quarter turn to the left. Only + − × ÷ √: the same bits on every machine. The radius
+//   s dt/2|t| is at least s/ω, the rate of turn at most ω, and the speed s·arctan(t)/t at most s.
 //   A unicycle can turn on the spot. A standing one has the velocity kStandingShare V h, which
 //   shows where it looks and does not move it. Without any velocity it looks along x.
 //   A fixed wing moves no slower than s_min. For a command of 0 it loiters: it turns to the left as

@@ -48,7 +48,7 @@ void WallFollower::look_back(Tick tick, const Eigen::Vector3d& x_m) {
       length_of(x_m - from_m_) < kHeldUpShare * wanted_m_ && 2 * wall_ticks_ >= ticks_;
   begin_window(tick, x_m);
   if (!held_up) return;
-  // On its way back into the same dead end it may be free for a while.
+  // An agent may move freely for a while on its way back into the same dead end.
   const bool again = length_s_ > 0 && seconds_since(tick, since_) < kMemory_s + 2 * length_s_;
   length_s_ = again ? std::min(2 * length_s_, kLongest_s) : kShortest_s;
   follows_ = true;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kTurnsRound = 3;
 /// Circles of a fixed wing, which turns to one side only near its station.
 constexpr double kCircles = 3;
-/// What turns cost among walls, where there are corners.
+/// The factor for turns among walls, where there are corners.
 constexpr double kCorners = 3;
 /// Standard deviations of a way that is disturbed.
 constexpr double kWayDeviations = 4;

@@ -65,7 +65,7 @@ void Invariants::started(const Author& author) {
   ++incarnation_count_[author.agent];
 }
 
-// ---- safety: what is said ----
+// ---- safety: what is sent ----
 
 void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
@@ -180,9 +180,10 @@ void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
   if (relayer == kUnassigned || speaker == nullptr) return;
   ++relayed_;
   if (--relays_allowed_[speaker->self] >= 0) return;
-  violate(t_s, Invariant::kRelaysAnswerDigests, name_of(speaker->self),
-          text("has relayed more blocks than the digests it heard could ask for; the last one of ",
-               name_of(block.author())));
+  violate(
+      t_s, Invariant::kRelaysAnswerDigests, name_of(speaker->self),
+      text("has relayed more blocks than the digests it received could ask for; the last one of ",
+           name_of(block.author())));
 }
 
 void Invariants::check(double t_s, const Digest& digest, const TableView& speaker) {

@@ -95,8 +95,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kNoWakeupInThePast, "nobody asks to be woken in the past"},
         {Invariant::kHeardLoggerIsKept, "a logger that is heard is not given up"},
         {Invariant::kEverybodyIsBack, "everybody is back in the mission"},
-        {Invariant::kLiveAgentsAreKnown, "who lives is taken for living"},
-        {Invariant::kLiveAgentsCount, "who lives is not forgotten"},
+        {Invariant::kLiveAgentsAreKnown, "a running agent is taken for running"},
+        {Invariant::kLiveAgentsCount, "a running agent is not forgotten"},
         {Invariant::kEverybodyLearnsEveryRow, "everybody learns every row"},
         {Invariant::kViewsAgree, "all agree on c_k within their staleness"},
         {Invariant::kRelaysStop, "relays stop once all know all"},
@@ -135,7 +135,7 @@ constexpr double hop_s(std::size_t entries) {
   return 2 * (2 * AntiEntropy::round_s(entries) + 0.25);
 }
 
-/// Virtual time after healing by which every living agent is back in the mission and knows what
+/// Virtual time after healing by which every running agent is back in the mission and knows what
 /// the others know.
 double recovery_bound_s(const Mission& mission, const Faults& faults);
 

@@ -227,7 +227,7 @@ void Invariants::check_rows(double t_s, const TableView& holder,
     if ((held > 0 || newest == 0) && held + tolerated >= newest) continue;
     violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
             text("holds ", held, " of ", newest, " steps of ", name_of(author),
-                 speaks ? ", a member" : ", who has left"));
+                 speaks ? ", a member" : ", which has left"));
   }
 }
 
@@ -284,7 +284,7 @@ void Invariants::check_learned(double t_s, const TableView& holder, const Author
     const std::int64_t held = steps_of(*holder.table, author);
     if (held + tolerated >= then) continue;
     violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
-            text("holds ", held, " steps of ", name_of(author), ", of whom ", name_of(other), ", ",
+            text("holds ", held, " steps of ", name_of(author), ", of which ", name_of(other), ", ",
                  hops, " hops away, has long held ", then));
   }
 }

@@ -188,7 +188,7 @@ std::vector<double> vector_of(const BlockSums& sums, int size) {
   return all;
 }
 
-/// Whether it takes part in the tick and is the newest incarnation of its number.
+/// Whether an entry takes part in the tick and is the newest incarnation of its number.
 bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, Tick tick) {
   return one.active_at(tick) &&
          std::none_of(roster.begin(), roster.end(), [&](const RosterEntry& other) {
@@ -205,7 +205,7 @@ bool has_forecast(const Mission& mission, const TableView& agent, const RosterEn
 
 }  // namespace
 
-// ---- what was heard ----
+// ---- what was received ----
 
 void Shadow::receive(const Mission& mission, const TableView& agent, const Message& message) {
   if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);

@@ -22,7 +22,7 @@ inline WireModes modes_on_wire(const Mission& mission) {
   for (int l = 0; l < basis.modes_z; ++l) {
     for (int m = 0; m < basis.modes_x; ++m) {
       for (int n = 0; n < basis.modes_y; ++n) {
-        // Those of a free domain ascend by themselves.
+        // The modes of a free domain already ascend.
         const int squared = sorted && !basis.free_domain ? l * l + m * m + n * n : 0;
         order.emplace_back(squared, static_cast<int>(order.size()));
       }

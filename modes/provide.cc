@@ -68,8 +68,8 @@ bool sees(const Rings& walls, const Eigen::Vector2d& from_m, const Eigen::Vector
   return free;
 }
 
-/// From the domain's corner, rounded to 2⁻⁴⁰ of its sides. Whether a wall's edge is on a cell's
-/// middle or beside it is then the same wherever the domain's origin is.
+/// The walls from the domain's corner, rounded to 2⁻⁴⁰ of its sides. Then the domain's origin does
+/// not decide whether a wall's edge is on a cell's middle or beside it.
 Rings walls_from_corner(const Mission& mission) {
   const Eigen::Array2d unit_m = std::ldexp(1.0, -40) * mission.domain.size_m.head<2>().array();
   Rings walls = mission.walls;
@@ -101,7 +101,7 @@ std::variant<ModesTable, std::string> computed(const Mission& mission) {
   return decode_table(*bytes, bytes);
 }
 
-/// As this process computes it, whatever it was handed; it does so once.
+/// The table as this process computes it, once, independent of tables that were handed over.
 std::variant<ModesTable, std::string> own_table(const Mission& mission) {
   const std::uint64_t key = key_of(mission);
   const auto fits = [=](const ModesTable& table) { return table->key == key; };
@@ -139,7 +139,8 @@ std::optional<std::string> provide_table(Mission& mission) {
   const auto fits = [=](const ModesTable& table) { return table->hash == hash; };
   ModesTable table = known_table(fits);
   if (table == nullptr) {
-    // Not one that was handed over: its file may be of another computer, or no more what it was.
+    // A table that was handed over is not used: its file may come from another computer, or may
+    // have changed.
     auto made = own_table(mission);
     if (auto* problem = std::get_if<std::string>(&made))
       return "the modes of the free domain cannot be computed: " + *problem;

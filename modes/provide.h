@@ -15,7 +15,7 @@
 
 namespace ergocast {
 
-/// From now on missions of this process may use it.
+/// Keeps a table, which missions of this process may use from now on.
 void keep_table(ModesTable table);
 
 /// The table of the mission's domain, walls and number of modes, which takes a second or more

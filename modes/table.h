@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A table of modes as the bytes of a file, which its hash names.
 //
-//   header   "ERGOMODE", format, columns, rows, modes, cells, the domain's origin and size, the key
-//   of
-//            what it was computed from, the version of the program that computed it
+//   header   "ERGOMODE", format, columns, rows, modes, cells, the domain's origin and size,
+//            the key of what it was computed from, the version of the program that computed it
 //   numbers  owner, place and around (int32), ν and mean squares (double), e_k by cell (float)
 //
 // All are little-endian, one behind the other, each kind at a multiple of 8 bytes.

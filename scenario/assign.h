@@ -7,9 +7,9 @@
 
 namespace ergocast {
 
-/// Writes `field` into `scenario`. An error if the path names no number, word or truth value, if
-/// the value cannot be read, or if another flag is blamed for the field. From now on all problems
-/// of the field are those of `field.flag`.
+/// Writes `field` into `scenario`. Reports an error if the path names no number, word or truth
+/// value, if the value cannot be read, or if another flag has already set the field. From now on
+/// all problems of the field are reported for `field.flag`.
 void assign(const FieldValue& field, proto::Scenario& scenario, Findings& findings);
 
 }  // namespace ergocast

@@ -24,7 +24,7 @@ class Checks {
 
   void problem(const std::string& path, const std::string& what, std::string remedy);
 
-  /// A field or block of boxes in a plane.
+  /// Reports a field or block that only boxes may have, in a plane.
   void of_a_box_alone(const std::string& path);
 
   /// Whether no problem is known yet at `path` or below it. Rules between fields apply only to

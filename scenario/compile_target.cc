@@ -19,14 +19,14 @@ namespace {
 /// Limit (Scenario): share of the target's weight in the domain, at least. Below it: the scenario
 /// is refused.
 constexpr double kMinMassInside = 1e-6;
-/// The maximum error of any μ_mn. Only Gaussians with correlation or beside keep-outs come near it,
-/// if almost all of them is cut off.
+/// The maximum error of any μ_mn. Only Gaussians that have correlation or are beside keep-outs come
+/// near it, if almost all of their mass is cut off.
 /// Limit (Scenario): error of a coefficient μ of the target; only Gaussians that are correlated or
 /// beside keep-outs can have more. Beyond it: the scenario is refused.
 constexpr double kMaxTargetError = 1e-7;
 
-/// As many cells along the longer side of the domain as a person can distinguish in a picture, and
-/// a minimum along the shorter one.
+/// The cells of a picture along the longer side of the domain, as many as a person can distinguish,
+/// and the minimum along the shorter side.
 constexpr double kMostCells = 256, kFewestCells = 64;
 
 std::string span_text(double origin_m, double size_m) {
@@ -38,7 +38,7 @@ std::string text_of(const Rectangle& rectangle) {
          span_text(rectangle.origin_m.y(), rectangle.size_m.y());
 }
 
-/// The cosines, also where agents steer by other modes.
+/// The basis of cosines, also where agents steer by other modes.
 Basis cosines_of(const proto::Basis& written) {
   Basis basis = basis_of(written);
   basis.free_domain = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Copies each Protobuf block into the plain type of the same meaning; those of a mission by the
-// list of its fields.
+// Copies each Protobuf block into the plain type of the same meaning. Blocks of a mission are
+// copied by the list of its fields.
 #include "scenario/convert.h"
 
 #include <algorithm>

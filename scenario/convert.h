@@ -16,7 +16,7 @@ TargetDensity target_of(const proto::Scenario& scenario);
 /// The extent of the map that the scenario states.
 Rectangle extent_of(const proto::Map& map);
 Basis basis_of(const proto::Basis& basis);
-/// What `law` says it pulls to.
+/// The place that the contraction of `law` pulls to.
 Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain);
 
 /// Whether anything is solid: a wall, or a keep-out.

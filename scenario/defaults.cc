@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Applies the options to the text, fills open fields, first those that depend on other fields, and
-// draws the random starts.
+// Applies the options to the text, fills absent fields, first those that depend on other fields,
+// and draws the random starts.
 #include "scenario/defaults.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
   if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
     reflection->SetEnumValue(&message, &field, 0);
   } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) {
-    // A polygon says only if it is solid.
+    // A polygon has this flag only if it is solid.
     if (field.containing_type() != proto::Polygon::descriptor())
       reflection->SetBool(&message, &field, false);
   } else if (const FieldRule* rule = rule_of(field); rule && rule->absence == Absence::kDefaulted) {
@@ -43,9 +43,10 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
   }
 }
 
-/// Without a covariance a Gaussian is round; without an origin places are metres alone; without a
-/// vehicle all are points, or a kind's are the scenario's; without a separation bodies keep no
-/// distance; without a band all modes count.
+/// Whether the absence of a field has a meaning. Without a covariance a Gaussian is round. Without
+/// an origin places are in metres only. Without a vehicle all bodies are points, or a kind has the
+/// scenario's vehicle. Without a separation bodies keep no distance. Without a band all modes
+/// count.
 bool means_something_absent(const FieldDescriptor& field) {
   return field.message_type() == proto::Covariance::descriptor() ||
          field.message_type() == proto::Origin::descriptor() ||
@@ -88,7 +89,8 @@ void fill_heights(const Box& domain, proto::Polygon& polygon) {
   if (!polygon.has_high_z_m()) polygon.set_high_z_m(all.high_m);
 }
 
-/// What of a target in a box is as high as the domain, or as wide along z as along x and y.
+/// Fills the heights of a target in a box: parts are as high as the domain, or as wide along z as
+/// along x and y.
 void fill_heights(const Box& domain, proto::Target& target) {
   for (proto::Gaussian& gaussian : *target.mutable_gaussians()) {
     if (gaussian.has_sigma_m() && !gaussian.has_sigma_z_m())
@@ -135,8 +137,8 @@ void fill_foresight(proto::Scenario& scenario) {
   scenario.mutable_time()->set_broadcast_period_ticks(dead_reckons ? kReckonedPeriodTicks : 1);
 }
 
-/// Defaults that follow from speed and domain, so that a law scales with them. What is itself
-/// outside its limits gives no default: validate() names it.
+/// Defaults that follow from speed and domain, so that a law scales with them. A value outside its
+/// limits gives no default: validate() reports it.
 void fill_law(const Box& domain, proto::Law& law) {
   if (!law.has_epsilon()) {
     const double relative = law.anticipation() > 0 ? kEpsilon : kEpsilonWithoutAnticipation;
@@ -155,7 +157,8 @@ void fill_law(const Box& domain, proto::Law& law) {
   law.set_contraction_gain_per_s(kContractionShare * law.u_max_mps() / reach_m);
 }
 
-/// A kind's noise diffuses over the same length as the law's, in the time that the kind needs.
+/// A kind's noise diffuses over the same length as the law's, in the time that the kind needs for
+/// it.
 void fill_kinds(const proto::Law& law, proto::Agents& agents) {
   for (proto::Kind& kind : *agents.mutable_kind()) {
     if (!kind.has_u_max_mps() && law.has_u_max_mps()) kind.set_u_max_mps(law.u_max_mps());
@@ -230,8 +233,8 @@ void put_flags_over(const Overrides& overrides, proto::Scenario& scenario, Findi
   }
 }
 
-/// A place on the upper edge, as a person writes it, may be a rounding of origin + size beyond it:
-/// 0.8 is, of a domain from 0.7 that is 0.1 long. It is on the edge.
+/// A place that a person writes on the upper edge may be beyond origin + size by rounding. For
+/// instance 0.8 is, for a domain from 0.7 with a length of 0.1. Such a place becomes the edge.
 double on_edge(double place_m, double origin_m, double size_m) {
   const double high_m = origin_m + size_m;
   const double rounding_m =
@@ -290,7 +293,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   const bool planar = !scenario.domain().has_size_z_m();
   fill_basis(planar, *scenario.mutable_basis());
   const Box domain = domain_of(scenario.domain());
-  // A domain outside its limits gives no default: validate() names it.
+  // A domain outside its limits gives no default: validate() reports it.
   if (limits::kSize_m.contain(domain.size_m.z()) &&
       limits::kCoordinate_m.contain(domain.origin_m.z()))
     fill_heights(domain, *scenario.mutable_target());
@@ -309,14 +312,14 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   fill_kinds(scenario.law(), agents);
   if (!agents.has_quorum()) {
     const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();
-    // A team outside its limits is reported for its size, and not for its quorum as well.
+    // A team outside its limits is reported for its size, not also for its quorum.
     agents.set_quorum(static_cast<int>(std::clamp<std::int64_t>(size, 1, kMaxAgents)));
   }
 }
 
 void draw_starts(proto::Scenario& scenario) {
   proto::Agents& agents = *scenario.mutable_agents();
-  const Mission mission = mission_of(scenario);  // starts_m: those that there are already
+  const Mission mission = mission_of(scenario);  // starts_m: the listed starts
   std::vector<Placed> bodies;
   for (const Eigen::Vector3d& x_m : mission.starts_m)
     bodies.push_back({static_cast<AgentId>(bodies.size()), x_m});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scales the rings, then finds out which of them are around which.
+// Scales the rings, then finds which rings contain which.
 #include "scenario/drawn_polygons.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::vector<std::size_t> around(const std::vector<Ring>& rings, std::size_t inne
   return found;
 }
 
-/// Rings that touch or cross come out in any order: whoever checks the polygons refuses them.
+/// Rings that touch or cross come out in any order: the check of the polygons refuses them.
 std::vector<Polygon> polygons_of(const std::vector<Ring>& rings) {
   std::vector<std::vector<std::size_t>> outer;
   for (std::size_t i = 0; i < rings.size(); ++i) outer.push_back(around(rings, i));

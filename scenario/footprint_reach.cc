@@ -75,7 +75,7 @@ class Reach {
     return 2 * cell_count() * (lambda_.array() * shares.array()).maxCoeff();
   }
 
-  /// What a step costs.
+  /// The cost of a step.
   double multiplications() const {
     const double along_y = static_cast<double>(cells_[0]) * cells_[1] * cells_[2] * modes_[2];
     const double along_x = static_cast<double>(cells_[0]) * modes_[1] * cells_[1] * modes_[2];
@@ -93,7 +93,7 @@ class Reach {
     return weighted.dot(plain);
   }
 
-  /// Of φ² by the masses of one kind.
+  /// The gradient of φ² by the masses of one kind.
   Eigen::VectorXd gradient(std::size_t kind, const Coefficients& weighted) const {
     return 2 * transformed(weighted.cwiseProduct(seen_[kind]), modes_, false);
   }
@@ -127,7 +127,7 @@ class Reach {
   std::vector<Coefficients> seen_;  // a g by kind
 };
 
-/// Less than this no density can have.
+/// A bound below which no density can come.
 double lower_bound(const Reach& reach, const Masses& masses) {
   Coefficients weighted;
   double bound = reach.residual(masses, weighted);

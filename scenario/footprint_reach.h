@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How near to the target a team with footprints can come at all.
+// Computes how near to the target a team with footprints can come.
 #pragma once
 
 #include "core/mission.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds a scenario against what the modes of a free domain are made for, and integrates its target.
+// Checks whether a scenario suits the modes of a free domain, and integrates its target.
 #include "scenario/free_domain.h"
 
 #include "modes/provide.h"
@@ -35,7 +35,7 @@ Coefficients target_in(const FreeModes& modes, const DensityGrid& density) {
     for (int k = 0; k < modes.mode_count; ++k)
       target[k] += masses[cell] * static_cast<double>(values[k]);
   }
-  target[0] = 1;  // but for rounding
+  target[0] = 1;  // exact, without rounding
   return target;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Missions that steer by the modes of their free domain: what goes with them, and their target.
+// Missions that steer by the modes of their free domain: their rules and their target.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace ergocast {
 
-/// Reports what basis.free_domain does not go with.
+/// Reports what cannot be combined with basis.free_domain.
 void validate_free_domain(const proto::Scenario& scenario, Checks& checks);
 
 /// Gives a mission with basis.free_domain, whose μ is that of the cosines, its table and its own μ:

@@ -12,7 +12,7 @@ namespace ergocast {
 namespace {
 
 constexpr int kCells = 128;
-/// Each stands for the same mass.
+/// The number of places of the target from which ways begin; each represents the same mass.
 constexpr int kSources = 24;
 
 double widest_kept_m(const Mission& mission) {
@@ -22,7 +22,7 @@ double widest_kept_m(const Mission& mission) {
   return kept_m;
 }
 
-/// In each cell of the region that is free.
+/// The mass in each free cell of the region.
 std::vector<double> masses(const FreeRegion& region, const Box& domain,
                            const DensityGrid& density) {
   std::vector<double> mass(static_cast<std::size_t>(region.cells()), 0);
@@ -41,7 +41,7 @@ std::vector<double> masses(const FreeRegion& region, const Box& domain,
   return mass;
 }
 
-/// Of `mass`, the part that is a detour away from a cell.
+/// The part of `mass` to which the way from a cell is a detour.
 double hidden_from(const FreeRegion& region, const std::vector<double>& mass, int source) {
   const std::vector<double> ways_m = region.ways_m(source);
   const Eigen::Vector2d here_m = region.center_m(source);

@@ -11,8 +11,8 @@ namespace ergocast {
 inline constexpr double kDetour = 1.25;
 
 /// The share of pairs of places, drawn from the target, between which the shortest way that keeps
-/// the clearance is a detour. A law whose modes know no walls pulls along the straight line, and
-/// slides along walls where that leads on; a detour leads away from it.
+/// the clearance is a detour. A law whose modes do not depend on walls pulls along the straight
+/// line, and slides along walls where that helps. A detour leads away from that line.
 /// @param density  of the target
 double hidden_share(const Mission& mission, const DensityGrid& density);
 

@@ -35,7 +35,7 @@ void write_ring(const Ring& ring, Vertices& vertices) {
   }
 }
 
-/// In place of the file that `written` names, between the same heights.
+/// Replaces the file that `written` names by a polygon between the same heights.
 void write_polygon(const Polygon& polygon, proto::Polygon& written) {
   written.clear_file();
   written.clear_vertices();
@@ -81,7 +81,7 @@ class PolygonFileReader {
     }
   }
 
-  /// Keep-outs or walls.
+  /// Reads the files of keep-outs or walls.
   void polygons(google::protobuf::RepeatedPtrField<proto::Polygon>& list, const std::string& path) {
     for (int index = 0, listed = list.size(); index < listed; ++index) {
       double area = 0;
@@ -126,7 +126,7 @@ class PolygonFileReader {
     return inside(std::move(*found), field, area);
   }
 
-  /// Those that meet the domain, if all are sound.
+  /// The polygons that meet the domain, if all are valid.
   std::vector<PlacedPolygon> inside(std::vector<PlacedPolygon> found, const std::string& field,
                                     double& area) {
     const Box domain = domain_of(scenario_.domain());

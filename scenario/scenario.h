@@ -78,10 +78,10 @@ class Scenario {
   const std::string& name() const;
   const std::string& description() const;
 
-  /// Absolute paths of the other files that its target was made from: maps and GeoJSON. Only after
-  /// load() and parse() the latter, whose polygons print() has.
+  /// Absolute paths of the other files that its target was made from: maps and GeoJSON. GeoJSON
+  /// files are listed only after load() and parse(), because print() writes their polygons.
   std::vector<std::filesystem::path> map_files() const;
-  /// Those of them, and files of walls, that the scenario names by their whole path.
+  /// The files among these, and files of walls, that the scenario names by their whole path.
   const std::vector<std::filesystem::path>& files_by_whole_path() const;
 
   /// The target density in multiples of the uniform density, for people: at most 256 cells along

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks whether a scenario can be flown.
+// Checks whether a scenario can be run.
 #pragma once
 
 #include "scenario/checks.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Looks for parts of the domain that walls cut off, as the vehicles of each kind keep from them.
+// Looks for parts of the domain that walls cut off, for the clearance of each kind's vehicles.
 #include <algorithm>
 #include <set>
 
@@ -17,7 +17,7 @@ constexpr double kLeastFreeShare = 0.05;
 
 std::string percent(double share) { return shortest(rounded_up(100 * share)) + " %"; }
 
-/// Of the target, in a part of the free region.
+/// The target's mass in a part of the free region.
 double mass_in(const FreeRegion& region, int part, const Box& domain, const DensityGrid& density) {
   double sum = 0;
   for (Eigen::Index row = 0; row < density.cols(); ++row) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds each kind of agents against the others, the team, the law, the basis and the domain.
+// Checks each kind of agents against the others, the team, the law, the basis and the domain.
 #include "scenario/validate_kinds.h"
 
 #include <cmath>
@@ -74,7 +74,7 @@ class KindRules {
                         ", or other starts or random_count");
   }
 
-  /// What is to hold of the law's speed and noise, of the kind's.
+  /// Checks a kind's speed and noise by the rules for the law's.
   void speed(int i) {
     const std::string path = path_of(i) + ".u_max_mps";
     if (!sound(path) || !sound("law") || !sound("domain") || !sound("time.dt_s")) return;

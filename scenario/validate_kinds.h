@@ -7,9 +7,10 @@
 
 namespace ergocast {
 
-/// Reports kinds without a name or with another's, counts that are not the team, speeds and noise
-/// that the law could not have, footprints larger than the domain, bands without a mode.
-/// @pre each number was held against its limits
+/// Reports kinds without a name or with the name of another kind, counts that do not add up to the
+/// team, speeds and noise that the law could not have, footprints larger than the domain, and bands
+/// without a mode.
+/// @pre each number was checked against its limits
 void validate_kinds(const proto::Scenario& scenario, Checks& checks);
 
 }  // namespace ergocast

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds distance, speed, holding, disturbance, room and starts of a team against each other.
+// Checks distance, speed, holding, disturbance, room and starts of a team against each other.
 #include "scenario/validate_separation.h"
 
 #include <algorithm>
@@ -139,7 +139,7 @@ std::string spacing_text(const Mission& mission, std::size_t bodies) {
 }
 
 void validate_separation(const proto::Scenario& scenario, Checks& checks) {
-  // Each of them is part of the rules, which need all of them to be sound.
+  // The rules use all of these blocks, so all of them must be valid.
   const std::array parts = {"domain", "basis", "law",     "time",
                             "agents", "world", "vehicle", "separation"};
   if (!std::ranges::all_of(parts, [&](const char* part) { return checks.sound(part); })) return;

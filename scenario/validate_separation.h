@@ -11,13 +11,13 @@
 
 namespace ergocast {
 
-/// Reports what docs/safety.md says to be impossible: its conditions on speed, holding,
-/// disturbance, room and starts.
+/// Reports what is impossible by docs/safety.md: its conditions on speed, holding, disturbance,
+/// room and starts.
 /// @pre the defaults are filled in, and `scenario` has a separation
 void validate_separation(const proto::Scenario& scenario, Checks& checks);
 
-/// How far apart two alike of the first `bodies` begin [m]; "10 to 20" if that depends on their
-/// kind.
+/// How far apart two bodies of one kind, among the first `bodies`, must begin [m]; "10 to 20" if
+/// that depends on the kind.
 std::string spacing_text(const Mission& mission, std::size_t bodies);
 
 }  // namespace ergocast

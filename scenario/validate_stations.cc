@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds stations against the domain, the walls, each other and the time there is.
+// Checks stations against the domain, the walls, each other and the mission's time.
 #include "scenario/validate_stations.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace ergocast {
 namespace {
 
-/// Of agent `id`, or of its whole kind.
+/// The path of the station of agent `id`, or of its whole kind.
 std::string station_path(const Mission& mission, AgentId id) {
   const int kind = planned_kind(mission, id);
   int place = id;
@@ -150,7 +150,7 @@ void validate_ways_home(const Mission& mission, Checks& checks) {
     const std::optional<Eigen::Vector3d> home_m = station_of(mission, id);
     if (!home_m || !checks.sound(station_path(mission, id))) continue;
     const std::string path = station_path(mission, id);
-    // All of a kind with one station have the same way.
+    // All agents of a kind with one station use the same table of ways.
     if (!way || path != way_path) way.emplace(mission, id);
     way_path = path;
     const double needed_s = way->needed_s(mission.starts_m[static_cast<std::size_t>(id)]);

@@ -30,7 +30,7 @@ constexpr int kMaxKeepOuts = 64;
 /// `Covariance.yz_m2` [times the root of the product of both variances]. Beyond it: the scenario is
 /// refused.
 constexpr double kMaxCorrelation = 0.99;
-/// Of a Gaussian in a box with deviations of 1, for the same reason.
+/// The least eigenvalue of a Gaussian in a box, scaled to deviations of 1, for the same reason.
 /// Limit (Scenario): eigenvalues of a covariance with deviations of 1, at least. Below it: the
 /// scenario is refused.
 constexpr double kLeastEigenvalue = 1 - kMaxCorrelation;
@@ -121,7 +121,7 @@ class TargetValidator {
     if (c.has_zz_m2()) variance(path + ".zz_m2", c.zz_m2());
   }
 
-  /// Whether two coordinates with these variances may covary so much.
+  /// Whether two coordinates with these variances may have this covariance.
   bool covary(double covariance_m2, double one_m2, double other_m2, const std::string& path,
               const std::string& variances) {
     const double limit_m2 = kMaxCorrelation * std::sqrt(one_m2) * std::sqrt(other_m2);
@@ -134,7 +134,7 @@ class TargetValidator {
     return false;
   }
 
-  /// Three pairs that may each covary need not fit together.
+  /// Three pairs may each be valid, and still not fit together.
   bool definite(const proto::Covariance& c, const std::string& path) {
     const Eigen::Vector3d deviation_m =
         Eigen::Vector3d(c.xx_m2(), c.yy_m2(), c.zz_m2()).cwiseSqrt();
@@ -148,7 +148,7 @@ class TargetValidator {
     const double least =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(correlation, Eigen::EigenvaluesOnly)
             .eigenvalues()[0];
-    // The eigenvalue of one pair at its limit, but for rounding.
+    // The eigenvalue of one pair at its limit, with a margin for rounding.
     if (least >= kLeastEigenvalue - 1e-12) return true;
     checks_.problem(
         path,
@@ -280,7 +280,7 @@ class TargetValidator {
   }
 
   void polygon(const proto::Polygon& written, const std::string& path) {
-    if (written.has_file()) return;  // it could not be read, which is said already
+    if (written.has_file()) return;  // it could not be read, which is already reported
     if (!checks_.sound(path) || longer_side_m_ == 0) return;
     const auto flaw = flaw_of(polygon_of(written), least_area_m2(longer_side_m_));
     if (!flaw) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds the vehicles of each kind against their limits, the domain and the separation.
+// Checks the vehicles of each kind against their limits, the domain and the separation.
 #include "scenario/validate_vehicle.h"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ class LimitRules {
 /// How the agents of one kind, or all of a team without kinds, move in the domain.
 class MotionRules {
  public:
-  /// @param kind  of the team's; −1: it has none
+  /// @param kind  the kind's number; −1: the team has no kinds
   MotionRules(const proto::Scenario& scenario, const Mission& mission, int kind, Checks& checks)
       : mission_(mission),
         kind_(kind),

@@ -7,8 +7,8 @@
 
 namespace ergocast {
 
-/// Reports limits that are missing or have no effect, ways to brake that are too long for the
-/// domain, and what no separation of such vehicles is proven for; of each kind of agents.
+/// Checks each kind of agents. Reports limits that are missing or have no effect, braking paths
+/// that are too long for the domain, and vehicles for which the separation is not proven.
 /// @pre the defaults are filled in
 void validate_vehicle(const proto::Scenario& scenario, Checks& checks);
 

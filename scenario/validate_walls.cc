@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Holds walls and solid keep-outs against each other, against the starts and the vehicles.
+// Checks walls and solid keep-outs against each other, the starts and the vehicles.
 #include "scenario/validate_walls.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class WallRules {
     return std::ranges::all_of(walls_, [&](const Wall& wall) { return checks_.sound(wall.path); });
   }
 
-  /// What is solid anyway, or cannot be, or has no effect.
+  /// Reports settings that are redundant, impossible or without effect.
   void needless() {
     for (int i = 0; i < scenario_.world().walls_size(); ++i) {
       if (scenario_.world().walls(i).has_solid())
@@ -104,7 +104,7 @@ class WallRules {
     return rings;
   }
 
-  /// No two of them touch, or lie in each other but in a room.
+  /// Checks that no two walls touch, and that a wall lies in another one only in a room.
   void apart() {
     for (std::size_t i = 0; i < walls_.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {

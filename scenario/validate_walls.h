@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks whether walls are such, and whether bodies can keep from them.
+// Checks whether walls are valid, and whether bodies can keep from them.
 #pragma once
 
 #include "scenario/checks.h"

@@ -27,16 +27,16 @@ constexpr double kLongestStep = 0.05;
 
 /// Agents with a forecast need weights that fall at least like this power of the wave number.
 constexpr double kLeastDecay = 0.75;
-/// With that anticipation they lose nothing to the classical law.
+/// With at most this anticipation they lose nothing to the classical law.
 constexpr double kLittleAnticipation = 0.5;
 
 /// A least φ² above this share of an even coverage's makes a target finer than the footprints.
 constexpr double kReachable = 0.01;
 
-/// Of a target that walls hide from itself, docs/targets.md.
+/// The share of a target that walls may hide from the rest of it, docs/targets.md.
 constexpr double kMostHidden = 0.1;
 
-/// What detours around others take: this times the way past all of them, side by side.
+/// The time for detours around others: this times the way past all of them, side by side.
 constexpr double kDetours = 4;
 
 /// The law's noise as a formula of scenario fields.
@@ -110,8 +110,8 @@ void warn_of_coarse_steps(const Mission& mission, Findings& findings) {
       "write at most " + shortest(rounded_down(longest_s)) + ", or law.anticipation: 0");
 }
 
-/// Where short waves count nearly as much as long ones, the forecast is wrong about most of what
-/// counts: docs/law.md.
+/// If short waves count nearly as much as long ones, most of what counts is beyond the forecast:
+/// docs/law.md.
 void warn_of_flat_weights(const Mission& mission, Findings& findings) {
   const Basis& basis = mission.basis;
   const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
@@ -126,7 +126,7 @@ void warn_of_flat_weights(const Mission& mission, Findings& findings) {
           ", or law.anticipation: " + shortest(kLittleAnticipation));
 }
 
-/// Agents find their way around each other only where there is room.
+/// Agents find ways around each other only if there is room.
 void warn_of_packing(const Mission& mission, Findings& findings) {
   if (mission.separation.distance_m == 0) return;
   const double share = packing(mission, mission.starts_m.size());
@@ -140,7 +140,7 @@ void warn_of_packing(const Mission& mission, Findings& findings) {
                "long agents are blocked");
 }
 
-/// The way home that is reckoned with leads around nobody.
+/// The computed way home has no detours around other agents.
 void warn_of_crowded_ways_home(const Mission& mission, Findings& findings) {
   if (mission.separation.distance_m == 0 || mission.starts_m.size() < 2) return;
   AgentId first = 0;
@@ -154,13 +154,13 @@ void warn_of_crowded_ways_home(const Mission& mission, Findings& findings) {
     findings.add(indexed("agents.kind", kind) + ".reserve_s",
                  shortest(its.reserve_s) + " is little for " +
                      std::to_string(mission.starts_m.size()) +
-                     " agents that keep their distance: who gives way to others on the way home "
-                     "may come late",
+                     " agents that keep their distance: an agent that gives way to others on the "
+                     "way home may come late",
                  "write at least " + shortest(rounded_up(least_s)) + ", or accept it");
   }
 }
 
-/// Who is home stands in the way of who is not.
+/// An agent at home stands in the way of agents that are not home yet.
 void warn_of_tight_stations(const Mission& mission, Findings& findings) {
   const auto team = static_cast<AgentId>(mission.starts_m.size());
   for (AgentId one = 0; one < team && mission.separation.distance_m > 0; ++one) {
@@ -171,8 +171,8 @@ void warn_of_tight_stations(const Mission& mission, Findings& findings) {
       if (!their_m || (*home_m - *their_m).norm() >= passage_m) continue;
       return findings.add("agents.kind",
                           "agents " + std::to_string(other) + " and " + std::to_string(one) +
-                              " have stations that nobody passes between: who comes home first "
-                              "may shut others out",
+                              " have stations that nobody passes between: the first agent at "
+                              "home may shut others out",
                           "write stations at least " + shortest(rounded_up(passage_m)) +
                               " m apart, or accept it for one row that all can reach from a side");
     }
@@ -203,7 +203,7 @@ void warn_of_late_vehicles(const Mission& mission, Findings& findings) {
   }
 }
 
-/// Coarse sensors blur what they see: no paths make up for it.
+/// Coarse sensors blur what they see, and no path can compensate for it.
 void warn_of_footprints(const Mission& mission, Findings& findings) {
   const bool any = std::ranges::any_of(
       mission.kinds, [](const AgentKind& kind) { return kind.footprint_sigma_m > 0; });
@@ -226,7 +226,7 @@ void warn_of_footprints(const Mission& mission, Findings& findings) {
                "smoother target");
 }
 
-/// High modes that are rare need high modes, and time.
+/// Sending high modes less often requires that there are high modes, and enough time.
 void warn_of_rare_modes(const Mission& mission, Findings& findings) {
   const Timing& timing = mission.timing;
   if (timing.high_mode_period_factor == 1) return;
@@ -248,7 +248,7 @@ void warn_of_rare_modes(const Mission& mission, Findings& findings) {
   }
 }
 
-/// Cosines know no walls.
+/// Cosines do not depend on walls.
 void warn_of_hidden_mass(const Mission& mission, const DensityGrid& density, Findings& findings) {
   if (mission.walls.empty() || mission.basis.free_domain) return;
   const double hidden = hidden_share(mission, density);

@@ -10,7 +10,7 @@
 
 namespace ergocast {
 
-/// From `low_m` to `high_m` along z [m]; in a plane they do not count.
+/// From `low_m` to `high_m` along z [m]; ignored in a plane.
 struct Heights {
   double low_m = 0, high_m = 0;
 

@@ -21,7 +21,7 @@ namespace ergocast {
 /// Limit (Files of a scenario): cells of a NetCDF grid. Beyond it: the scenario is refused.
 inline constexpr std::size_t kMostVoxels = std::size_t{1} << 28;
 
-/// What to read of a file.
+/// The part of a file to read.
 struct NetcdfChoice {
   std::string variable;
   std::optional<int> time_index;            ///< of several times; the first is 0
@@ -41,7 +41,7 @@ class NetcdfGrid {
   NetcdfGrid(const NetcdfGrid&) = delete;
   NetcdfGrid& operator=(const NetcdfGrid&) = delete;
 
-  /// Its cells seen from above, and their heights, ascending.
+  /// The grid's cells seen from above, and their heights, ascending.
   virtual const RasterGrid& raster() const = 0;
   virtual const std::vector<Heights>& layers() const = 0;
 

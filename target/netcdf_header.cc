@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the lists of the header one after the other, and refuses each length that the rest of the
-// file is too short for. https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html
+// Reads the lists of the header one after the other, and refuses each length that exceeds the rest
+// of the file. https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html
 #include "target/netcdf_header.h"
 
 #include <algorithm>

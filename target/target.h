@@ -40,9 +40,10 @@ struct Region {
 };
 
 /// Σ weight·N(mean, covariance) + Σ weight·[x in region]/content(region) + uniform_weight /
-/// content, zero in every keep-out, truncated to the domain and divided by the remaining mass, so
-/// that it integrates to 1. A weight is thus the mass of the whole part, before any of it is cut
-/// off. Weights need not add up to 1. RasterIntegral adds maps, which are too large to be values.
+/// content, zero in every keep-out and truncated to the domain. It is divided by the remaining
+/// mass, so that it integrates to 1. A weight is thus the mass of the whole part, before any of it
+/// is cut off. Weights need not add up to 1. RasterIntegral adds maps, which are too large to be
+/// values.
 struct TargetDensity {
   std::vector<Gaussian> gaussians;
   double uniform_weight = 0;
@@ -63,7 +64,7 @@ struct TargetCoefficients {
 /// Exact to rounding: the uniform part, regions, and without keep-outs Gaussians with a diagonal
 /// covariance. The other Gaussians are integrated by Gauss–Legendre panels, doubled until two
 /// successive results agree to 1e-12 (1e-10 where x or y is correlated with z) or the limit of
-/// panels is reached. `error_bound` tells the accuracy reached.
+/// panels is reached. `error_bound` is the accuracy reached.
 /// @pre weights ≥ 0, covariances positive definite, polygons that do not cross themselves and have
 ///      an area, heights of a box in order, some mass inside the domain (mass_inside() > 0).
 TargetCoefficients target_coefficients(const TargetDensity& target, const Box& domain,

@@ -94,7 +94,7 @@ std::string plain(const Estimate& estimate) {
          short_number(estimate.high) + ']';
 }
 
-/// What a terminal shows of a point, after its name.
+/// The cells that a terminal shows of a point, after its name.
 std::vector<std::string> terminal_cells(const PointSummary& s) {
   if (s.runs == 0) return {"0", "-", "-", "-", "-"};
   const bool held = !s.escape_times_s.empty();

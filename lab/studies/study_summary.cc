@@ -18,7 +18,7 @@ double mean_of(const Runs& runs, double (*value)(const StudyFigures&)) {
   return sum / static_cast<double>(runs.size());
 }
 
-/// What is not nan.
+/// The values that are not nan.
 std::vector<double> values_of(const Runs& runs, const auto& value) {
   std::vector<double> values;
   for (const auto& [seed, figures] : runs) {

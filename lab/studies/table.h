@@ -12,8 +12,8 @@ namespace ergocast::studies {
 using Table = std::map<std::string, std::vector<double>>;
 
 /// A file of `ergocast simulate --seeds … --out FILE` or of a part of a study: numbers by column,
-/// in the order of the file. Throws std::runtime_error, which names the file, if it cannot be read,
-/// has no rows or a torn one, or if one of its missions failed.
+/// in the order of the file. Throws std::runtime_error with the file's name if the file cannot be
+/// read, has no rows or an incomplete one, or if one of its missions failed.
 Table read_table(const std::filesystem::path& file);
 
 /// All runs of one point of a study, ascending by seed.

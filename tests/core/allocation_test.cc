@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The control step allocates nothing. Counted are all ways to the allocator that this program's own
-// code has: operator new, replaced here, and malloc and its kin, which the linker redirects here
+// The control step allocates nothing. The test counts every call of the allocator by this program's
+// own code: operator new, replaced here, and malloc and its kin, which the linker redirects here
 // (Eigen calls them directly).
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ int __wrap_posix_memalign(void** block, std::size_t alignment, std::size_t size)
 namespace ergocast {
 namespace {
 
-/// How often `action` went to the allocator.
+/// How often `action` called the allocator.
 template <class Action>
 std::size_t allocations_in(const Action& action) {
   const std::size_t before = g_allocations;
@@ -265,7 +265,7 @@ TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
         forecast.see(id, tick, x_m);
         CoverageTable& theirs = id == 0 ? own : teammates[static_cast<std::size_t>(id - 1)];
         theirs.add_sample(test::author_of(id), at);
-        // One of them is not heard at every broadcast, and one each tick.
+        // One agent's broadcasts are not all received, and one agent is received each tick.
         if (id == 0 || (tick % 5 != 0 && id != 3) || (tick % 10 == 5 && id == 1)) continue;
         for (int b = 0; b < own.block_count(); ++b) {
           if (b > 0 && mission.timing.high_mode_period_factor > 1 && tick % 4 == 2) continue;
@@ -280,7 +280,7 @@ TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
     };
     EXPECT_GT(allocations_in([&] { step(0); }), 0u) << "the first one makes the rows";
     for (Tick tick = 1; tick < 20; ++tick) step(tick);  // each row keeps the block before, too
-    // For longer than places are kept.
+    // This lasts longer than places are kept.
     for (Tick tick = 20; tick < 200; ++tick) {
       EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
     }

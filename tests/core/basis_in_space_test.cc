@@ -99,7 +99,7 @@ TEST(BasisInSpace, FieldIsTheSlopeAndTheBendOfTheWeightedSum) {
       for (int axis = 0; axis < 3; ++axis) {
         const double h = 1e-3;
         const Eigen::Vector3d step = h * Eigen::Vector3d::Unit(axis);
-        // Of the fourth order: the error is h⁴/30 of the fifth derivative.
+        // A difference of the fourth order: the error is h⁴/30 of the fifth derivative.
         const double slope =
             (8 * (sum_at(x_m + step, basis, a) - sum_at(x_m - step, basis, a)) -
              (sum_at(x_m + 2 * step, basis, a) - sum_at(x_m - 2 * step, basis, a))) /

@@ -120,7 +120,7 @@ CoverageTable table_of(const Mission& mission) {
   return table;
 }
 
-/// An author's table after so many steps, one by one as told.
+/// The blocks that an author has sent after `steps` steps, in their order.
 std::vector<Contribution> sent_by(const Author& author, const Mission& mission, std::int64_t steps,
                                   const double* footprint = nullptr) {
   CoverageTable own = table_of(mission);
@@ -183,7 +183,7 @@ TEST(RareModes, BlocksMergeInAnyOrderAndAnyNumberOfTimes) {
   for (const Author& author : {Author{0, 7}, Author{0, 9}, Author{1, 5}}) {
     for (const std::int64_t steps : {1, 4, 8}) {
       const auto blocks = sent_by(author, mission, steps);
-      // High modes are said now and then.
+      // High modes are sent now and then.
       sent.insert(sent.end(), blocks.begin(), steps == 4 ? blocks.begin() + 1 : blocks.end());
     }
   }

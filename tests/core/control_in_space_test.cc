@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The control step on a box: the law term by term, teams that fly in it, and the plane that is left
-// where one axis has no height or no second mode.
+// The control step on a box: the law term by term, teams that move in it, and the plane as the case
+// without a height or without a second mode.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ TEST(CommandInSpace, IsTheLawTermByTerm) {
   }
 }
 
-// As if all sides were as long as the longest.
+// The RMS is taken as if all sides were as long as the longest.
 TEST(CommandInSpace, RelativeEpsilonIsAShareOfTheResidualGradientsRms) {
   const Mission mission = space_mission();
   Controller controller(mission);

@@ -89,7 +89,7 @@ TEST(SmoothInput, OfNoGradientIsNoInputAndNeverNan) {
 }
 
 TEST(SmoothInput, OfNextToNoGradientIsADirectionAndNeverInfinite) {
-  // An agent 1e-308 m off an edge feels a gradient like that.
+  // An agent 1e-308 m off an edge has a gradient like that.
   for (const double tiny : {1e-150, 1e-300, 1e-307, 1e-310, 1e-320, kTiniest}) {
     EXPECT_EQ(smooth_input({tiny, 0, 0}, 0, 12), Eigen::Vector3d(-12, 0, 0)) << tiny;
     EXPECT_EQ(smooth_input({0, -tiny, 0}, 0, 12), Eigen::Vector3d(0, 12, 0)) << tiny;

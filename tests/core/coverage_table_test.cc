@@ -44,7 +44,7 @@ std::vector<Contribution> blocks_of(const Author& author, std::int64_t steps) {
   return blocks;
 }
 
-/// Everything a table holds of these authors, and the average.
+/// Everything that a table holds of these authors, and the average.
 struct Held {
   std::vector<Contribution> blocks;
   Coefficients average = Coefficients::Zero(225);
@@ -189,7 +189,7 @@ TEST(CoverageTable, OneSampleGivesTheLimitOf4AtTheStart) {
 
 TEST(CoverageTable, AverageWeighsEachRowByTheTimeItCoversBlockByBlock) {
   CoverageTable table = table_of();
-  // Agent 1 is heard of in both blocks, but with different ages; agent 2 in the second only.
+  // Agent 1 is known in both blocks, but with different ages; agent 2 only in the second.
   const auto one_old = blocks_of({1, 5}, 2), one_new = blocks_of({1, 5}, 6);
   const auto two = blocks_of({2, 1}, 3);
   table.merge(one_new[0], kManySteps);
@@ -330,7 +330,7 @@ TEST(CoverageTableRefuses, SumsThatCannotBeTrue) {
       expect_refused(lie);
     }
   }
-  // The padding too: what is not used today must not carry anything.
+  // The padding is checked too: unused numbers must be 0.
   Contribution lie = blocks_of({1, 5}, 4)[1];
   lie.sums.edit()[127] = 0.5;
   expect_refused(lie);

@@ -2,8 +2,8 @@
 // Bodies that want to be where others are, with all that can happen to what they know: loss, age,
 // held and late commands, errors, restarts, disturbances. The filter must keep them apart.
 //
-// A flaw withholds one thing from the filter that it needs. Each must be seen to break the
-// distance: else the attack would prove nothing.
+// A flaw withholds from the filter one thing that it needs. Each flaw must be seen to break the
+// distance, else the attack would prove nothing.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ enum class Flaw {
   kNoError,
   kNoMargin,         ///< no margin for disturbances
   kFirstTwo,         ///< only two neighbours count
-  kUnknownIgnored,   ///< who was never heard of does not exist
+  kUnknownIgnored,   ///< a body of unknown place counts as absent
   kEdgesAfterwards,  ///< the filter knows no edges; the world folds at them
 };
 
@@ -35,8 +35,8 @@ struct Attack {
   int ticks = 1000;
   double side_m = 200, distance_m = 30, max_speed_mps = 40;
   bool in_space = false;
-  double loss = 0;      ///< share of positions that are not heard
-  Tick hold_ticks = 0;  ///< a command is executed for so long if no newer one comes
+  double loss = 0;      ///< share of positions that are not received
+  Tick hold_ticks = 0;  ///< for how long a command is executed if no newer one arrives
   double late = 0;      ///< share of commands that arrive 1 … hold_ticks later
   int compute_each = 1;
   double error_m = 0;
@@ -195,7 +195,7 @@ class Crowd {
     body.sent.push_back({tick, tick + delay, within_speed(safe.velocity_mps, body.max_speed_mps)});
   }
 
-  /// Makes `other` what the flaw makes of it; true: it is left out.
+  /// Applies the flaw to `other`; true: it is left out.
   bool flawed(Neighbour& other, std::size_t self, std::size_t taken) const {
     if (other.id == static_cast<AgentId>(self)) return true;
     switch (attack_.flaw) {

@@ -60,7 +60,7 @@ inline Eigen::Vector3d place(AgentId agent, Tick tick, const Mission& mission) {
                     static_cast<std::uint64_t>(tick));
 }
 
-/// An agent that covers the place of its vehicle, tick by tick, and broadcasts when it is asked to.
+/// An agent that samples the place of its vehicle, tick by tick, and broadcasts on request.
 class Life {
  public:
   Life(const Author& author, const Mission& mission)
@@ -119,7 +119,7 @@ struct Row {
   std::vector<double> sums = std::vector<double>(kBlockSize), gains = sums;
 };
 
-/// What is held of each author and block, and what it has gained since the one held before.
+/// The block held of each author, and what it has gained since the one held before.
 inline std::map<std::pair<Author, int>, Row> rows_of(const Known& known) {
   std::map<std::pair<Author, int>, Row> rows;
   for (const Contribution& sent : known.heard) {
@@ -154,7 +154,7 @@ inline bool has_forecast(const Author& author, const Known& known) {
          });
 }
 
-/// Adds where the author's vehicle has been since it spoke.
+/// Adds the places of the author's vehicle since its last broadcast.
 inline void dead_reckon(const Author& author, int block, const Known& known, const Mission& mission,
                         Row& row) {
   const auto seen = known.seen.find(author.agent);
@@ -232,7 +232,8 @@ inline RosterEntry entry_of(const Author& author, Tick from, Tick until = -1) {
   return {author, from, until};
 }
 
-/// A team of `agents` that has broadcast all at each of the ticks 0 … kEnd − 1, as its messages.
+/// The messages of a team of `agents` that has broadcast everything at each of the ticks 0 … kEnd −
+/// 1.
 inline std::vector<Contribution> told_each_tick(int agents, const Mission& mission,
                                                 Tick every = 1) {
   std::vector<Contribution> sent;

@@ -72,7 +72,7 @@ TEST(DeadReckoning, DoesNotDependOnWhenPlacesAndBlocksComeNorOnWhenOneLooks) {
   const Mission mission = mission_of(true);
   const Known team = team_of(4, mission, 7);
   Known all = team;
-  // Some are missed, so that what is reckoned is not what the next block says.
+  // Some places are missed, so that the extended row differs from the next block.
   const auto is_seen = [](AgentId id, Tick tick) { return tick % 4 != id; };
   for (const AgentId id : {1, 2, 3}) {
     for (Tick tick = 0; tick < kEnd; ++tick) {
@@ -104,7 +104,8 @@ TEST(DeadReckoning, DoesNotDependOnWhenPlacesAndBlocksComeNorOnWhenOneLooks) {
   }
 }
 
-/// ĉ after the team has told all up to tick 20 and agent 1's vehicle was seen at 30 as `seen` says.
+/// ĉ after the team has sent everything up to tick 20, and `seen` has shown agent 1's vehicle at
+/// 30.
 Coefficients with_a_place(const Mission& mission, const Known& announced,
                           const std::function<void(Forecast&)>& seen) {
   Forecast forecast(mission, kSelf);
@@ -168,7 +169,7 @@ TEST(DeadReckoning, UsesNoPlaceTwiceNorOneOfAnEarlierTick) {
 }
 
 TEST(DeadReckoning, UsesNoPlaceOfAFormerAuthorsTime) {
-  // Agent 1 was restarted at tick 22: its vehicle's places before are its predecessor's.
+  // Agent 1 was restarted at tick 22: its vehicle's earlier places belong to its predecessor.
   const Mission mission = mission_of(true);
   Known announced = announced_until(20, mission);
   announced.roster[1].active_until = 22;
@@ -181,7 +182,7 @@ TEST(DeadReckoning, UsesNoPlaceOfAFormerAuthorsTime) {
       Coefficients looked(144);
       for (Tick tick = first; tick <= 30; ++tick) {
         forecast.see(1, tick, place(1, tick, mission));
-        // While the former author was the newest, its row was reckoned on the same track.
+        // While the former author was the newest, its row was extended on the same track.
         Known then = announced_until(std::min<Tick>(tick, 20), mission);
         forecast.look_ahead(table_of(then, mission), tick < 22 ? then.roster : announced.roster,
                             tick, looked);
@@ -195,7 +196,7 @@ TEST(DeadReckoning, UsesNoPlaceOfAFormerAuthorsTime) {
 }
 
 TEST(DeadReckoning, UsesNoPlaceOfAnAdmissionThatIsNoMore) {
-  // A coordinator died, and its successor admitted agent 1 anew, from tick 26 on.
+  // A coordinator crashed, and its successor admitted agent 1 again, from tick 26 on.
   const Mission mission = mission_of(true);
   const Known announced = announced_until(20, mission);
   Known anew = announced;

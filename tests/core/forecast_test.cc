@@ -24,7 +24,8 @@ void forge(Contribution& block, Dice& dice) {
   block.sums.edit()[1 + dice.below(10)] = dice.one_in(2) ? elapsed_s : -elapsed_s;
 }
 
-/// Agent 2 and we were restarted; one agent has left, one is to come, one is not in the roster.
+/// Agent 2 and the own agent were restarted; one agent has left, one will come, one is not in the
+/// roster.
 std::vector<RosterEntry> drawn_roster(Dice& dice) {
   const Tick restarted = dice.tick(1, kEnd), ours = dice.tick(0, kEnd);
   std::vector<RosterEntry> roster{entry_of({0, 7}, 0, ours), entry_of(kSelf, ours)};
@@ -109,7 +110,7 @@ TEST_P(Foreseen, IsTheFormula) {
   EXPECT_GT(largest, 0.1) << "or nothing was foreseen";
 }
 
-/// As many modes in six slabs, of which the second block begins within a row of the last.
+/// The same number of modes in six slabs. The second block begins within a row of the last slab.
 TEST_P(Foreseen, IsTheFormulaInSpaceToo) {
   mission_.domain.origin_m.z() = -20;
   mission_.domain.size_m.z() = 400;
@@ -146,7 +147,7 @@ TEST_P(Foreseen, IsWhatIsKnownWhereTheLawDoesNotLookAhead) {
 
 // ---- which agents count ----
 
-/// The same without anything to expect of agent 1; its coverage counts all the same.
+/// The same without a forecast of agent 1; its coverage still counts.
 Known without_hope_for_1(Known known) {
   known.roster.erase(known.roster.begin() + 1);
   return known;
@@ -171,7 +172,7 @@ TEST(ForecastCounts, NobodyWhoHasLeftOrIsYetToCome) {
 TEST(ForecastCounts, OfOneNumberTheNewestLifeOnly) {
   const Mission mission = mission_of(false);
   const Known team = team_of(3, mission);
-  // Whatever the order of the incarnations' numbers, which are random.
+  // The order of the incarnations' numbers is random, so both orders are tested.
   for (const Incarnation newer : {Incarnation{0}, Incarnation{2}}) {
     Known known = team;
     const RosterEntry restarted = entry_of({1, newer}, 7);
@@ -199,7 +200,7 @@ TEST(ForecastCounts, NoFormerLifeOfOurOwn) {
   for (Tick tick = 0; tick < 20; ++tick) life.cover(tick);
   for (const Contribution& block : life.blocks(19)) known.heard.push_back(block);
   const Coefficients expected = foreseen(known, mission);
-  // Also where the roster does not have its departure yet.
+  // This also holds if the roster does not contain its departure yet.
   for (const Tick until : {Tick{20}, Tick{-1}}) {
     Known named = known;
     named.roster[0].active_from = 20;
@@ -261,7 +262,7 @@ TEST(ForecastCounts, WhoHasBeenSilentForTooLongInTheTeamsNumberOnly) {
       if (block.header.sender == id) block.header.tick += 901;
     }
   }
-  // 2 goes on with the horizon of a team of three.
+  // Agent 2 continues with the horizon of a team of three.
   Known alone = without_hope_for_1(later);
   Mission longer = mission;
   const double dimensions = shared_dimensions(

@@ -67,7 +67,7 @@ TEST(Reflect, FoldsAtBothEdges) {
 }
 
 TEST(Reflect, KeepsTheSmallestStepAwayFromAnEdge) {
-  // An agent that lands a rounding error outside is not set onto the edge, which it would not
+  // An agent that is outside by a rounding error is not set onto the edge, which it would not
   // leave.
   for (const double tiny : {1e-13, 1e-14, 1e-17, 1e-300, 5e-324}) {
     EXPECT_EQ(reflect({-tiny, 1000, 0}, kUnit).x(), tiny);
@@ -84,7 +84,7 @@ TEST(Reflect, FoldsStepsLongerThanTheDomain) {
 TEST(Reflect, NeverLeavesThePointOutside) {
   for (const Box& domain : {kUnit, kMoved}) {
     for (std::uint64_t i = 0; i < 100000; ++i) {
-      // From a rounding error to 10^15 times the size, either side.
+      // Distances from a rounding error to 10^15 times the size, on either side.
       const Eigen::Vector2d u = uniform_pair(1, Purpose::kFault, 0, i);
       const double reach = std::pow(10, 31 * u.x() - 16) * (i % 2 == 0 ? 1 : -1);
       const Eigen::Vector3d x_m = domain.origin_m +

@@ -45,7 +45,7 @@ TEST(Holds, MoveTheEnd) {
   EXPECT_EQ(tick_after(kTwice, 10), 10);  // a hold that begins with the end
   EXPECT_EQ(tick_after(kTwice, 11), 17);
   EXPECT_EQ(tick_after(kTwice, 34), 40);
-  EXPECT_GT(tick_after(kTwice, 35), Tick{1} << 60);  // for ever, as far as it is known
+  EXPECT_GT(tick_after(kTwice, 35), Tick{1} << 60);  // no end is known
 }
 
 TEST(Holds, TellHowManyOfTheirEndsAreNamed) {

@@ -119,7 +119,7 @@ TEST(TargetSpread, InSpaceCountsEachAxis) {
               std::hypot(300 * deviation(0.3), 200 * deviation(0.6), 80 * deviation(0.9)), 1e-10);
 }
 
-// A place so small that all modes see it as a point: what the modes leave out is all there is.
+// A place so small that all modes see it as a point: all of the result is what the modes leave out.
 TEST(TargetSpread, IsOffByWhatTheModesLeaveOutAndNoMore) {
   const Box square{{0, 0, 0}, {2000, 2000, 0}};
   for (const int modes : {2, 4, 16, 64}) {
@@ -128,7 +128,7 @@ TEST(TargetSpread, IsOffByWhatTheModesLeaveOutAndNoMore) {
       const Mission mission = mission_of(bells({{1, on_ground(at_m), round(1)}}), square, modes);
       const double actual_m = spread_m(mission);
       ASSERT_TRUE(std::isfinite(actual_m));
-      // Of the mean square once, of the squared mean at most 2 + tail times.
+      // The tail enters the mean square once, and the squared mean at most 2 + tail times.
       const double tail = 4 / (std::numbers::pi * std::numbers::pi * (modes - 0.5));
       EXPECT_LE(actual_m * actual_m, 2 * 2000 * 2000 * tail * (3 + tail) + 2) << modes << " modes";
     }
@@ -153,7 +153,7 @@ TEST(SharedDimensions, AreTwoOfASquareAndOneOfAStrip) {
   EXPECT_NEAR(dimensions(mission_of(bells({}, 1), {{0, 0, 0}, {2000, 1000, 0}})), 25. / 17, 1e-12);
 }
 
-// Two peaks on a diagonal lie along a line, whatever the axes are called.
+// Two peaks on a diagonal lie along a line, so the team shares out one dimension.
 TEST(SharedDimensions, FollowTheTargetAndNotTheDomain) {
   const Box square{{-40, 3, 0}, {2000, 2000, 0}};
   const auto two = [&](double y_m, double other_y_m) {
@@ -269,7 +269,7 @@ TEST(Weight, CountsOfTheSpanNoMoreThanEightPeriods) {
   EXPECT_NEAR(look_ahead.weight_s(30, 41, 0, kPeriod), 34, 1e-12);
   EXPECT_NEAR(look_ahead.weight_s(30, 5000, 0, kPeriod), 34, 1e-12) << "a first block";
   EXPECT_NEAR(look_ahead.weight_s(30, 5000, 0, 2), 31.6, 1e-12)
-      << "who speaks more often than it must";
+      << "an agent that broadcasts more often than it must";
 }
 
 TEST(Weight, BelievesARarerPeriodOfHighModesIfThePlanHasIt) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The coverage table on random histories: many incarnations, lost, late, repeated and relayed
-// blocks, groups that merge in any order, authors that are forgotten. The received blocks alone
+// blocks, groups that merge in any order, authors that are forgotten. Only the received blocks
 // decide what is held.
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ std::vector<Contribution> everything_sent(std::uint64_t history) {
   return sent;
 }
 
-/// What `heard` of a history: a random part of it, some of it twice, in any order.
+/// A random part of a history as it is received: some blocks twice, in any order.
 std::vector<Contribution> part_of(const std::vector<Contribution>& sent, Dice& dice) {
   std::vector<Contribution> heard;
   for (const Contribution& block : sent) {
@@ -232,7 +232,7 @@ TEST(MergeProperty, ForgettingIsLeavingOutAndKeeping) {
     EXPECT_EQ(table.covered_s(), rest.covered_s());
     CoverageTable far = empty_table();
     pass_on(table, far);
-    expect_same(far, all);  // others may not have heard yet that it is to be forgotten
+    expect_same(far, all);  // others may not know yet that it is to be forgotten
     table.remember_all();
     EXPECT_EQ(average_of(table), average_of(all)) << "as if nothing had been";
   });

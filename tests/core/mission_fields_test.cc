@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The list of a mission's fields lacks none.
+// The list of a mission's fields is complete.
 #include "core/mission_fields.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <utility>
 
 namespace ergocast {
-/// Only named where nothing is evaluated, so it is defined nowhere.
+/// Used only where nothing is evaluated, so it has no definition.
 struct Anything {
   template <class T>
   operator T() const;

@@ -2,9 +2,8 @@
 // Noise as a function: the generator against its published vectors, its numbers against the moments
 // and the distribution of a standard normal.
 //
-// The seeds are fixed, so a bound of z standard errors does not make a test that fails at times; it
-// says how unlikely these numbers were if they were not what they claim: z = 5 is one in 1.7
-// million, two-sided.
+// The seeds are fixed, so a bound of z standard errors does not make a test fail at times. It shows
+// how unlikely such numbers are if the claim is true: z = 5 is one in 1.7 million, two-sided.
 #include "core/noise.h"
 
 #include <gtest/gtest.h>

@@ -116,7 +116,7 @@ TEST(Perturbation, TurnsWithTheField) {
 }
 
 TEST(Perturbation, IsNeverBelowItsFloorNorAboveItsCeiling) {
-  // Theorem 1 wants the one, Theorem 2 the other.
+  // Theorem 1 needs the lower bound, Theorem 2 the upper one.
   for (std::uint64_t i = 0; i < 20000; ++i) {
     const auto draw = [i](std::uint32_t what) { return normal_pair(7, Purpose::kStart, what, i); };
     const double scale = std::exp(3 * draw(9).x());
@@ -231,7 +231,7 @@ TEST(Perturbation, OfAFieldThatIsLevelAlongZIsThatOfThePlane) {
     const PerturbationScale scale{adaptive(), kStep_s};
     const Eigen::Vector3d plane = perturbation(scale, kEpsilon, level, xi, eta);
     EXPECT_EQ(plane.z(), scale.noise_mps * xi.z());
-    level.hessian(2, 2) = 1e-300;  // next to nothing, but the way through space
+    level.hessian(2, 2) = 1e-300;  // almost 0, but enough to take the path for space
     const Eigen::Vector3d space = perturbation(scale, kEpsilon, level, xi, eta);
     ASSERT_LT((plane - space).norm(), 1e-9) << i;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The potential that a team with fresh rows descends, docs/law_theory.md:
 //   E(x) = Σ_i ⟨S − T_a μ, f(x_i)⟩_λ + w Σ_{i<j} G(x_i, x_j),   G(x, y) = ⟨f(x), f(y)⟩_λ
-// with T_a = T + (N − 1) w. Its slope in x_i is T_a B_i: not nearly, but exactly.
+// with T_a = T + (N − 1) w. Its slope in x_i is exactly T_a B_i.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr std::uint64_t kTeams = 60;
 
 Author author_of(std::size_t agent) { return {static_cast<AgentId>(agent), 1}; }
 
-/// A team of 2 … 9 agents that have been anywhere, tick by tick; all know all of it.
+/// A team of 2 … 9 agents with random places at each tick; all agents know all of them.
 class FreshTeam {
  public:
   explicit FreshTeam(std::uint64_t seed) : seed_(seed) {
@@ -41,7 +41,7 @@ class FreshTeam {
   const std::vector<Eigen::Vector3d>& x_m() const { return x_m_; }
   double ahead_s() const { return covered_s() + (static_cast<double>(size()) - 1) * weight_s(); }
 
-  /// E at other places than theirs, all that they have covered being the same [s], by its formula.
+  /// E at other places than theirs, with the same coverage [s], by its formula.
   double potential(const std::vector<Eigen::Vector3d>& x_m) const {
     double sum = 0;
     for (std::size_t i = 0; i < x_m.size(); ++i) {
@@ -54,8 +54,8 @@ class FreshTeam {
     return sum;
   }
 
-  /// E as the φ² that the team foresees of itself: (‖S − T_a μ + wF‖² − ‖S − T_a μ‖²) / 2w less the
-  /// agents' own share, w/2 Σ G(x_i, x_i), F = Σ f(x_i).
+  /// E from the φ² that the team forecasts for itself: (‖S − T_a μ + wF‖² − ‖S − T_a μ‖²) / 2w less
+  /// the agents' own share, w/2 Σ G(x_i, x_i), F = Σ f(x_i).
   double potential_by_metric(const std::vector<Eigen::Vector3d>& x_m) const {
     Coefficients foreseen = residual_;
     double own = 0;
@@ -68,7 +68,7 @@ class FreshTeam {
            weight_s() / 2 * own;
   }
 
-  /// B of an agent by the law as it flies: rows, forecast, control step.
+  /// B of an agent by the law as the agent computes it: rows, forecast, control step.
   Eigen::Vector3d b(std::size_t agent) const {
     Forecast forecast(mission_, author_of(agent));
     for (std::size_t j = 0; j < size(); ++j) {
@@ -130,7 +130,7 @@ class FreshTeam {
   }
 
   double covered_s() const { return table_->covered_s(); }
-  /// What each teammate's gains are taken to go on for: h, and the tick that they took.
+  /// For how long each teammate's gains are assumed to continue: h, and the tick that they took.
   double weight_s() const {
     return LookAhead(mission_).horizon_s(static_cast<int>(size()), 0) + kDt;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies that keep a distance: attacks on the filter, each with the flaws that it would show.
+// Bodies that keep a distance: attacks on the filter, each with the flaws that it detects.
 #include "core/separation.h"
 
 #include <gtest/gtest.h>
@@ -172,9 +172,8 @@ TEST(Separation, NeverLeavesTheDomain) {
   EXPECT_EQ(safe.by, kUnassigned);
 }
 
-/// The world executes the result as it is: no cut may follow that would be counted.
-/// How near a body that follows as a low pass of 0.4 s comes to the edges, which it drives at. One
-/// that is outside is nearer than 0.
+/// The world executes the result unchanged: a later cut would be counted. How near a body that
+/// follows as a low pass comes to the edges, towards which it moves. Below 0 it is outside.
 /// @param wall  in place of the domain's right edge
 double nearest_edge_m(double response_s, double position_error_m, bool wall = false) {
   Mission mission = team_mission();
@@ -269,8 +268,8 @@ TEST(Separation, LeavesWhatItHasAllowed) {
   }
 }
 
-/// Two that want to pass each other on one line do, and a crowd of goal seekers is not blocked for
-/// long. Without a step sideways the first stands for ever.
+/// Two bodies on one line pass each other, and a crowd of goal seekers is not blocked for long.
+/// Without a step sideways the two would stand for ever.
 TEST(Separation, BodiesPassEachOther) {
   SeparationFilter filter(team_mission(), 0);
   Eigen::Vector3d x_m[2] = {{500, 500, 0}, {700, 500, 0}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the scenario's speed limit leaves of a command.
+// How the scenario's speed limit cuts a command.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -60,7 +60,8 @@ TEST(Station, SaysAllOnceMoreBeforeItRests) {
   EXPECT_LE(next_broadcast(mission, 3, 799), 809);
 }
 
-/// Flies from its start as soon as it must, and says how far from home it is when it has to be.
+/// Goes home from its start at the latest time, and returns how far from home it is when it has to
+/// be there.
 double apart_when_due_m(const Mission& mission, AgentId id, double v_mps) {
   WayHome way(mission, id);
   const Motion motion = motion_of(mission, id);
@@ -78,7 +79,7 @@ double apart_when_due_m(const Mission& mission, AgentId id, double v_mps) {
   return length_of(x_m - *station_of(mission, id));
 }
 
-// The latest start at which the bound still allows it: nothing is spare.
+// Each vehicle starts at the latest time that the bound allows.
 TEST(WayHome, IsInTimeForEachKindOfVehicle) {
   for (const VehicleLimits& vehicle :
        {VehicleLimits{}, VehicleLimits{VehicleKind::kAcceleration, 3},

@@ -193,8 +193,8 @@ TEST(StepConstraints, NameTheSetThatIsExceededMost) {
   EXPECT_EQ(constraints.most_exceeded({0, 3, 0}), 2) << "numbers count sets that cost nothing";
 }
 
-/// On a contact the bound is 0 and the projection exceeds it by a rounding error. A step that were
-/// shortened for that would be 0: bodies would stop sliding along each other.
+/// On a contact the bound is 0 and the projection exceeds it by a rounding error. If a step were
+/// shortened for that, it would be 0, and bodies would stop sliding along each other.
 TEST(StepConstraints, LetABodySlideAlongAContact) {
   Draws draws(7);
   for (int i = 0; i < 2000; ++i) {

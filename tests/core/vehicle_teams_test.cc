@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-/// Neither at a tick nor between two.
+/// The least distance of two bodies within a tick: at its ends and between them.
 double least_distance_within_m(const Mission& mission, const std::vector<Mover>& before,
                                const std::vector<Eigen::Vector3d>& next_mps) {
   double least_m = 1e300;
@@ -36,7 +36,7 @@ double least_distance_within_m(const Mission& mission, const std::vector<Mover>&
 enum class Flaw {
   kNone,
   kWholeGap,
-  kNoVelocity,  ///< neither ways to brake nor headings of others are known
+  kNoVelocity,  ///< neither braking paths nor headings of others are known
   kNoBulge,
   kNoCircle,     ///< no body has a loiter circle
   kItsNoCircle,  ///< no other body has one
@@ -57,7 +57,7 @@ Mission flawed(Mission mission, Flaw flaw) {
 
 constexpr int kBodies = 12;
 
-/// What `self` is told of the team.
+/// What `self` knows of the team.
 std::vector<Neighbour> neighbours_of(const Mission& mission, const std::vector<Mover>& team,
                                      const Mover& self, Flaw flaw) {
   std::vector<Neighbour> others;

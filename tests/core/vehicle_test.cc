@@ -155,7 +155,7 @@ TEST(Vehicle, LeavesTheStraightWayOfItsAnchorByNoMoreThanItSays) {
       most_m = std::max(most_m, (anchor(0.5, half * now_mps) - middle_m).norm());
     }
     EXPECT_LE(most_m, bulge_m(motion) * (1 + 1e-9));
-    EXPECT_GE(most_m, bulge_m(motion) * 0.9) << "and it says no more than needed";
+    EXPECT_GE(most_m, bulge_m(motion) * 0.9) << "and the bound is close";
   }
 }
 

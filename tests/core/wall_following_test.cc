@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents that walls hold up find their way out of dead ends, and nobody else is led astray.
+// Agents that walls hold up find their way out of dead ends, and other agents are not affected.
 #include "core/wall_following.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class Seeker {
   Seeker(const Mission& mission, AgentId id, bool follows)
       : mission_(mission), id_(id), filter_(mission, 0), follower_(mission, id), uses_(follows) {}
 
-  /// How long it takes to be within 5 m of `goal_m` [s]; as long as it may if it is not.
+  /// How long it takes to be within 5 m of `goal_m` [s]; `most_s` if it does not get there.
   double time_to_s(const Eigen::Vector3d& goal_m, double most_s) {
     const auto most = static_cast<Tick>(most_s / mission_.timing.dt_s);
     Tick tick = 0;
@@ -85,7 +85,7 @@ TEST(WallFollower, LetsThroughBitForBitWhatNoWallHoldsUp) {
   const Eigen::Vector3d wanted_mps(0.1, 0.2, 0);
   for (Tick tick = 0; tick < 1000; ++tick) {
     EXPECT_EQ(follower.aim(tick, {20, 20, 0}, wanted_mps), wanted_mps);
-    follower.note(false);  // it stands, but for no wall
+    follower.note(false);  // it stands, but not because of a wall
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies that want to be in walls, and behind them. The filter must keep them out, between ticks,
-// too. Each flaw withholds one thing from the filter, and must be seen to break the clearance.
+// Bodies that want to be in walls, and behind them. The filter must keep them out, also between
+// ticks. Each flaw withholds one thing from the filter, and must be seen to break the clearance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ Mission in_maze(const VehicleLimits& vehicle, double clearance_m = 3) {
   return mission;
 }
 
-/// What is asked of the filter.
+/// The task of the filter.
 struct Attack {
   explicit Attack(const Mission& all) : mission(all), assumed(all) {}
 
@@ -174,13 +174,13 @@ TEST(WallFilter, KeepsOutWhoIsPushed) {
   mission.disturbance_intensity = 1;
   Attack attack(mission);
   EXPECT_GE(spare_m(attack), 0);
-  // What the walls stop is rare for who keeps w more, and usual for others.
+  // Walls rarely stop an agent that keeps w more distance, and often stop others.
   mission.separation.distance_m = 0;
   EXPECT_GE(spare_m(Attack(mission)), 0);
 }
 
-/// A body at a wall that a push may have brought nearer than its margin moves away from it, and
-/// never towards it, whatever others want it to do.
+/// A push may have brought a body nearer to a wall than its margin. It then moves away from the
+/// wall and never towards it, also when others are in its way.
 TEST(WallFilter, HoldsWallsWhereNothingElseCanBeHeld) {
   Mission mission = with_distance(3);
   mission.separation.disturbance_m = 0.4;

@@ -45,7 +45,7 @@ TEST(Walls, DoNotTouchAndStandInOrder) {
       {{{0, 0}, {10, 10}, {10, 0}, {0, 10}}},        // crosses itself
       {{{0, 0}, {10, 10}}},                          // encloses nothing
       {{{0, 0}, {0, 0}, {10, 10}, {0, 10}}},         // a corner twice
-      {{{0, 0}, {10, 10}, {5, 5 + 1e-9}}},           // next to nothing
+      {{{0, 0}, {10, 10}, {5, 5 + 1e-9}}},           // almost no area
       {box(-1200, 0, 10, 10)},                       // far away
       {{{0, 0}, {10, 10}, {0, kInfinite}}},
       {{{0, 0}, {10, 10}, {0, std::nan("")}}},
@@ -131,7 +131,7 @@ TEST(FreeRegion, DoesNotLeapAThinWall) {
   EXPECT_EQ(FreeRegion(thin, kDomain, 1e-6).parts(), 2);
 }
 
-// In the open, many ways along cells are equally short but for rounding.
+// In the open, many ways along cells are equally short up to rounding.
 TEST(FreeRegion, LeadsTheSameWayWhereverTheDomainIsAndWhateverItsAxesAreCalled) {
   const auto way_of = [](const Eigen::Vector2d& by_m, bool exchanged) {
     const auto place = [&](double x_m, double y_m) {

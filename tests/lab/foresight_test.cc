@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Teams with a forecast, in the laboratory: in lockstep no fault of messages, coordinator or world
-// changes the forecast; in real time a dead teammate does not count for ever.
+// changes the forecast; in real time a stopped teammate does not count for ever.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -104,9 +104,10 @@ INSTANTIATE_TEST_SUITE_P(Laboratory, LockstepForesight,
                                            Telling{"ReckoningSeldom", true, 6}),
                          [](const auto& telling) { return std::string(telling.param.name); });
 
-// ---- a dead teammate ----
+// ---- a stopped teammate ----
 
-/// φ² at 600 s as agent 0 knows it, where agent 3 is heard no more from 150 s on, nor its vehicle.
+/// φ² at 600 s as agent 0 knows it, if it receives nothing from agent 3 or its vehicle from 150 s
+/// on.
 double metric_after_a_death(const std::string& law, const std::string& agents, std::uint64_t seed) {
   std::string text =
       with(text_of("lab/studies/law/random.textproto"), "u_max_mps: 20", "u_max_mps: 20 " + law);

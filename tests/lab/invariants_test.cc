@@ -77,8 +77,8 @@ class InvariantsTest : public ::testing::Test {
     return view;
   }
   std::string violated() const { return violated_by(team_); }
-  /// What is violated by a ĉ that is off by so much, after a teammate was heard twice and then
-  /// seen.
+  /// What a ĉ that is wrong by `off` violates, after two blocks of a teammate and then its place
+  /// have arrived.
   /// @param later  the roster from the admission on
   std::string violated_by_forecast(double off, const std::vector<RosterEntry>& later) {
     Invariants team(mission_);
@@ -242,7 +242,7 @@ TEST_F(InvariantsTest, NoStepCountsTwice) {
 TEST_F(InvariantsTest, ATickCountsUnlessTheMissionIsPausedAsFarAsTheAgentKnows) {
   mission_.timing.pace = Pace::kRealtime;
   const std::vector<Hold> paused{{4, 7}};
-  // Of each tick from 0 on, how many steps it adds.
+  // The argument has the number of steps that each tick adds, from tick 0 on.
   const auto violated_by_steps = [&](const std::vector<int>& steps) {
     Invariants team(mission_);
     CoverageTable table(mission_.basis, 0.1);

@@ -67,17 +67,17 @@ SubscriptionTable without(const Heard& heard) {
   return table;
 }
 
-/// What the laboratory has no occasion to miss, for each a reason.
+/// Whether the laboratory cannot notice that a kind is missing; each case has its reason.
 bool never_missed(const Heard& heard) {
   const MessageTypes type = MessageTypes{1} << heard.type;
   // No operator sends STOP here, and no second agent of a number or second coordinator is started;
   // the tests of real processes do that.
   if (type == kTypes<Stop>) return true;
-  // Its operator tells the coordinator itself to pause.
+  // Its operator sends the pause directly to the coordinator.
   if (type == kTypes<Pause>) return true;
   if (heard.role == Role::kAgent) return type == kTypes<AgentStatus>;
   if (heard.role == Role::kCoordinator) {
-    // It asks in lockstep only the agent that a starting world waits for.
+    // In lockstep the world asks only the agent that it waits for at its start.
     const bool question = type == kTypes<Hello> && heard.bus == Bus::kWorld;
     // The logger's farewell only spares it a second.
     return type == kTypes<TeamStatus> || type == kTypes<RecordAck> || question;
@@ -88,16 +88,16 @@ bool never_missed(const Heard& heard) {
 
 TEST(Laboratory, MissesEachMessageThatSomebodyDoesNotSubscribeTo) {
   const Scenario real_time = team(Pace::kRealtime);
-  // Its time-out is no excuse: all are back long before.
+  // The time-out is no excuse: all are back long before.
   const Scenario crowded =
       team(Pace::kLockstep, "time {", "time { lockstep_timeout_s: 60", "crowded_team");
-  // Without beacons nobody moves there.
+  // Without beacons no agent moves there.
   const Scenario hearsay = team(Pace::kRealtime, "time {",
                                 "separation { distance_m: 6 lease_s: 3 }\n"
                                 "world { speed_limit_mps: 10 }\ntime { command_hold_s: 0");
   EXPECT_EQ(problem(run_trial(hearsay, 1, lab::drawn(1))), "");
   for (const Heard& heard : heard_in_the_laboratory()) {
-    // A world is told of states only where bodies keep a distance.
+    // A world receives states only where bodies keep a distance.
     const bool of_bodies =
         heard.role == Role::kWorld && MessageTypes{1} << heard.type == kTypes<WorldState>;
     bool missed = false;
@@ -120,7 +120,7 @@ TEST(RadioRange, IsNoFault) {
       const Scenario limited =
           team(pace, "\nlaw {", "\nworld { radio_range_m: " + std::string(range) + " }\nlaw {");
       for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-        // Whether the goal is reached with such a radio is the scenario's affair.
+        // Whether the goal is reached with such a radio depends on the scenario.
         for (const TrialResult& result :
              {run_trial(limited, seed, {}), run_trial(limited, seed, lab::drawn(seed))}) {
           if (broken(result) != Invariant::kGoalReached) {
@@ -163,7 +163,7 @@ TEST(Eviction, OfWhoWasAwayIsNoFault) {
     faults.loss = 0.9;
     faults.swarm_bus_only = 1;
     const TrialResult result = run_trial(evicting(), seed, faults);
-    // Who is left need not reach the goal of the whole team.
+    // The remaining agents need not reach the goal of the whole team.
     const bool smaller = result.figures.evictions > 0;
     if (!smaller || broken(result) != Invariant::kGoalReached) {
       EXPECT_EQ(problem(result), "") << seed;
@@ -189,8 +189,8 @@ TEST(Eviction, IsJudgedByWhatWasWrongWhenItHappened) {
   EXPECT_GE(evicted, 3);
 }
 
-// In these runs all were evicted before the coordinator was to be killed: they had ended, and no
-// other process could have told its successor of the mission.
+// In these runs all agents were evicted before the coordinator was to be killed. They had ended,
+// and no other process could have sent the mission to its successor.
 TEST(Eviction, OfTheLastSparesTheCoordinatorWhoAloneKnowsTheMissionThen) {
   for (const std::uint64_t seed : {751, 4022}) {
     const TrialResult result = run_trial(evicting(), seed, lab::drawn(seed));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Missions under faults: what a seed gives it gives again, every kind of fault happens, and without
-// any the laboratory flies the mission that `ergocast simulate` flies.
+// Missions under faults: a seed always gives the same mission, and every kind of fault happens.
+// Without faults the laboratory runs the same mission as `ergocast simulate`.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -168,7 +168,8 @@ TEST(Laboratory, SwarmDrawsEveryKindForSomeSeedsOnly) {
       EXPECT_LE(value, field.most) << field.name;
       on += value > 0 ? 1 : 0;
     }
-    // These fields tell how, not whether: they are the same for all, or harmless alone.
+    // These fields describe how faults happen, not whether. They are the same for all, or harmless
+    // alone.
     const std::set<std::string> how = {"downtime_max_s", "lasting_share", "swarm_bus_only"};
     if (how.contains(field.name)) continue;
     EXPECT_GT(on, 20) << field.name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A team too large for one digest: under loss and restarts, every agent learns every row within the
-// bound that lab/invariants.h states. A check of trials holds them against it.
+// bound that lab/invariants.h states. Each trial checks that bound.
 #include <gtest/gtest.h>
 
 #include "agent/anti_entropy.h"

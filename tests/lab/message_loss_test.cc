@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lockstep waits for nothing that is not repeated: whatever kind of message is lost, the mission
-// ends, and its trajectory is the one without losses, bit for bit. Where agents reckon, it is the
-// same however seldom they broadcast, too.
+// Lockstep waits only for what is repeated. If any kind of message is lost, the mission still ends,
+// and its trajectory is the one without losses, bit for bit. With dead reckoning it is also the
+// same however seldom the agents broadcast.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ std::size_t lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-/// Drops that many of hundred messages of one kind, for each receiver by itself.
+/// Drops `percent` of the messages of one kind, for each receiver separately.
 Drop dropping(std::size_t kind, std::uint64_t percent) {
   return [=, count = std::uint64_t{0}](const Message& message, int) mutable {
     if (message.index() != kind) return false;
@@ -73,7 +73,7 @@ TEST(MessageLoss, NothingIsDroppedWithoutAFault) {
   EXPECT_EQ(lines(outcome.trajectory), 1U + 3 * 200);
 }
 
-/// Whether a message says that world, logger or an agent leaves.
+/// Whether a message announces that the world, the logger or an agent leaves.
 bool says_farewell(const Message& message) {
   const auto* world = std::get_if<WorldState>(&message);
   const auto* logger = std::get_if<RecordAck>(&message);
@@ -190,7 +190,8 @@ TEST(MessageLoss, SlowBroadcastsShowWhereTheyDoNotReckonAndLoseNothingEither) {
   EXPECT_EQ(simulated(dropping(kContribution, 33), each(7, rows)).trajectory, clean.trajectory);
 }
 
-/// What a lockstep team may know of its teammates' plans: all laws, told each tick or seldom.
+/// What a lockstep team may know of its teammates' plans: all laws, with broadcasts each tick or
+/// seldom.
 struct Knowing {
   const char* name;
   const char* law;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Coordinates are a person's choice. A scenario that is moved, or whose x and y are exchanged, has
-// the same target, and its team flies the same way. Domains are those that people write: decimal
+// the same target, and its team takes the same paths. Domains are those that people write: decimal
 // fractions, from a millimetre to a thousand kilometres.
 #include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
@@ -308,7 +308,7 @@ class MovedScenario : public ::testing::TestWithParam<std::tuple<Kind, int>> {
     return tracks;
   }
 
-  /// The farthest from where it was, as a share of the domain.
+  /// The greatest difference of places, as a share of the domain.
   double off(const Tracks& tracks, const Tracks& others, const auto& back) const {
     double most_m = 0;
     for (const auto& [at, x_m] : others)
@@ -342,7 +342,7 @@ TEST_P(MovedScenario, IsTheSameWithXAndYExchanged) {
   const Mission here = mission_of(scenario), there = mission_of(exchanged(scenario));
   const Basis& basis = here.basis;
   // A free domain's modes are as exact as their solver, and less so the closer two frequencies are;
-  // their signs go by the order of its cells.
+  // their signs depend on the order of its cells.
   const bool is_free = kind() == Kind::kFreeDomain;
   for (int l = 0; l < basis.modes_z; ++l) {
     for (int m = 0; m < basis.modes_x; ++m) {
@@ -356,7 +356,7 @@ TEST_P(MovedScenario, IsTheSameWithXAndYExchanged) {
       }
     }
   }
-  // Beside a wall an agent may go on to a side that is drawn: its mirror image goes to the other.
+  // Beside a wall an agent may take a random side, and its mirror image takes the other one.
   if (scenario.world().walls_size() > 0) return;
   EXPECT_LE(
       off(tracks_of(here), tracks_of(there),

@@ -59,7 +59,7 @@ RecordedRun simulated(const Mission& mission, std::vector<Hold> holds) {
           simulation.last_tick()};
 }
 
-/// The rows of ticks that count, with their numbers among those.
+/// The rows of ticks that count, numbered by those ticks.
 std::vector<std::vector<std::string>> counted(std::vector<std::vector<std::string>> rows,
                                               const std::vector<Hold>& holds) {
   std::erase_if(rows, [&](const auto& row) { return is_held(holds, std::stoll(row[0])); });

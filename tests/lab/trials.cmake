@@ -1,7 +1,7 @@
-# Flies an entry of covering_seeds.txt: its seeds, and fresh ones that each commit draws anew.
+# Runs an entry of covering_seeds.txt: its seeds, and fresh ones that each commit draws again.
 #   cmake -DERGOCAST=<program> -DSOURCE_DIR=<tree> -DENTRY=<name> -P trials.cmake
-# With ERGOCAST_TRIALS=nightly in the environment it flies the entry's nightly range as well, and 200 fresh seeds.
-# Seeds that fail are printed, so that they can be flown again.
+# With ERGOCAST_TRIALS=nightly in the environment it also runs the entry's nightly range, and 200
+# fresh seeds. Seeds that fail are printed, so that they can be repeated.
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/covering_seeds.txt entry REGEX "^${ENTRY} ")
 if(NOT entry MATCHES "^[^ ]+ ([^ ]+) ([^ ]+) nightly=([0-9:]+) fresh=([0-9]+) kept=[0-9,]* seeds=([0-9,]+)$")
   message(FATAL_ERROR "covering_seeds.txt has no valid entry ${ENTRY}")

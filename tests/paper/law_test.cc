@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law that scenarios get by default, from the starts that hold the classical one
-// (lab/studies/law/*.textproto). Statements about probabilities hold but with probability 1e-9 over
-// the choice of seeds; docs/law.md has the figures of many more.
+// (lab/studies/law/*.textproto). Statements about probabilities hold except with probability 1e-9
+// over the choice of seeds; docs/law.md has the figures of many more.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -97,7 +97,7 @@ TEST(DefaultLawBound, HoldsTheMeanSquareWithAStrongContraction) {
     mean_m2 += (team.x_m(0) - law.contraction_center_m).squaredNorm() / kSeeds;
   }
   EXPECT_LT(mean_m2, bound_m2);
-  // And the bound is no idle one: less than ten times what is reached.
+  // The bound is also close: less than ten times the value reached.
   EXPECT_GT(mean_m2, 0.1 * bound_m2);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What docs/law_theory.md claims of the law that looks ahead, on teams that fly: the potential in
-// time, Proposition 1 for symmetric teams, and boundedness.
+// The claims of docs/law_theory.md about the law that looks ahead, on moving teams: the potential
+// in time, Proposition 1 for symmetric teams, and boundedness.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ Mission noiseless(Mission mission, double epsilon) {
 
 // ---- the potential in time ----
 
-/// E and its parts, of a team in flight, from the places of its agents.
+/// E and its parts for a moving team, from the places of its agents.
 class BusObserver {
  public:
   explicit BusObserver(const Mission& mission)
@@ -153,7 +153,7 @@ TEST(LookingAhead, AMirroredTeamStaysMirroredAndItsAgentsOnTheMirrorStayOnIt) {
         ASSERT_LT((team.x_m(4) - mirror.image(team.x_m(4), side_m)).norm(), 1e-6)
             << mirror.name << ", place " << place << ", t = " << team.t_s();
       });
-      EXPECT_GT((team.x_m(0) - one).norm(), 1) << "it flies";
+      EXPECT_GT((team.x_m(0) - one).norm(), 1) << "it moves";
     }
   }
 }
@@ -188,7 +188,7 @@ TEST(LookingAhead, WithoutTheMirrorsPremiseAnAgentLeavesIt) {
 // ---- boundedness ----
 
 TEST(LookingAhead, NoInputExceedsItsLimitAndEveryStepKeepsCorollary1) {
-  // Only ‖u‖ ≤ u_max enters, whatever is foreseen: ‖x_n − c‖ ≤ qⁿ ‖x_0 − c‖ + (u_max/k)(1 − qⁿ).
+  // Only ‖u‖ ≤ u_max matters, not the forecast: ‖x_n − c‖ ≤ qⁿ ‖x_0 − c‖ + (u_max/k)(1 − qⁿ).
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Mission mission = noiseless(shipped_mission("quadrimodal_corners"), 0.05);
     const double k = mission.law.contraction_gain_per_s = 0.5;

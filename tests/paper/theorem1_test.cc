@@ -4,9 +4,9 @@
 // The theorem is about (9), without contraction, and about the set {B·n = 0}. The first test is
 // about that set. The others are about the agent's place, which is what people see, under (10).
 //
-// What many seeds can show, each statement but with probability 1e-9: how probable escape is at
-// least by the time the test says, and that the time is distributed as the linearised recursion
-// predicts (lab/studies/theorems/linearised.h). No number of seeds shows a probability of 1.
+// Many seeds can show two things, each except with probability 1e-9: a least probability of escape
+// by a given time, and that the time is distributed as the linearised recursion predicts
+// (lab/studies/theorems/linearised.h). No number of seeds shows a probability of 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,8 +122,8 @@ TEST(Theorem1, TimeToLeaveAnAxisGrowsWithTheLogarithmOfOneOverSigma) {
   for (const double sigma : {1e-7, 1e-5, 1e-3, 1e-1}) {
     const Mission mission = paper_from(axis, sigma);
     const double median_s = median(studies::escape_times_s(mission, 300, far_m, 200));
-    // ln of the growth that the law needs against ln of what the path had by the measured median:
-    // what is left is the non-linear last few metres.
+    // Compares ln of the growth that the law needs with ln of the path's growth by the measured
+    // median. The difference is the non-linear last few metres.
     const double needed = std::log(far_m / (0.67448975 * sigma));
     EXPECT_NEAR(std::log(growth[static_cast<std::size_t>(std::lround(median_s * 10))]), needed,
                 0.35)

@@ -5,7 +5,7 @@
 //   x_{n+1} − c = q (x_n − c) + (1 − q) u_n/k + σ √dt ξ_n,
 // and since ξ_n is independent of the past and ‖·‖² convex,
 //   E‖x_{n+1} − c‖² ≤ q E‖x_n − c‖² + (1 − q) (u_max²/k² + 2σ²/k).
-// Statements about means hold but with probability 1e-9 over the choice of seeds.
+// Statements about means hold except with probability 1e-9 over the choice of seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -111,9 +111,9 @@ TEST(Theorem2, BoundIsMetExactlyWhereAStepForgetsThePast) {
       << "the limits are too wide to say anything";
 }
 
-// An input in one direction uses up the first summand, and in small steps noise but half of the
-// second: around c + u/k the square is that of u/k and a Gaussian's of variance σ²/(k(2 − k·dt))
-// each way.
+// An input in one direction uses up the first summand, and in small steps noise uses only half of
+// the second: around c + u/k the square is that of u/k and a Gaussian's of variance σ²/(k(2 −
+// k·dt)) each way.
 TEST(Theorem2, InputInOneDirectionLeavesNoiseHalfOfItsPartInSmallSteps) {
   constexpr int kSeeds = 4000;
   const Mission mission = driven_outward(law_of(0.5, 30), 0.1, 40);
@@ -127,8 +127,8 @@ TEST(Theorem2, InputInOneDirectionLeavesNoiseHalfOfItsPartInSmallSteps) {
   EXPECT_LT(limits.high * unit_m2 / kSeeds, 0.7 * mean_square_bound_m2(mission, 0));
 }
 
-// The basis continues as an even function beyond an edge, so without reflection an agent that noise
-// frees from a corner goes into any of the four quadrants around it, of which the domain is one.
+// The basis continues as an even function beyond an edge. So without reflection an agent that noise
+// frees from a corner goes into any of the four quadrants around it, and only one is the domain.
 // The theorem's bound, a radius of 10 km here, does not exclude that.
 TEST(Theorem2, DoesNotKeepFig2InItsDomainWithoutReflection) {
   constexpr int kSeeds = 300;

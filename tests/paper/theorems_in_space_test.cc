@@ -72,8 +72,8 @@ TEST(Proposition1InSpace, TheFieldPointsAlongEachSetOfSymmetry) {
   }
 }
 
-// For as long as roundings have not grown. In a point the classical law has no direction but
-// theirs.
+// This holds while rounding errors have not grown. In a point they alone give the classical law its
+// direction.
 TEST(Proposition1InSpace, PlanesAndLinesOfSymmetryAreInvariant) {
   for (const SymmetrySet& set : kSets) {
     if (set.normals.size() == 3) continue;

@@ -43,7 +43,7 @@ TEST(FreeDomain, HasItsTableAndBothTargets) {
   EXPECT_EQ(cosines.basis.table, nullptr);
 }
 
-// The lowest mode tells the rooms apart, and a quarter of the mass is in the left one.
+// The lowest mode distinguishes the rooms, and a quarter of the mass is in the left one.
 TEST(FreeDomain, TargetIsTheMassOverEachMode) {
   const Mission mission = good(kRooms).mission();
   const auto mode = [&](double x_m) {
@@ -70,7 +70,7 @@ TEST(FreeDomain, PlanIsReadWithItsTable) {
   EXPECT_NE(std::get<Mission>(read).basis.table, nullptr);
 }
 
-// As of a table that another build has computed.
+// The table is one that another build has computed.
 TEST(FreeDomain, PlanWithAnUnknownTableIsRefused) {
   Mission mission = good(kRooms).mission();
   ++mission.basis.table_hash;

@@ -123,7 +123,7 @@ TEST_F(GeoJsonTarget, GivesTheCoefficientsOfTheSamePolygonsInMetres) {
                 .cwiseAbs()
                 .maxCoeff(),
             1e-9);
-  // The record needs the file no more.
+  // The record does not need the file any more.
   fs::remove(folder_ / "a.geojson");
   const Scenario again = good(Scenario::parse(read.print(), "again.textproto"));
   EXPECT_EQ(encode_plan(again.mission()), encode_plan(read.mission()));

@@ -12,7 +12,7 @@ namespace {
 
 namespace pb = google::protobuf;
 
-/// Fails for each field of the message that its bytes do not say, and for each that it lacks.
+/// Fails for each field of the message that its bytes do not contain, and for each unknown field.
 void expect_all_said(const pb::Message& message) {
   const pb::Reflection& at = *message.GetReflection();
   EXPECT_TRUE(at.GetUnknownFields(message).empty())
@@ -29,7 +29,7 @@ void expect_all_said(const pb::Message& message) {
   }
 }
 
-/// The names of team/plan.proto by number, held against the list of a mission's fields.
+/// Compares the names of team/plan.proto by number with the list of a mission's fields.
 class PlanNames : public FieldVisitor {
  public:
   explicit PlanNames(const pb::Descriptor& message) : message_(message) {}
@@ -64,7 +64,7 @@ class PlanNames : public FieldVisitor {
   }
 
  private:
-  /// A block of the scenario, such as agents, is none of the plan.
+  /// A block of the scenario, such as agents, is not a block of the plan.
   const pb::FieldDescriptor* expect(int number, const std::string& name) {
     const pb::FieldDescriptor* field = message_.FindFieldByNumber(number);
     EXPECT_TRUE(field != nullptr && field->name() == name.substr(name.rfind('.') + 1))

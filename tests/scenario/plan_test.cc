@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a scenario to its plan and back to a scenario's text: both hold the same limits.
+// From a scenario to its plan and back to a scenario's text: both have the same limits.
 #include "team/plan.h"
 
 #include <gtest/gtest.h>

@@ -298,7 +298,7 @@ TEST(Text, HostileTextIsRefusedQuickly) {
   EXPECT_FALSE(problems_of(std::string(100, '\0')).empty());
 }
 
-// Any file is a scenario that survives printing, or has a problem.
+// Any file is a scenario that is unchanged by printing, or has a problem.
 TEST(Text, AnyDamageIsNamedOrHarmless) {
   std::mt19937 random(1);
   const std::string whole = good(Scenario::load(shipped("quadrimodal_corners"))).print();

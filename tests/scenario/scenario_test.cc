@@ -66,7 +66,7 @@ TEST(Defaults, OfNoiseRiseWithTheFloorThatIsGiven) {
   EXPECT_EQ(law.noise_ceiling, 7);
 }
 
-/// A law without a forecast is that of version 0.1.0, the paper's or the classical one: in full.
+/// A law without a forecast is exactly that of version 0.1.0, the paper's or the classical one.
 TEST(Defaults, OfALawThatDoesNotLookAheadStayWhatTheyWere) {
   for (const auto& [law, epsilon] :
        {std::pair{"anticipation: 0", 0.2}, std::pair{"perturbation: CONSTANT", 0.2},

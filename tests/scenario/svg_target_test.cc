@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// Of the small scenario's 100 m × 50 m, a unit 5 m.
+/// A drawing of the small scenario's 100 m × 50 m, with units of 5 m.
 std::string drawing(const std::string& content, const std::string& box = "0 0 20 10") {
   return "<svg viewBox=\"" + box + "\">\n" + content + "</svg>";
 }

@@ -19,7 +19,7 @@ inline double chlorophyll(std::uint32_t i, std::uint32_t j, std::uint32_t k) {
   return i == 0 ? 0 : 0.25 * ((3 + 7 * i + 5 * j + i * j) % 11) * (4 - k);
 }
 
-/// What the file says. Tests change it, one mistake at a time.
+/// The content of the file. Tests change it, one mistake at a time.
 struct WaterColumn {
   NetcdfDimensions dimensions = {
       {"time", 2}, {"depth", 4}, {"y", kColumnY}, {"x", kColumnX}, {"ends", 2}};

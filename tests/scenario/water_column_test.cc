@@ -74,7 +74,7 @@ TEST_F(WaterColumnTest, MayBeWrittenInOtherWays) {
   EXPECT_LE((mu_of(unpacked) - mu).cwiseAbs().maxCoeff(), 1e-15);
 }
 
-// So scenarios/water_column.textproto flies what is tested here.
+// This ensures that scenarios/water_column.textproto uses the file tested here.
 TEST_F(WaterColumnTest, IsTheFileThatIsShipped) {
   WaterColumn().write(folder_.path() / "column.nc");
   const auto bytes = [](const std::filesystem::path& file) {

@@ -85,7 +85,7 @@ Browser::Browser(const std::filesystem::path& folder, bool webgl) {
 Browser::~Browser() {
   try {
     ask("DELETE", "");
-  } catch (const std::exception&) {  // it ends all the same
+  } catch (const std::exception&) {  // it ends anyway
   }
   driver_->send(SIGTERM);
   waits_for([this] { return !driver_->running(); }, *driver_);

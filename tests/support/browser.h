@@ -12,7 +12,7 @@
 namespace ergocast::test {
 
 /// One browser with one window, which takes evil.example for a name of this host. Each call waits
-/// for its answer; a failure throws with the driver's words.
+/// for its answer; a failure throws the driver's message.
 class Browser {
  public:
   /// @param folder  for its profile and its driver's log
@@ -31,7 +31,8 @@ class Browser {
   /// A key as WebDriver names it, on the element that has the focus: "d", "\uE014" (right).
   void press(const std::string& key);
   void click(const std::string& selector);
-  /// Presses the mouse in the middle of an element, moves it by so many pixels, and lets it go.
+  /// Presses the mouse in the middle of an element, moves it by `right` and `down` pixels, and
+  /// releases it.
   void drag(const std::string& selector, int right, int down);
   /// Errors in its console since the last call, also of the page's policy.
   std::vector<std::string> errors();

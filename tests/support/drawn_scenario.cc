@@ -29,7 +29,7 @@ using lab::RandomStream;
 using Draw = std::function<void(Block&, const FieldDescriptor&, RandomStream&)>;
 struct Rule {
   Draw draw;
-  int least, most;  ///< how many; the least is 0 for what may be left out
+  int least, most;  ///< number of values; `least` is 0 for an optional field
 };
 
 std::string name_of(const FieldDescriptor& field) {
@@ -110,8 +110,8 @@ const Draw kTrue = [](Block& block, const FieldDescriptor& field, RandomStream&)
 /// A place [m] inside every domain.
 const Draw kPlace = number(1, 99);
 
-/// The rules of blocks, texts and required fields, and of values that have to be small, likely or
-/// alike for missions that are valid, short and different. All others are drawn by usual_rule().
+/// The rules of blocks, texts and required fields. Some values also have rules that keep missions
+/// valid, short and different. All other fields are drawn by usual_rule().
 const std::map<std::string, Rule>& rules() {
   static const std::map<std::string, Rule> rules = {
       {"Scenario.name", may(text({"drawn", "0", "a.b-c_d"}))},
@@ -221,7 +221,7 @@ const std::map<std::string, Rule>& rules() {
       {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
       {"Agents.kind", many(0, 3)},
       {"Kind.name", must(text({"a", "fast-1", "_b.C"}))},  // each once: see agree()
-      {"Kind.count", must(number(1, 3))},                  // of all as many as agents
+      {"Kind.count", must(number(1, 3))},                  // the counts add up to the agents
       {"Kind.u_max_mps", may(spread(2, 40))},
       {"Kind.noise_intensity", may(spread(0.01, 2))},
       {"Kind.noise_ceiling", may(spread(2, 20))},
@@ -259,7 +259,8 @@ const std::map<std::string, Rule>& rules() {
   return rules;
 }
 
-/// A switch or an enumeration may have any value, a number one up to ten times its default, or 10.
+/// A switch or an enumeration may have any value. A number has one up to ten times its default, or
+/// 10.
 Rule usual_rule(const FieldDescriptor& field) {
   if (field.enum_type() != nullptr) return may(word(0));
   if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) return may(kCoin);
@@ -285,7 +286,7 @@ void draw_fields(Block& block, RandomStream& random) {
 
 // ---- what depends on more than one field ----
 
-/// Around its first vertex.
+/// Makes a ring around its first vertex.
 template <class Vertices>
 void make_round(Vertices& vertices, double radius_m, const proto::Vertex& center) {
   for (int i = 0; i < vertices.size(); ++i) {
@@ -353,7 +354,7 @@ void agree(proto::Target& target) {
   for (auto& keep_out : *target.mutable_keep_outs()) make_round(keep_out, 10);
 }
 
-/// A distance needs a speed limit, starts that are apart, and little that is unknown.
+/// A distance needs a speed limit, starts that are apart, and little uncertainty.
 void agree_on_distance(proto::Scenario& scenario) {
   proto::World& world = *scenario.mutable_world();
   if (!world.has_speed_limit_mps()) world.set_speed_limit_mps(20);
@@ -413,7 +414,7 @@ void agree_on_walls(proto::Scenario& scenario) {
   if (scenario.has_separation()) world.set_wall_clearance_m(1);
 }
 
-/// Names that differ, and counts that are the team: the last kind has whoever is left.
+/// Gives kinds different names, and counts that add up to the team: the last kind has the rest.
 void agree_on_kinds(int team, proto::Agents& agents) {
   for (int i = 0; i < agents.kind_size(); ++i) {
     proto::Kind& kind = *agents.mutable_kind(i);
@@ -469,7 +470,7 @@ void agree_on_free_domain(proto::Scenario& scenario) {
   }
 }
 
-/// In the few ticks of a draw only a point gets home that begins there and that nothing delays.
+/// In the few ticks of a drawn mission only a point that begins at home, without delays, gets home.
 void agree_on_stations(proto::Scenario& scenario) {
   proto::Agents& agents = *scenario.mutable_agents();
   proto::Time& time = *scenario.mutable_time();

@@ -22,7 +22,7 @@ proto::Scenario drawn_scenario(std::uint64_t seed);
 
 /// "Law.epsilon" of each field that is set in `message`, or in what it holds.
 std::set<std::string> fields_of(const google::protobuf::Message& message);
-/// Of each that a scenario can have.
+/// All fields that a scenario can have.
 std::set<std::string> all_fields();
 
 }  // namespace ergocast::test

@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing of its own: the target that has the tests' precompiled header needs a file.
+// Empty: the target with the tests' precompiled header needs a source file.

@@ -20,7 +20,7 @@ namespace ergocast::test {
 class Namespaces {
  public:
   static Namespaces of_this_thread();
-  /// New ones, with a loopback; this thread stays in its own.
+  /// New namespaces with a loopback; this thread stays in its own.
   static Namespaces make(const std::string& host_name);
   Namespaces(Namespaces&& other) noexcept
       : net_(std::exchange(other.net_, -1)), name_(std::exchange(other.name_, -1)) {}
@@ -61,16 +61,15 @@ class Lan {
   void unplug(int host);
   /// From now on the switch carries nothing from one host to the other.
   void block(int from, int to);
-  /// From now on the switch loses so many percent of the frames, each copy of a broadcast
-  /// separately.
+  /// From now on the switch loses `percent` of the frames, each copy of a broadcast separately.
   /// @param spared  hosts without losses, such as an observer's
   void lose(int percent, std::set<int> spared = {});
-  /// From now on every frame is delayed so long. False if this kernel cannot do it (no netem).
+  /// From now on every frame is delayed by `time`. False if this kernel cannot do it (no netem).
   bool delay(std::chrono::milliseconds time);
   /// Connects all cables and removes blocks, losses and delays.
   void heal();
 
-  /// Of all links.
+  /// Sets the MTU of all links.
   void set_mtu(int bytes);
   /// A second interface, eth1, into a network without other hosts.
   void add_interface(int host);

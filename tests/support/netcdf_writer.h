@@ -18,7 +18,8 @@ enum class NetcdfType : std::uint32_t { kText = 2, kShort = 3, kFloat = 5, kDoub
 struct NetcdfVariable {
   std::string name;
   std::vector<std::string> dimensions;
-  std::vector<double> values;  ///< the last dimension varies fastest; may be fewer than there are
+  std::vector<double>
+      values;  ///< the last dimension varies fastest; may be fewer than the dimensions ask for
   std::vector<std::pair<std::string, std::variant<std::string, double>>> attributes;
   NetcdfType type = NetcdfType::kDouble;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A host of the test's own: a network namespace with multicast on its loopback, so that tests with
-// open sockets neither receive from nor disturb other programs, and can see which processes they
+// A host of the test's own: a network namespace with multicast on its loopback. Tests with open
+// sockets then do not receive from other programs or disturb them, and can see which processes they
 // left.
 #pragma once
 
@@ -23,9 +23,10 @@ bool may_mount();
 /// "agent (pid 12)" of every process in one of these network namespaces (as /proc/PID/ns/net shows
 /// them) but this one, zombies left out.
 std::vector<std::string> processes_in(const std::set<std::string>& networks);
-/// Those in this process's own.
+/// The processes in this process's own network.
 std::vector<std::string> processes_on_own_host();
-/// Those that this process has started since enter_own_host(), and theirs, on whichever network.
+/// The processes that this process has started since enter_own_host(), and their descendants, on
+/// any network.
 std::vector<std::string> descendants();
 
 }  // namespace ergocast::test

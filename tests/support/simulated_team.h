@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shipped missions, and teams that fly them in one process: ideal ones, simulated ones, and those
-// that are tried under faults.
+// Shipped missions, and teams that run them in one process: ideal teams, simulated teams, and teams
+// under faults.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,8 @@ struct SimulatedTeam {
   explicit SimulatedTeam(const Mission& mission, Drop drop = {})
       : simulation({.plan = encode_plan(mission), .drop = std::move(drop)}, trajectory, metrics) {}
 
-  /// Until all is over, or `limit` of virtual time has passed; whether all was over before.
+  /// Runs until all is over, or `limit` of virtual time has passed. Returns whether all was over
+  /// before.
   bool run(std::chrono::nanoseconds limit = std::chrono::hours(1000)) {
     simulation.run(limit);
     return simulation.now().time_since_epoch() < limit;
@@ -73,7 +74,7 @@ struct TriedTeam {
                             rows, metrics);
     trajectory = rows.str();
   }
-  /// What it violated; empty if nothing.
+  /// The violation; empty if there is none.
   std::string problem() const { return result.violation ? to_string(*result.violation) : ""; }
 
   lab::TrialResult result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A folder for one test, removed with everything in it, so that runs beside each other share none.
+// A folder for one test, removed with everything in it, so that parallel runs share none.
 #pragma once
 
 #include <gtest/gtest.h>

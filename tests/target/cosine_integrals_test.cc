@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed forms against quadrature, and where they could cancel.
+// Closed forms against quadrature, also where terms could cancel.
 #include "target/cosine_integrals.h"
 
 #include <gtest/gtest.h>
@@ -32,8 +32,8 @@ TEST(CosineIntegrals, AlongAnIntervalAreThePrimitivesDifferences) {
 }
 
 TEST(CosineIntegrals, OfAShortIntervalKeepAllTheirDigits) {
-  // Over so little, cos is its middle's value to (a·length)²/24 < 1e-18; a difference of sines
-  // would have six digits left.
+  // Over such a short interval, cos is the value in its middle up to (a·length)²/24 < 1e-18. A
+  // difference of sines would keep only six digits.
   const double low = 7, length = 1e-9;
   const Eigen::VectorXd integrals = cosine_integrals(low, low + length, 20, 8);
   const double exact_length = (low + length) - low;
@@ -58,7 +58,7 @@ TEST(PolygonIntegrals, AreThoseOfQuadrature) {
   }
 }
 
-// Along an edge with m/Lx · dx = ± n/Ly · dy one of the two phases stands still: 0/0 but for sinc.
+// Along an edge with m/Lx · dx = ± n/Ly · dy one of the two phases is constant: 0/0 without sinc.
 TEST(PolygonIntegrals, HaveNoPoleWhereAnEdgeFollowsAWave) {
   const double slope = kDomain.size_m.y() / kDomain.size_m.x();
   for (const double off : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1e-2}) {

@@ -47,7 +47,7 @@ class Draw {
   Eigen::Vector3d at(double x, double y, double z) const {
     return domain_.origin_m + Eigen::Vector3d(x, y, z).cwiseProduct(domain_.size_m);
   }
-  /// With a corner anywhere in [0.1, 0.4]², and a size to 0.5.
+  /// A box with a corner anywhere in [0.1, 0.4]², and a size up to 0.5.
   Polygon box() {
     const double x = between(0.1, 0.4), y = between(0.1, 0.4), w = between(0.1, 0.5),
                  h = between(0.1, 0.5);
@@ -58,7 +58,7 @@ class Draw {
                     {between(0.6, 0.9), between(0.1, 0.3)},
                     {between(0.1, 0.9), between(0.6, 0.9)}});
   }
-  /// From edge to edge: it is up to rounding on which side of them its corners are.
+  /// A band from edge to edge. Rounding decides on which side of the edges its corners are.
   Polygon band() {
     const double y = between(0.1, 0.4), h = between(0.1, 0.5);
     return polygon({{0, y}, {1, y}, {1, y + h}, {0, y + h}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What target/target.h says of a plane, in the numbers of a plane.
+// The functions of target/target.h for planes, in the numbers of a plane.
 #pragma once
 
 #include "target/density_picture.h"

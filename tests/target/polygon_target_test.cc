@@ -90,7 +90,8 @@ TEST(KeepOuts, CutRegionsToo) {
             1e-12);
 }
 
-// What a triangle takes from a bell, by quadrature on 60 × 60 panels of five nodes each.
+// The part that a triangle takes from a Gaussian, by quadrature on 60 × 60 panels of five nodes
+// each.
 TEST(KeepOuts, OverGaussiansAreWithinTheStatedError) {
   const Ring triangle{{600, 400}, {1000, 700}, {500, 900}};
   for (const Gaussian& g : {bell(700, 650, 150, 100), bell(700, 650, 120, 150, 0.9),

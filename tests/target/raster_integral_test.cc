@@ -154,7 +154,7 @@ std::vector<Polygon> keep_outs() {
           {{{130, 45}, {150, 45}, {150, 65}, {130, 65}}, {}}};
 }
 
-// Each cell as a region of its own goes another way: cut as a polygon, not along its row.
+// A cell as a region of its own is computed differently: cut as a polygon, not along its row.
 TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
   for (const RasterGrid& grid :
        {RasterGrid{kDomain, 10, 6}, RasterGrid{{{-60, -20}, {270, 160}}, 31, 23},

@@ -48,8 +48,8 @@ Eigen::Matrix3d covariance(double xy, double xz, double yz) {
   return deviation_m.asDiagonal() * correlation * deviation_m.asDiagonal();
 }
 
-// Smooth where the domain's sides do not cut them, the midpoint rule is exact but for rounding;
-// a side adds the square of a cell.
+// Where the domain's sides do not cut them, Gaussians are smooth, and the midpoint rule is exact up
+// to rounding. A side adds the square of a cell.
 TEST(TargetInSpace, OfGaussiansIsThatOfTheirDensity) {
   for (const auto& [xy, xz, yz] :
        {std::array{0.0, 0.0, 0.0}, {0.8, 0.0, 0.0}, {0.0, 0.7, 0.0}, {0.3, -0.5, 0.6}}) {
@@ -60,7 +60,7 @@ TEST(TargetInSpace, OfGaussiansIsThatOfTheirDensity) {
   }
 }
 
-// What is well inside has its characteristic function, E Π cos(k_i X_i), to rounding.
+// A Gaussian well inside has its characteristic function, E Π cos(k_i X_i), up to rounding.
 TEST(TargetInSpace, OfAnObliqueGaussianIsItsCharacteristicFunction) {
   const Gaussian g{1, {70, 65, -50}, 0.04 * covariance(0.3, -0.5, 0.6)};
   const TargetCoefficients ours = target_coefficients({{g}, 0}, kBox, kBasis);

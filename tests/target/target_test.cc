@@ -82,7 +82,7 @@ PlaneCoefficients separable_reference(const TargetDensity& target, const Basis& 
   return sum / sum(0, 0);
 }
 
-/// For a bell that does not feel the edges: E cos(aX)cos(bY) by the characteristic function.
+/// For a Gaussian far from the edges: E cos(aX)cos(bY) by the characteristic function.
 PlaneCoefficients unbounded_reference(const Gaussian& g, const Basis& basis) {
   PlaneCoefficients mu(basis.modes_x, basis.modes_y);
   const Eigen::Vector2d mean = g.mean_m.head<2>() - kDomain.origin_m;
@@ -215,7 +215,7 @@ TEST(TargetCoefficients, WeighEachBellByItsWeightAndWhatTheDomainLeavesOfIt) {
   const PlaneCoefficients first = target_coefficients({{halved}, 0}, kDomain, basis).values;
   const PlaneCoefficients second = target_coefficients({{whole}, 0}, kDomain, basis).values;
   const PlaneCoefficients both = target_coefficients({{halved, whole}, 0}, kDomain, basis).values;
-  // The whole bell loses less than 1e-14 in 6 deviations and more; 650 is 6 of 100 from the edges.
+  // The whole Gaussian loses less than 1e-14 beyond 6 deviations; 650 is 6 of 100 from the edges.
   EXPECT_LE(largest_error(both, (0.5 * first + second) / 1.5), 1e-8);
   EXPECT_GT(largest_error(both, (first + second) / 2), 1e-2);
 }

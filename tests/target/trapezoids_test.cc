@@ -93,7 +93,7 @@ TEST(FreeArea, OfStarsThatCrossAgreesWithPointsWhereverOneLooks) {
       free_points += kept_out ? 0 : 1;
     }
   }
-  // Points of 0.1 × 0.1 tell the area to the cells that edges cut: 70 edges of about 3.2.
+  // Points of 0.1 × 0.1 give the area up to the cells that edges cut: 70 edges of about 3.2.
   EXPECT_NEAR(area_of(pieces), 0.01 * free_points, 0.5);
 }
 

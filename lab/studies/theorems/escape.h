@@ -47,7 +47,7 @@ class EscapeLaw {
  private:
   double dt_s_, far_m_;
   int dimensions_;
-  std::vector<double> spread_m_;  // the largest so far, σ counted in
+  std::vector<double> spread_m_;  // the largest so far, σ included
 };
 
 }  // namespace ergocast::studies

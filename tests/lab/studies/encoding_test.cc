@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage that travels in 16 bits costs a team nothing that can be seen. docs/network.md has the
-// command that flies many more seeds.
+// Coverage that travels in 16 bits has no visible cost for a team. docs/network.md has the command
+// that runs many more seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// High modes that are sent every few periods: where agents reckon, a lockstep mission is the same
-// bit for bit; else they cost little. docs/network.md has the command that flies many more seeds.
+// High modes that are sent every few periods: with dead reckoning, a lockstep mission is the same
+// bit for bit; else they cost little. docs/network.md has the command that runs many more seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>

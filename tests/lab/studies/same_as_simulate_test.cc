@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A study flies what `ergocast simulate` flies, bit for bit, whatever the scenario says: without
-// messages where the ideal team can stand for the swarm, with them where it cannot.
+// A study runs the same mission as `ergocast simulate`, bit for bit, for every scenario: without
+// messages where the ideal team gives the same result, with messages elsewhere.
 #include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class Drawn {
  public:
   Drawn() { write_files(folder_.path()); }
 
-  /// The text of the next one that is valid.
+  /// The text of the next valid scenario.
   std::string next() {
     while (true) {
       scenario = drawn_scenario(++seed_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a study notes of one mission.
+// What a study records of one mission.
 #include "lab/studies/study_run.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(StudyMeasure, MeasuresOffsetsEdgesAndSpeeds) {
   measure.position(0, 0, {50, 30, 0});       // 70 m off the centre
   measure.position(1, 0, {50, 100, 0});      // on it
   measure.position(0, 1, {0.0999, 100, 0});  // nearer to the left edge than 0.1 m
-  measure.position(1, 1, {50, 199.89, 0});   // not so near to the upper one
+  measure.position(1, 1, {50, 199.89, 0});   // 0.11 m from the upper edge
   measure.command({3, 4, 0});
   measure.command({0, 0, 0});
   measure.command({0, 1, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The files that figures are drawn from.
+// The files from which figures are drawn.
 #include "lab/studies/table.h"
 
 #include <gtest/gtest.h>
