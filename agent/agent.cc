@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Joins the mission, takes in messages, and reports the agent's status. mission_run.cc has the
-// tick.
+// Joins the mission, takes in messages and reports the agent's status; mission_run.cc has the tick.
 #include "agent/agent.h"
 
 #include <algorithm>

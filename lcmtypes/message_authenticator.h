@@ -58,7 +58,7 @@ class KnownSignatures {
 /// damage, but no forgery. With a key it is BLAKE2b-128, keyed with MissionKey::shared, of the same
 /// bytes and the name of the channel. An outsider can then only repeat a member's message
 /// unchanged, on its own channel. The signature is Ed25519 over the message with zeros in place of
-/// tag and signature, so that a teammate can repeat a signed message.
+/// tag and signature. So a teammate can repeat a signed message.
 class MessageAuthenticator {
  public:
   MessageAuthenticator() = default;

@@ -46,8 +46,8 @@ class BusReader {
     return {space_[i].data(), messages_[i].msg_len};
   }
 
-  /// From now on the kernel drops most messages of these incarnations up to these sequences, of as
-  /// many incarnations as it has room for.
+  /// From now on the kernel drops most messages of these incarnations up to these sequences. It
+  /// does so for as many incarnations as it has room for.
   void drop_repeats(std::span<const Repeated> flooded);
 
   /// Datagrams that were lost for want of buffer space.

@@ -112,8 +112,8 @@ void BeaconBook::receive(const Beacon& beacon, bool fresh, const Moment& now) {
   }
   body.heard = beacon.number;
   body.heard_at = now;
-  // A position of unknown age cannot be used, unless an older one is known: the agent came after
-  // us, and its body has not moved since, because we have not echoed it.
+  // A position of unknown age is ignored, unless the body was known before its agent came. That
+  // agent has not moved the body, because we have not echoed it.
   if (!body.known && body.echoed.count < 0) return;
   body.known = true;
   body.position_m = beacon.position_m;

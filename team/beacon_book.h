@@ -3,13 +3,13 @@
 // clock.
 //
 // Each agent numbers its beacons. A beacon has the position of its sender's body, and one echo for
-// each teammate: the number of the teammate's newest beacon that arrived before the position was
-// measured. An agent that finds its own beacon k in a beacon knows that the position is younger
-// than k.
+// each teammate. An echo is the number of the teammate's newest beacon that arrived before the
+// position was measured. An agent that finds its own beacon k in a beacon knows that the position
+// is younger than k.
 //
 //   age_ij = now_i − the moment at which i sent the newest own beacon that j has echoed
 //
-// Another process, the driver, measures the position in a beacon. A command proves the order: a
+// Another process, the driver, measures the position in a beacon. A command proves the order. A
 // state that answers command n was measured after n was sent, and n was sent after its echoes
 // arrived. So echoes wait for the state that answers the command which followed them.
 //

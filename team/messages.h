@@ -51,9 +51,9 @@ using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
 /// Ed25519, by the holder of a team's signing key; zero if the message is not signed.
 using Signature = std::array<std::byte, 64>;
 
-/// A process announces itself. An agent requests admission; the roster will name its incarnation.
-/// A coordinator or a world that has just started asks the agents for what they know. header.tick
-/// is then −1 if it does not know the mission.
+/// A process announces itself. An agent requests admission; the roster will name its incarnation. A
+/// coordinator or a world that has just started asks the agents for what they know. header.tick is
+/// then −1 if it does not know the mission.
 struct Hello {
   Header header;
   AgentId requested_id = kUnassigned;  ///< kUnassigned: any; of a world: the agent it waits for
@@ -125,8 +125,8 @@ struct AgentStatus {
   AgentId rate_offender = kUnassigned;  ///< the last agent whose messages were refused as kRate
   std::int64_t kernel_drops = 0;
   double loop_lag_s = 0;  ///< the longest delay or busy time of its process since its last status
-  /// Where a distance is kept: the agent that now blocks it (kUnassigned: none, or an edge of the
-  /// domain), for how many ticks now, in how many ticks altogether, and the most ticks in a row.
+  /// Where a distance is kept: the agent that now blocks it; kUnassigned: none, or an edge of the
+  /// domain. Then the ticks of the present block, of all blocks, and of the longest.
   AgentId blocked_by = kUnassigned;
   std::int64_t blocked_now_ticks = 0, blocked_ticks = 0, longest_block_ticks = 0;
   std::string host;
