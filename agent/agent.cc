@@ -285,7 +285,7 @@ Instant Agent::next_wakeup() const {
                    mission_run->anti_entropy.next_answer()});
 }
 
-/// Only an admitted agent sends final messages: two processes that still join may ask for one id,
+/// Only an admitted agent sends final messages. Two processes that still join may ask for one id,
 /// and receivers could not distinguish them.
 void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   if (finished()) return;

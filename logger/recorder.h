@@ -10,10 +10,10 @@
 // receives all lost rows again. While its streams are bad, as on a full disk, no row is written and
 // none acknowledged.
 //
-// In lockstep a row is missing only if no process can repeat its states. Such states are those
-// before the first one that a resumed recorder received, and those before the first one of a
-// restarted world. Others are those of a time in which the recorder could not write, or in which
-// the world had given up a disconnected recorder.
+// In lockstep a row is missing only if no process can repeat its states. Such states precede the
+// first one that a resumed recorder received, or the first one of a restarted world. Others are
+// those of a time in which the recorder could not write, or in which the world had given up a
+// disconnected recorder.
 #pragma once
 
 #include <limits>
@@ -48,8 +48,8 @@ struct RunFacts {
   /// Real time, as the world counts them; with several drivers, the largest count.
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;
   std::int64_t clamped_commands = 0;  ///< by the speed limit, likewise
-  /// Where a distance is kept: the least distance of any two bodies at any recorded tick; the
-  /// greatest number if there is none [m].
+  /// Where a distance is kept: the least distance of any two bodies at any recorded tick [m]. The
+  /// greatest number if there is none.
   double nearest_m = std::numeric_limits<double>::max();
   /// For each agent with a station (core/station.h): the greatest distance of its vehicle from
   /// there [m]. Recorded ticks of its rest and the end of the mission count.

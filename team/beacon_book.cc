@@ -54,8 +54,8 @@ void BeaconBook::note_roster(const std::vector<RosterEntry>& roster) {
   for (std::size_t id = 0; id < bodies_.size(); ++id) {
     Body& body = bodies_[id];
     if (body.member == members[id]) continue;
-    // The position stays known. The lease limits how far the former incarnation moved the body, and
-    // the new one does not move it before we echo it.
+    // The position stays known. The lease limits how far the former incarnation moved the body. The
+    // new one does not move it before we echo it.
     body.member = members[id];
     body.heard = 0;
     body.echoed = {};

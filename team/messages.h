@@ -79,7 +79,7 @@ struct MissionPart {
   std::vector<RosterEntry> roster;  ///< this part's share, in the order of admission
   std::vector<std::byte> plan;      ///< this part's share of the compiled plan
   std::vector<Hold> holds;          ///< this part's share, in ascending order
-  /// Lockstep: the world stays at the first tick under this revision or a later one, until the
+  /// Lockstep: the world stays at the first tick under this or a later revision until the
   /// coordinator has named a tick. −1: it goes on.
   std::int64_t stand_by_revision = -1;
   std::string reason;     ///< why it ended or failed
