@@ -183,7 +183,8 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
   }
   ++status_.contributions_received;
   const std::int64_t limit = max_steps(*mission_run, *entry, arrival.now);
-  // Before our first tick we do not know the mission's time, so a large count may still be right.
+  // Before our first tick we do not know the mission's time. The count may be right, so it is
+  // ignored and not counted as refused.
   if (mission_run->step.tick < 0 && theirs.steps > limit) return;
   switch (mission_run->table.merge(theirs, limit)) {
     case Merge::kRefusedRange:

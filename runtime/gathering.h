@@ -9,7 +9,7 @@
 
 namespace ergocast {
 
-/// To wake a process costs more than to read a message. In real time no process waits for a single
+/// Waking a process costs more than reading a message. In real time no process waits for a single
 /// contribution or command. The next tick needs it, and the world's state of that tick wakes all.
 struct Gathering {
   std::chrono::nanoseconds at_most{0};  ///< 0: each message wakes its receivers
