@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Joins the mission, takes in messages, and reports the agent's status. mission_run.cc has the
-// tick.
+// Joins the mission, takes in messages and reports the agent's status; mission_run.cc has the tick.
 #include "agent/agent.h"
 
 #include <algorithm>
@@ -188,7 +187,8 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
   }
   ++status_.contributions_received;
   const std::int64_t limit = max_steps(*mission_run, *entry, arrival.now);
-  // Before our first tick we do not know the mission's time, so a large count may still be right.
+  // Before our first tick we do not know the mission's time. The count may be right, so it is
+  // ignored and not counted as refused.
   if (mission_run->step.tick < 0 && theirs.steps > limit) return;
   switch (mission_run->table.merge(theirs, limit)) {
     case Merge::kRefusedRange:
@@ -290,7 +290,7 @@ Instant Agent::next_wakeup() const {
                    mission_run->anti_entropy.next_answer()});
 }
 
-/// Only an admitted agent sends final messages: two processes that still join may ask for one id,
+/// Only an admitted agent sends final messages. Two processes that still join may ask for one id,
 /// and receivers could not distinguish them.
 void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   if (finished()) return;

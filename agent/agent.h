@@ -67,7 +67,7 @@ class Agent {
   /// Why it finished; `failed()` if that is an error of this agent or of the mission.
   const std::string& reason() const;
   bool failed() const;
-  /// What keeps it from taking part in the mission, in words; empty if nothing does.
+  /// A sentence about what keeps it out of the mission; empty if nothing does.
   std::string blocked_reason() const;
 
   RunId run() const { return me_.run(); }

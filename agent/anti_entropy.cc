@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares each digest with the own table and schedules an answer after a random delay. A
-// teammate's earlier answer cancels it.
+// Compares each digest with the own table and schedules an answer, which a teammate's earlier
+// answer cancels.
 #include "agent/anti_entropy.h"
 
 #include <algorithm>

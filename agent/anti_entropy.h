@@ -18,8 +18,8 @@ namespace ergocast {
 
 class AntiEntropy {
  public:
-  /// Limits the rows that wait for their repetition, and the rows that are accepted for it in a
-  /// second of the clock or of the mission.
+  /// Limits the rows that wait for their repetition. Limits also the rows that are accepted for it
+  /// in a second, by the clock or of the mission.
   /// Limit (Team): rows of coverage that an agent repeats at a time, and in a second. Beyond it:
   /// the next digest asks again.
   static constexpr std::size_t kMaxAnswers = 256;
@@ -40,9 +40,9 @@ class AntiEntropy {
   }
 
   /// What `table` holds of the entries of `roster`, without header. If the roster is larger than a
-  /// message, entries are named in turn, and up to half of them are those that we seem to lack.
-  /// We seem to lack coverage that is overdue at `tick`. If a teammate's settled_hash differs from
-  /// ours, we also seem to lack coverage of former members.
+  /// message, entries are named in turn. Up to half of them are those that we seem to lack. We seem
+  /// to lack coverage that is overdue at `tick`. If a teammate's settled_hash differs from ours, we
+  /// also seem to lack coverage of former members.
   Digest digest(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
 
   /// Takes in what a teammate holds, in ascending order of authors. An author's row is answered if

@@ -52,7 +52,8 @@ void Agent::advance_mission(InMission& mission_run, Instant now, Outbox& out) {
 }
 
 /// Gives the forecast the positions of vehicles in range. In real time a vehicle stands still once
-/// its answers are older than the world holds a command; in lockstep the world waits for answers.
+/// its last answer is older than the world holds a command. In lockstep the world waits for
+/// answers.
 void Agent::note_places(InMission& mission_run, const WorldState& world) {
   const Timing& timing = mission().timing;
   mission_run.state_parts.see(world);
@@ -132,7 +133,7 @@ bool Agent::stalled(const InMission& mission_run, Instant now) const {
 }
 
 /// Broadcasts the blocks that are due, or all. An agent that learns late of a pause has counted too
-/// many ticks, so the tick that it announced is too late: it broadcasts at once.
+/// many ticks. The tick that it announced is then too late, so it broadcasts at once.
 void Agent::broadcast(InMission& mission_run, bool all, Outbox& out) {
   const Tick tick = mission_run.step.counted;
   for (int b = 0; b < mission_run.table.block_count(); ++b) {
@@ -201,9 +202,9 @@ void Agent::answer(InMission& mission_run, Outbox& out) {
   me_.publish(Bus::kCommand, mission_run.last_command, step.tick, out);
 }
 
-/// Forgets by the tick's own roster or a newer one: an older admission of a forgotten agent may
-/// have been lost with its coordinator. This also runs in a pause, because forgetting goes by the
-/// world's ticks, and the agent then reports the c_k that counts.
+/// Forgets by the roster that the tick may have waited for, never by an older one. The admission of
+/// a forgotten agent may have been lost with its coordinator. This also runs in a pause, because
+/// forgetting goes by the world's ticks, and the agent then reports the c_k that counts.
 void Agent::forget_silent(InMission& mission_run) const {
   const Step& step = mission_run.step;
   mission_run.table.remember_all();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Admits agents, distributes the mission, starts, monitors and ends it. It never steers.
 //
-// It repeats its whole state once a second, that of a large team in turn, so that none of its
+// It repeats its whole state once a second; a large state is repeated in turn. So none of its
 // messages needs an acknowledgement. A restarted coordinator takes the mission over from the
 // agents, which repeat it on request (takeover.cc). Admission is in admission.cc, pausing in
 // pausing.cc.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which parts of MISSION are to be sent. A small mission is sent as a whole each time. A large one
-// is sent part by part in turn, and parts that have changed are sent a few times before the others.
+// is sent part by part in turn. Parts that have changed are sent a few times before the others.
 #pragma once
 
 #include <cstddef>

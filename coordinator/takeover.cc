@@ -49,8 +49,8 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
 
 /// The world may name a revision of a predecessor that no agent received. The team then waits for
 /// that roster or a newer one, so we send a higher revision. But the world may also be the first to
-/// name a revision of a coordinator that took over from us and is alive. So we first wait for
-/// messages of that coordinator.
+/// name a revision of a running coordinator that took over from us. So we first wait for messages
+/// of that coordinator.
 void Coordinator::supersede_dead_coordinator(Instant now) {
   if (world_.newest_revision <= revisions_.current) return world_.newer_since.reset();
   if (other_coordinator_alive(now) || now - *world_.newer_since <= silence_of(kCoordinator)) return;

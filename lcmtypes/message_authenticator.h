@@ -57,11 +57,11 @@ class KnownSignatures {
 
 /// Protects outgoing datagrams and verifies incoming ones. Cheap to copy.
 ///
-/// Without a key the tag is XXH3-128 of the message with zeros in place of the tag: it detects
+/// Without a key the tag is XXH3-128 of the message with zeros in place of the tag. It detects
 /// damage, but no forgery. With a key it is BLAKE2b-128, keyed with MissionKey::shared, of the same
 /// bytes and the name of the channel. An outsider can then only repeat a member's message
 /// unchanged, on its own channel. The signature is Ed25519 over the message with zeros in place of
-/// tag and signature, so that a teammate can repeat a signed message.
+/// tag and signature. So a teammate can repeat a signed message.
 class MessageAuthenticator {
  public:
   MessageAuthenticator() = default;

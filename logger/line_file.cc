@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stream buffer gathers lines and writes only whole ones; after a failure it cuts the file after
-// the last whole line.
+// A stream buffer gathers lines, writes only whole ones, and after a failure cuts off what is no
+// whole line.
 #include "logger/line_file.h"
 
 #include <algorithm>

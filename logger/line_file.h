@@ -12,7 +12,7 @@
 namespace ergocast {
 
 /// Lines are buffered until they are flushed or are 64 KiB. After a write error, as on a full disk,
-/// unwritten lines stay in the buffer and the stream is bad; clear() and flush() try again. If the
+/// unwritten lines stay in the buffer and the stream is bad. clear() and flush() try again. If the
 /// caller writes nothing to a bad stream, nothing is lost and the buffer stays small.
 class LineFile : public std::ostream {
  public:

@@ -4,16 +4,16 @@
 // If each robot has a driver of its own, each driver sends one part of a state, and the recorder
 // joins the parts. The rows of a part that does not arrive in time are missing.
 //
-// Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that
-// the world applied in between. Rows are written in order and acknowledged to the world, which in
+// Tick n's row needs two states. State n has the position, and state n+1 has the velocity that the
+// world applied in between. Rows are written in order and acknowledged to the world, which in
 // lockstep repeats every missing state. Acknowledged rows are in the file, so a killed recorder
 // receives all lost rows again. While its streams are bad, as on a full disk, no row is written and
 // none acknowledged.
 //
-// In lockstep a row is missing only if no process can repeat its states. Such states are those
-// before the first one that a resumed recorder received, and those before the first one of a
-// restarted world. States of a time in which the recorder could not write can be missing, too, and
-// those of a time in which the world had given up a disconnected recorder.
+// In lockstep a row is missing only if no process can repeat its states. Such states precede the
+// first one that a resumed recorder received, or the first one of a restarted world. Others are
+// those of a time in which the recorder could not write, or in which the world had given up a
+// disconnected recorder.
 #pragma once
 
 #include <limits>
@@ -48,11 +48,11 @@ struct RunFacts {
   /// Real time, as the world counts them; with several drivers, the largest count.
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;
   std::int64_t clamped_commands = 0;  ///< by the speed limit, likewise
-  /// Where a distance is kept: the least distance of any two bodies at any recorded tick; the
-  /// greatest number if there is none [m].
+  /// Where a distance is kept: the least distance of any two bodies at any recorded tick [m]. The
+  /// greatest number if there is none.
   double nearest_m = std::numeric_limits<double>::max();
   /// For each agent with a station (core/station.h): the greatest distance of its vehicle from
-  /// there at any recorded tick of its rest and at the end of the mission [m].
+  /// there [m]. Recorded ticks of its rest and the end of the mission count.
   std::map<AgentId, double> from_home_m;
 };
 
@@ -90,8 +90,8 @@ class Recorder {
   void stop(std::string reason);
   Instant next_wakeup() const;
 
-  /// True once the last tick is recorded or the mission is over, and nothing more can arrive: world
-  /// and agents have reported that they leave, or 1 s has passed.
+  /// True once the last tick is recorded or the mission is over, and nothing more can arrive.
+  /// Nothing can arrive once world and agents have reported that they leave, or 1 s has passed.
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
   const MissionFollower& follower() const { return me_.follower(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The files of a run directory that grow during the run. A logger that continues a record begins
-// new files, so that an unfinished line of a killed process stays the last of its file.
+// new files. So an unfinished line of a killed process stays the last of its file.
 #pragma once
 
 #include <filesystem>

@@ -18,8 +18,8 @@ struct PowerLaw {
 
 /// Least squares of log value against log t over the last decade of time, with equal weight for
 /// equal lengths of log t. Uses rows with t > 0, t ≥ t_end/10 and value > 0, where t_end is the
-/// last row's time. Nothing if fewer than three rows remain, or if they cover less than a factor of
-/// 2 in time, because noise then looks like a slope.
+/// last row's time. Nothing if fewer than three rows remain. Nothing also if they cover less than a
+/// factor of 2 in time, because noise then looks like a slope.
 /// @pre t_s is ascending and as long as values.
 std::optional<PowerLaw> fit_last_decade(std::span<const double> t_s,
                                         std::span<const double> values);

@@ -40,16 +40,16 @@ const char* name_of_basis(const Basis& basis);
 /// again or null.
 nlohmann::ordered_json holds_json(std::span<const Hold> holds);
 
-/// The ticks of a run directory that do not count: from holds.json, which exists until the logger
-/// writes a summary, else from `summary`. Empty if the content is impossible.
+/// The ticks of a run directory that do not count: from holds.json, else from `summary`. holds.json
+/// exists until the logger writes a summary. Empty if the content is impossible.
 std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir,
                                  const nlohmann::ordered_json& summary);
 
 /// The text of the file. Bytes that are not UTF-8 are replaced, because the network may bring some.
 std::string to_text(const nlohmann::ordered_json& summary);
 
-/// The summary of a run directory: null if there is none, any JSON value if the file is JSON, else
-/// an error that names the file.
+/// The summary of a run directory: any JSON value if the file is JSON, null if there is no file.
+/// Otherwise an error that names the file.
 std::variant<nlohmann::ordered_json, std::string> read_summary(
     const std::filesystem::path& run_dir);
 

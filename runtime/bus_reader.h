@@ -46,14 +46,14 @@ class BusReader {
     return {space_[i].data(), messages_[i].msg_len};
   }
 
-  /// From now on the kernel drops most messages of these incarnations up to these sequences, of as
-  /// many incarnations as it has room for.
+  /// From now on the kernel drops most messages of these incarnations up to these sequences. It
+  /// does so for as many incarnations as it has room for.
   void drop_repeats(std::span<const Repeated> flooded);
 
   /// Datagrams that were lost for want of buffer space.
   ///
   /// The kernel has one counter for these and for those that the filter rejected. Only receive()
-  /// empties a buffer, so none was lost since the last batch if the buffer is less than half full
+  /// empties a buffer. So none was lost since the last batch if the buffer is less than half full
   /// after the next one. What the kernel has counted since the last look counts as lost only if the
   /// buffer is fuller. While repeats are dropped, nothing counts as lost.
   std::int64_t lost();

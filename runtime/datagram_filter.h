@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A kernel filter that passes on only what a process subscribes to, so that other messages neither
-// wake the process nor take space in its receive buffer.
+// A kernel filter that passes on only what a process subscribes to. So other messages neither wake
+// the process nor take space in its receive buffer.
 #pragma once
 
 #include <cstdint>

@@ -21,8 +21,8 @@ namespace {
 constexpr int kFirstForeignNumber = 1'000'000'000;
 /// More bytes than the C library buffers before it writes.
 constexpr std::int64_t kUnwrittenBytes = 1 << 17;
-/// A finished segment is compressed while half of the next one is written: so many bytes for each
-/// byte written, and so many for each flush().
+/// The bytes to compress for each byte written, and for each flush(). So a finished segment is
+/// compressed while half of the next one is written.
 constexpr std::int64_t kCompressedPerByte = 2, kCompressedPerFlush = 1 << 20;
 constexpr std::string_view kCompressed = ".zst";
 

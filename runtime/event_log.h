@@ -16,8 +16,8 @@
 
 namespace ergocast {
 
-/// An event of LCM's log format begins with this word, its number and time stamp [µs] in 64 bits,
-/// and the lengths of channel and message in 32; all big-endian.
+/// An event of LCM's log format begins with this word. Its number and time stamp [µs] follow in 64
+/// bits, then the lengths of channel and message in 32; all big-endian.
 inline constexpr std::uint32_t kEventSync = 0xEDA1DA01;
 inline constexpr std::size_t kEventHeaderBytes = 28;
 
@@ -51,8 +51,8 @@ class EventLog {
   /// Appends a message at the caller's time [µs since 1970].
   void write(std::string_view channel, std::span<const std::byte> bytes, std::int64_t time_us);
 
-  /// Passes all data to the operating system. Returns the write error since the last call, if any:
-  /// the segment then ends with its last whole event, and the next call begins a new segment.
+  /// Passes all data to the operating system. Returns the write error since the last call, if any.
+  /// The segment then ends with its last whole event, and the next call begins a new segment.
   std::optional<std::string> flush();
 
   /// Segments removed because of the limit.

@@ -9,8 +9,8 @@
 
 namespace ergocast {
 
-/// To wake a process costs more than to read a message. In real time no process waits for a single
-/// contribution or command: the next tick needs it, and the world's state of that tick wakes all.
+/// Waking a process costs more than reading a message. In real time no process waits for a single
+/// contribution or command. The next tick needs it, and the world's state of that tick wakes all.
 struct Gathering {
   std::chrono::nanoseconds at_most{0};  ///< 0: each message wakes its receivers
   std::size_t datagrams = 0;            ///< that may come together on one bus

@@ -14,7 +14,7 @@ namespace ergocast {
 
 inline constexpr std::uint32_t kLcmMagic = 0x4c433032;  // "LC02"
 inline constexpr std::size_t kLcmHeaderBytes = 8;
-/// With the zero. LCM allows names of 63 characters.
+/// The longest channel name of LCM, 63 characters, with its zero.
 inline constexpr std::size_t kMaxChannelBytes = 64;
 /// No datagram of ours is longer.
 inline constexpr std::size_t kMaxLcmBytes = kLcmHeaderBytes + kMaxChannelBytes + kMaxDatagramBytes;

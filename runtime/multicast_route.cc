@@ -43,7 +43,7 @@ unsigned interface_in(const char* answer, std::size_t size) {
 
 }  // namespace
 
-// The source address of a connected socket would be wrong: for a route to lo, the kernel takes the
+// The source address of a connected socket would be wrong. For a route to lo, the kernel takes the
 // address of another interface.
 unsigned interface_towards(in_addr group) {
   const Socket socket(AF_NETLINK, SOCK_RAW, NETLINK_ROUTE);

@@ -16,9 +16,9 @@ struct RateBudget {
   double per_second = 0, per_tick = 0, most = 0;
 };
 
-/// Eight times the most that the mission needs of an agent: its blocks when they are due and when a
-/// tick is repeated, its commands, relayed blocks, digests and statuses. Ticks count separately,
-/// because lockstep has as many a second as the machine can compute.
+/// Eight times the most that the mission needs of an agent. These are its blocks when they are due
+/// and when a tick is repeated, and its commands, relayed blocks, digests and statuses. Ticks count
+/// separately, because lockstep has as many a second as the machine can compute.
 /// @param members  entries of the roster, former members included
 RateBudget rate_budget_of(const Mission& mission, std::size_t members);
 

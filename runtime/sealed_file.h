@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A file in memory that no process can change any more, not even this one. A launcher hands such
-// files to the processes that it starts, so that no change of a file on the disk reaches them.
+// files to the processes that it starts. So no change of a file on the disk reaches them.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Streams a file through libzstd in blocks. The result gets its final name when it is complete.
+// Streams a file through libzstd in blocks, and gives the result its final name when it is
+// complete.
 #include "runtime/segment_compressor.h"
 
 #include <unistd.h>

@@ -6,8 +6,8 @@
 
 namespace ergocast {
 
-/// For options that take a scenario: replaces the bare name of a shipped scenario by its file, and
-/// refuses a bare name without a file or shipped scenario. All other texts stay unchanged.
+/// For options that take a scenario: replaces the bare name of a shipped scenario by its file. A
+/// bare name without a file or shipped scenario is refused. All other texts stay unchanged.
 CLI::Validator shipped_scenario();
 
 }  // namespace ergocast

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Logs what was refused or lost on reception, at a limited rate, and renews the group membership
-// when the network interface was replaced.
+// Logs what was refused or lost on reception, at a limited rate. Renews the group membership when
+// the network interface was replaced.
 #pragma once
 
 #include "core/ids.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which of the world's states the logger has, and which it may still need.
 //
-// In lockstep the world runs a bounded number of ticks ahead of the record, and repeats the states
+// In lockstep the world runs a bounded number of ticks ahead of the record. It repeats the states
 // that the logger lacks. A logger that makes no progress for too long is given up.
 #pragma once
 

@@ -3,13 +3,13 @@
 //
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
 //   v_n is the command, cut to the vehicle's speed limit. Where bodies keep a distance, a world in
-//   real time then filters all commands together (core/separation.h), because old and late commands
-//   do not account for where the others have gone. Where there are walls, a world always filters,
-//   and the walls stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
+//   real time then filters all commands together (core/separation.h). Old and late commands do not
+//   account for where the others have gone. Where there are walls, a world always filters, and the
+//   walls stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
 //   result.
 //
-// In lockstep a tick is repeated until every member of the roster has answered it, and the world
-// runs a bounded number of ticks ahead of the record. In real time it follows the clock.
+// In lockstep a tick is repeated until every member of the roster has answered it. The world runs a
+// bounded number of ticks ahead of the record. In real time it follows the clock.
 #pragma once
 
 #include <map>
@@ -39,8 +39,8 @@ class World {
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
-  /// Ends at once, as when its process gets a signal. A STOP with `now` does not end it at once:
-  /// it sends a state in which all vehicles stand still, until that is recorded or 2 s have passed.
+  /// Ends at once, as when its process gets a signal. A STOP with `now` does not end it at once. It
+  /// sends a state in which all vehicles stand still, until that is recorded or 2 s have passed.
   void stop(std::string reason) { finish(std::move(reason)); }
   /// Ends at once and counts as failed(): it cannot take part, for a reason outside of it.
   void fail(std::string reason) {

@@ -59,7 +59,7 @@ class OtherWorldWatch {
     if (!done_) listener_ = std::get<0>(std::move(opened));
   }
 
-  /// A tick beyond the team's answers comes from a running world: neither a recording nor a world
+  /// A tick beyond the team's answers comes from a running world. Neither a recording nor a world
   /// before us has such a tick. If two began together, the one with the greater identity gives way.
   void meet(const WorldState& state) {
     const Header& other = state.header;

@@ -54,8 +54,8 @@ void BeaconBook::note_roster(const std::vector<RosterEntry>& roster) {
   for (std::size_t id = 0; id < bodies_.size(); ++id) {
     Body& body = bodies_[id];
     if (body.member == members[id]) continue;
-    // The position stays known. The lease limits how far the former incarnation moved the body, and
-    // the new one does not move it before we echo it.
+    // The position stays known. The lease limits how far the former incarnation moved the body. The
+    // new one does not move it before we echo it.
     body.member = members[id];
     body.heard = 0;
     body.echoed = {};
@@ -112,8 +112,8 @@ void BeaconBook::receive(const Beacon& beacon, bool fresh, const Moment& now) {
   }
   body.heard = beacon.number;
   body.heard_at = now;
-  // A position of unknown age cannot be used, unless an older one is known: the agent came after
-  // us, and its body has not moved since, because we have not echoed it.
+  // A position of unknown age is ignored, unless the body was known before its agent came. That
+  // agent has not moved the body, because we have not echoed it.
   if (!body.known && body.echoed.count < 0) return;
   body.known = true;
   body.position_m = beacon.position_m;

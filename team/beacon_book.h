@@ -3,13 +3,13 @@
 // clock.
 //
 // Each agent numbers its beacons. A beacon has the position of its sender's body, and one echo for
-// each teammate: the number of the teammate's newest beacon that arrived before the position was
-// measured. An agent that finds its own beacon k in a beacon knows that the position is younger
-// than k.
+// each teammate. An echo is the number of the teammate's newest beacon that arrived before the
+// position was measured. An agent that finds its own beacon k in a beacon knows that the position
+// is younger than k.
 //
 //   age_ij = now_i − the moment at which i sent the newest own beacon that j has echoed
 //
-// Another process, the driver, measures the position in a beacon. A command proves the order: a
+// Another process, the driver, measures the position in a beacon. A command proves the order. A
 // state that answers command n was measured after n was sent, and n was sent after its echoes
 // arrived. So echoes wait for the state that answers the command which followed them.
 //
@@ -56,8 +56,9 @@ class BeaconBook {
   void note_roster(const std::vector<RosterEntry>& roster);
 
   // ---- beacons of teammates ----
-  /// Takes in a beacon. A beacon of no member has no effect. A beacon that arrived after a later
-  /// one, or that echoes a number which was never sent, has no effect and is counted.
+  /// Takes in a beacon. A beacon of no member has no effect. Two kinds have no effect and are
+  /// counted: beacons that arrive after a later one, and beacons that echo a number which was never
+  /// sent.
   /// @param fresh  no later message of its sender arrived before
   void receive(const Beacon& beacon, bool fresh, const Moment& now);
   /// Beacons that arrived after a later one of their sender.
@@ -80,7 +81,7 @@ class BeaconBook {
 
   // ---- what the filter needs ----
   /// All other bodies, in ascending order of their numbers. `known` is false if a body's position
-  /// is not known, or its agent has not echoed us within the lease: we must then stand.
+  /// is not known, or its agent has not echoed us within the lease. We must then stand.
   std::span<const Neighbour> bodies(const Eigen::Vector3d& own_position_m, const Moment& now);
 
  private:

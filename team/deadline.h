@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A deadline in wall time and in mission time. A lockstep run passes thousands of mission seconds
-// in a wall second; a real-time run may take many wall seconds for a mission second.
+// in a wall second. A real-time run may take many wall seconds for a mission second.
 #pragma once
 
 #include <algorithm>

@@ -33,10 +33,10 @@ enum class CoordinatorSign {
 /// @param timing  of the mission, if known: a world in real time may send only once a tick
 PacingClock::duration heartbeat_of(AgentId sender, CoordinatorSign sign, const Timing* timing);
 
-/// The time without a sign of life after which a sender is silent: 3 s for an agent, the world and
-/// the logger (six ticks for a world in real time if that is longer). The coordinator is silent
-/// after 1.5 s without TEAM_STATUS, or after 6 s without MISSION for a process without a
-/// subscription to TEAM_STATUS.
+/// The time without a sign of life after which a sender is silent. It is 3 s for an agent, the
+/// world and the logger. For a world in real time it is six ticks if that is longer. The
+/// coordinator is silent after 1.5 s without TEAM_STATUS, or after 6 s without MISSION for a
+/// process without a subscription to TEAM_STATUS.
 PacingClock::duration silence_of(AgentId sender,
                                  CoordinatorSign sign = CoordinatorSign::kTeamStatus,
                                  const Timing* timing = nullptr);
@@ -44,9 +44,10 @@ PacingClock::duration silence_of(AgentId sender,
 /// How long after the planned end a restarted world or coordinator may still appear [wall s].
 inline constexpr double kFarewellPatience_s = 30;
 
-/// Whether a running mission must be over: nothing was received from its world and coordinator for
-/// `silence`, and `newest` was the count of its newest tick. So a process that was disconnected
-/// when the mission ended stops by itself: the others have exited and send nothing.
+/// Whether a running mission must be over. If so, a process that was disconnected when it ended
+/// stops by itself: the others have exited and send nothing.
+/// @param newest  the count of the newest tick
+/// @param silence  how long nothing was received from world and coordinator
 bool must_be_over(const Timing& timing, Tick newest, PacingClock::duration silence);
 
 class Liveness {

@@ -57,9 +57,9 @@ using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
 /// Ed25519, by the holder of a team's signing key; zero if the message is not signed.
 using Signature = std::array<std::byte, 64>;
 
-/// A process announces itself. An agent requests admission; the roster will name its incarnation.
-/// A coordinator or a world that has just started asks the agents for what they know. header.tick
-/// is then −1 if it does not know the mission.
+/// A process announces itself. An agent requests admission; the roster will name its incarnation. A
+/// coordinator or a world that has just started asks the agents for what they know. header.tick is
+/// then −1 if it does not know the mission.
 struct Hello {
   Header header;
   AgentId requested_id = kUnassigned;  ///< kUnassigned: any; of a world: the agent it waits for
@@ -85,7 +85,7 @@ struct MissionPart {
   std::vector<RosterEntry> roster;  ///< this part's share, in the order of admission
   std::vector<std::byte> plan;      ///< this part's share of the compiled plan
   std::vector<Hold> holds;          ///< this part's share, in ascending order
-  /// Lockstep: the world stays at the first tick under this revision or a later one, until the
+  /// Lockstep: the world stays at the first tick under this or a later revision until the
   /// coordinator has named a tick. −1: it goes on.
   std::int64_t stand_by_revision = -1;
   std::string reason;     ///< why it ended or failed
@@ -131,8 +131,8 @@ struct AgentStatus {
   AgentId rate_offender = kUnassigned;  ///< the last agent whose messages were refused as kRate
   std::int64_t kernel_drops = 0;
   double loop_lag_s = 0;  ///< the longest delay or busy time of its process since its last status
-  /// Where a distance is kept: the agent that now blocks it (kUnassigned: none, or an edge of the
-  /// domain), for how many ticks now, in how many ticks altogether, and the most ticks in a row.
+  /// Where a distance is kept: the agent that now blocks it; kUnassigned: none, or an edge of the
+  /// domain. Then the ticks of the present block, of all blocks, and of the longest.
   AgentId blocked_by = kUnassigned;
   std::int64_t blocked_now_ticks = 0, blocked_ticks = 0, longest_block_ticks = 0;
   std::string host;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Collects the parts of a few revisions side by side. It commits a revision once all its parts have
-// arrived, or older parts that have not changed stand in for the missing ones.
+// Collects the parts of a few revisions side by side, and commits a revision once its parts, new or
+// unchanged, are complete.
 #include "team/mission_follower.h"
 
 #include <algorithm>

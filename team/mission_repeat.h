@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decides when a process that knows the mission repeats it on request: after a random delay, unless
-// another process is faster, and not too often. Agents do this, and `ergocast run`, which outlasts
-// them.
+// Decides when a process that knows the mission repeats it on request. It does so after a random
+// delay, unless another process is faster, and not too often. Agents do this, and `ergocast run`,
+// which outlasts them.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The common part of every process of a mission: it decides which messages are accepted, knows the
-// mission and its roster, tracks which processes are alive, and numbers our own messages.
+// The common part of every process of a mission. It decides which messages are accepted, and it
+// knows the mission and its roster. It tracks which processes are alive, and numbers our own
+// messages.
 //
 // Agent, coordinator, world, recorder, driver and the monitors each own one, and pass every message
 // to accept() first. No socket, thread, clock or file.
@@ -49,10 +50,10 @@ class Participant {
 
   /// The checks that all processes share. Returns nothing if our role has no subscription to the
   /// message on `bus`, or if the message is our own. It also returns nothing for a message of
-  /// another run, which counts as Refusal::kRun, and for a command of the operator that names an
-  /// old tick, which counts as Refusal::kLate. While our run is 0, all runs pass, and the first
-  /// MISSION sets it. An accepted message updates liveness and, if it is a MISSION, the follower. A
-  /// foreign plan counts as Refusal::kRange.
+  /// another run, which counts as Refusal::kRun. The same holds for a command of the operator that
+  /// names an old tick, which counts as Refusal::kLate. While our run is 0, all runs pass, and the
+  /// first MISSION sets it. An accepted message updates liveness and, if it is a MISSION, the
+  /// follower. A foreign plan counts as Refusal::kRange.
   std::optional<Arrival> accept(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   // ---- the mission, as far as it is known ----
@@ -84,11 +85,11 @@ class Participant {
   /// @param since  when it should have started to send
   bool silent(AgentId process, Instant now, std::optional<Instant> since = {}) const;
   /// Whether the running mission must be over, because all processes that could report its end are
-  /// silent: for the world these are coordinator and agents, for others coordinator and world.
+  /// silent. For the world these are coordinator and agents, for others coordinator and world.
   /// @param newest  the newest known tick
   bool cut_off(Tick newest, Instant now) const;
-  /// Whether no member or former member will send again: each incarnation in `roster` has reported
-  /// that it has finished, or is a silent former member.
+  /// Whether no member or former member will send again. Each incarnation in `roster` has then
+  /// reported that it has finished, or is a silent former member.
   /// @param finished  whether an incarnation's last status reports that
   template <class F>
   bool team_has_left(const std::vector<RosterEntry>& roster, const F& finished, Instant now) const {

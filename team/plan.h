@@ -16,9 +16,9 @@ namespace ergocast {
 /// @pre within_limits(mission), core/mission_limits.h: otherwise no receiver accepts the plan.
 std::vector<std::byte> encode_plan(const Mission& mission);
 
-/// The mission of a plan, bit for bit, within its limits. Plans come from the network: an error for
-/// bytes that are no plan, are of another version, break a limit, or differ from the encoding of
-/// their mission.
+/// The mission of a plan, bit for bit, within its limits. Returns an error for bytes that are no
+/// plan, are of another version, break a limit, or differ from the encoding of their mission. Plans
+/// come from the network.
 std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept;
 
 /// Decodes a plan and adds the table of its modes, if it needs one, by provide_table() of

@@ -29,12 +29,12 @@ prepare() {
   ssh -n "$1" "mkdir -p $folder/$now/log $folder/$now/record && ln -sfn $now $folder/latest"
 }
 
-# Nobody else may read it, not even for a moment; and it lies where "collect" leaves it.
+# The key is never readable for others, and it is in a folder that "collect" does not copy.
 copy_key() {
   ssh "$1" "umask 077 && cd $folder && cat >$2.new && mv -f $2.new $2" <"$keys${2#mission}"
 }
 
-# The modes of the free domain, which all have to take from one table.
+# All hosts must take the modes of the free domain from one table.
 copy_modes() {
   ssh "$1" "cat >$folder/$modes" <"$(dirname "${BASH_SOURCE[0]}")/$modes"
 }

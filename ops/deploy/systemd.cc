@@ -34,14 +34,14 @@ ERGOCAST_SCENARIO=/etc/ergocast/mission/${scenario_files[0]}$options$table
 END
 }
 
-# The modes of the free domain, which all have to take from one table.
+# All hosts must take the modes of the free domain from one table.
 install_modes() {
   ssh "$1" "sudo mkdir -p /etc/ergocast/mission &&
     sudo sh -c 'umask 022 && cat >/etc/ergocast/mission/$modes'" \
     <"$(dirname "${BASH_SOURCE[0]}")/$modes"
 }
 
-# install_key HOST FILE DROP-IN UNITS: FILE, for root only, and what hands it to these services.
+# install_key HOST FILE DROP-IN UNITS: FILE, only for root, and the DROP-IN that hands it to UNITS.
 install_key() {
   local folder=/etc/systemd/system/$4.service.d shipped=/usr/share/ergocast/systemd/$3
   ssh "$1" "ls $shipped >/dev/null && cd /etc/ergocast &&
@@ -60,7 +60,7 @@ on_services() {
 case ${1:-} in
   setup)
     for host in "${hosts[@]}"; do write_settings "$host"; done
-    # The services run as nobody in particular: everybody has to be able to read the scenario.
+    # The services run under a user without rights, so the scenario must be readable for all users.
     tar -C "$scenario_folder" --mode=a+rX -cf - -- "${scenario_files[@]}" |
       ssh "$coordinator" 'sudo mkdir -p /etc/ergocast/mission &&
         sudo tar -C /etc/ergocast/mission --no-same-owner -xf -'

@@ -8,8 +8,8 @@
 
 namespace ergocast::doctor {
 
-/// Receives datagrams to this group and port only (runtime/group_socket.h). Its fd() is valid
-/// even if it receives nothing; `error` then has the reason.
+/// Receives datagrams to this group and port only (runtime/group_socket.h). Its fd() is valid even
+/// if it receives nothing; `error` then has the reason.
 Socket group_listener(const std::string& group, int port, std::string& error);
 
 }  // namespace ergocast::doctor

@@ -14,8 +14,8 @@ namespace {
 
 /// The size to set for fragments, which only datagrams of other programs have.
 constexpr int kFragmentBytes = 4194304;
-/// The space of one of our datagrams of 900 to 1250 bytes in a receive buffer: the default of
-/// 212992 bytes holds 92 (Linux 6, x86-64).
+/// The space that one of our datagrams of 900 to 1250 bytes takes in a receive buffer. The default
+/// of 212992 bytes holds 92 (Linux 6, x86-64).
 constexpr int kBytesPerDatagram = 2304;
 
 std::optional<long> number_in(const std::filesystem::path& file) {

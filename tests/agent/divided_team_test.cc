@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The final coverage of a team whose members were disconnected or stopped: each member holds all
+// The final coverage of a team whose members were disconnected or stopped. Each member holds all
 // coverage once, as its authors sent it.
 #include <gtest/gtest.h>
 

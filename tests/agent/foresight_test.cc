@@ -101,8 +101,8 @@ TEST(AgentForesees, NothingWithoutAnticipation) {
 // ---- the tick of a block ----
 
 TEST(AgentForesees, TheSameOfARepeatAsOfTheBroadcast) {
-  // A repeated block carries the tick of its broadcast, so that an agent that receives only the
-  // repeat computes the same age.
+  // A repeated block carries the tick of its broadcast. So an agent that receives only the repeat
+  // computes the same age.
   Mission mission = looking_ahead(2, false, Pace::kLockstep);
   mission.timing.broadcast_period_ticks = 8;
   Agent author = running_agent(mission, 1);

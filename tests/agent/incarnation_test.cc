@@ -249,7 +249,7 @@ TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
          at(0s));
     return *agent.coverage()->steps_held(author_of(1));
   };
-  // It may have the ticks 0, 1 and 2, and the lead granted to all: the coordinator that evicted it
+  // It may have the ticks 0, 1 and 2, and the lead granted to all. The coordinator that evicted it
   // may lack its last ticks. A member of tick 9 might have 610.
   EXPECT_EQ(receive(603), 603) << "it still covers, but is no member";
   EXPECT_EQ(receive(604), 603);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents store the mission: they repeat it to a restarted coordinator or world, report their
+// Agents store the mission and repeat it to a restarted coordinator or world. They report their
 // positions to the world, and ask for admission again when the roster has lost them.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A coordinator that finds a mission already under way: it listens, takes over what the agents
+// A coordinator that finds a mission already under way. It listens, takes over what the agents
 // know, and never competes with another coordinator.
 #include <gtest/gtest.h>
 

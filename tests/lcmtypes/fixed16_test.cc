@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage that is sent in 16 bits: it is close to the exact one, errors do not add up, it merges
+// Coverage that is sent in 16 bits. It is close to the exact one, errors do not add up, it merges
 // in any order, and the two encodings never mix.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hostile bytes: for any bytes the result is a refusal, never a message, an exception or a read
-// past the end (each datagram has an allocation of its exact size, for the address sanitizer).
+// Hostile bytes are refused: the result is never a message, an exception or a read past the end.
+// Each datagram has an allocation of its exact size, for the address sanitizer.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The guarantees of a mission key: an outsider can at most repeat a member's message, unchanged and
-// on its own channel, and a member cannot send as the coordinator.
+// The guarantees of a mission key. An outsider can at most repeat a member's message, unchanged and
+// on its own channel. A member cannot send as the coordinator.
 #include "lcmtypes/message_authenticator.h"
 
 #include <sodium.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A logger that was killed and continues: nothing is written twice or changed, and only rows that
+// A logger that was killed and continues. Nothing is written twice or changed, and only rows that
 // no process can repeat are missing.
 #include <gtest/gtest.h>
 
