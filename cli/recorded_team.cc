@@ -25,9 +25,9 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr auto kLook = 250ms;          // between two searches for incidents
-constexpr auto kShortest = 50ms;       // between two samples that are kept
-constexpr auto kPause = 1s;            // the statuses of a team come twice a second
+constexpr auto kLook = 250ms;     // between two searches for incidents
+constexpr auto kShortest = 50ms;  // between two samples that are kept
+constexpr auto kPause = 1s;       // the statuses of a team come twice a second
 /// Limit (Page): statuses on the page. Beyond it: a live page keeps no newer ones; the page of a
 /// record has fewer.
 constexpr std::size_t kMost = 20'000;  // rows of agents that are kept
