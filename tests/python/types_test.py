@@ -37,7 +37,7 @@ mu, error = ergocast.Target([ergocast.Gaussian((0, 0), sigma_m=1)]).coefficients
     simulated.mission.domain, simulated.mission.basis
 )
 ax = plot.map(run, view="xy")
-plot.metric({"ours": [run, flown], "theirs": run}, ax)
+plot.metric({"ours": [run, simulated], "theirs": run}, ax)
 plot.study("runs/noise", y="slope")
 command: npt.NDArray[np.float64] = ergocast.Controller(run.mission).command(0, 0, (1.0, 2.0))
 """
