@@ -389,6 +389,14 @@ class CheckCanFail : public Scenarios {
     EXPECT_NE(output().find("time.dt_s: 0.6 is coarse"), std::string::npos) << output();
   }
 
+  void expect_warning_of_flat_weights() {
+    write("s.textproto", kGood + "basis { sobolev_form: NORM sobolev_exponent: 0.6 }\n");
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_NE(output().find("basis.sobolev_exponent: 0.6 lets short waves"), std::string::npos)
+        << output();
+  }
+
   void expect_warning_of_rare_modes(const std::string& basis, const std::string& what) {
     std::string text = kGood + "basis { " + basis + " }\n";
     write("s.textproto", text.insert(text.find(kTime), "high_mode_period_factor: 60 "));
@@ -473,6 +481,7 @@ class CheckCanFail : public Scenarios {
     expect_warning("noise_ceiling: 2.5", "6", "m/s held for 3 steps");
     expect_warning("noise_ceiling: 0.5", "6", "m/s held for 1 step)");
     expect_warning_of_coarse_steps();
+    expect_warning_of_flat_weights();
     expect_warning_of_rare_modes("modes_x: 8 modes_y: 8", "has no effect: the basis has 64 modes");
     expect_warning_of_rare_modes("modes_x: 9", "makes 600 ticks between two broadcasts");
     expect_warning_of_packing();
