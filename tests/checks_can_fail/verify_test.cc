@@ -265,6 +265,10 @@ TEST_F(VerifyCanFail, InEachOfItsFindings) {
   fs::remove(folder_ / "even.csv");
   expect(with_map, 0, "its maps are gone");
 
+  // The file also has the words of --help.
+  ASSERT_EQ(ergocast({"verify", "--help"}), 0) << output();
+  said_.push_back(output());
+
   expect_all_said({"cli/verify.cc", "cli/record_comparison.cc", "cli/trajectory_comparison.cc",
                    "logger/table_lines.cc", "team/plan.cc"},
                   said_, {{"team/plan.cc", "out of memory", "nothing here is large enough"}},
