@@ -261,7 +261,7 @@ TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
   for (const std::string& file : sources_in("lab")) {
     sources += text_of(std::filesystem::path(ERGOCAST_SOURCE_DIR) / file);
   }
-  const std::regex report("violate\\(\\w+, Invariant::\\w+");
+  const std::regex report("violate\\(\\s*\\w+,\\s+Invariant::\\w+");
   const auto places =
       std::distance(std::sregex_iterator(sources.begin(), sources.end(), report), {});
   std::set<std::pair<Invariant, std::string>> planted;
