@@ -48,7 +48,7 @@ void write_distributions(const std::vector<Row>& rows, const fs::path& file) {
     if (p.near || (p.start != 1 && p.start != 3) || p.exponent != 1 || p.epsilon != kPaperEpsilon ||
         std::find(std::begin(kSigmas), std::end(kSigmas), p.sigma) == std::end(kSigmas))
       continue;
-    char sigma[24];
+    char sigma[32];
     std::snprintf(sigma, sizeof sigma, "σ = %g m/√s", p.sigma);
     const EscapeLaw law(row.spreads.counted, mission_of(p), far_m(p));
     for (int half = 0; half <= (midline ? 600 : 400); ++half) {
