@@ -29,6 +29,10 @@ BLOCK = re.compile(r"<!-- (?P<note>.*?) -->|^(?P<heading>#+ )|^```(?P<language>\
 NETWORK = ["unshare", "-n", "sh", "-c", 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec "$@"', "_"]
 
 
+# What `ergocast run --watch` prints once its mission is over.
+SHOWS_THE_RECORD = ", until Ctrl-C"
+
+
 class Wrong(Exception):
     pass
 
@@ -77,16 +81,14 @@ class Session:
         if self.background is None:
             return
         process, self.background = self.background, None
-        for _ in range(2):  # the mission, then the page
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT)
-                try:
-                    process.wait(20)
-                except subprocess.TimeoutExpired:
-                    pass
+        log = self.folder / ".background"
+        # The first Ctrl-C ends the mission. A page then shows its record until the second one.
+        process.send_signal(signal.SIGINT)
+        while process.poll() is None and SHOWS_THE_RECORD not in log.read_text():
+            time.sleep(0.1)
         if process.poll() is None:
-            process.kill()
-            raise Wrong("two Ctrl-C do not end it")
+            process.send_signal(signal.SIGINT)
+            process.wait()
         if process.returncode != 0:
             raise Wrong(f"code {process.returncode} after Ctrl-C\n{(self.folder / '.background').read_text()}")
 

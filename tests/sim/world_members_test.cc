@@ -28,7 +28,7 @@ TEST(WorldRefuses, CommandsThatAreNotAnAnswerOfAMemberToThisTick) {
     EXPECT_TRUE(advance(world, at(0s)).empty());
   }
   EXPECT_EQ(world.tick(), 0);
-  // None of these prevents the real answer.
+  // The real answer still counts after all of these.
   give(world, command_of(0, 0, {2, 0, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector3d(2, 0, 0));
   // An old one does not count as an answer to the new tick.
