@@ -7,8 +7,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/require.h"
-#include "core/station.h"
+#include "core/base/require.h"
+#include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
+#include "core/motion/vehicle.h"
 
 namespace ergocast {
 namespace {

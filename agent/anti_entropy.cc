@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 
 namespace ergocast {
 namespace {

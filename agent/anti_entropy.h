@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/coverage_table.h"
-#include "core/ids.h"
+#include "core/base/ids.h"
+#include "core/law/coverage_table.h"
 #include "team/deadline.h"
 #include "team/messages.h"
 

@@ -7,10 +7,11 @@
 #include <utility>
 
 #include "agent/agent.h"
-#include "runtime/event_loop.h"
-#include "runtime/logging.h"
-#include "runtime/node.h"
-#include "runtime/traffic_watch.h"
+#include "runtime/bus/random_identity.h"
+#include "runtime/process/event_loop.h"
+#include "runtime/process/logging.h"
+#include "runtime/process/node.h"
+#include "runtime/process/traffic_watch.h"
 
 namespace ergocast {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "agent/agent.h"
-#include "core/station.h"
+#include "core/mission/station.h"
 
 namespace ergocast {
 namespace {

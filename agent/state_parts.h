@@ -5,7 +5,7 @@
 #include <bitset>
 #include <cstddef>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 #include "team/messages.h"
 
 namespace ergocast {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-#include "ops/deploy/script.h"
+#include "text/shell_word.h"
 #include "text/shortest.h"
 
 namespace ergocast::cli {

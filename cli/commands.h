@@ -6,9 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-#include "cli/page_server.h"
-#include "runtime/signals.h"
-
 namespace ergocast::cli {
 
 /// Runs the command that the command line selects; returns the program's exit code.
@@ -50,11 +47,5 @@ void add_stop(CLI::App& app, Action& action);
 void add_spy(CLI::App& app, Action& action);
 /// `doctor`: finds what prevents communication between hosts, and the commands that repair it.
 void add_doctor(CLI::App& app, Action& action);
-
-/// --port and --listen.
-void add_page_options(CLI::App& app, PageOptions& options);
-/// Serves until Ctrl-C or SIGTERM comes, at a low priority.
-/// @param wait  waits until the server, or what it shows, has something to do, at most 0.1 s
-void serve_until_stop(PageServer& server, StopSignals& signals, const std::function<void()>& wait);
 
 }  // namespace ergocast::cli

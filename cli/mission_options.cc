@@ -6,8 +6,8 @@
 #include <string_view>
 #include <thread>
 
-#include "runtime/shipped_scenarios.h"
-#include "scenario/override_options.h"
+#include "runtime/process/shipped_scenarios.h"
+#include "scenario/parse/override_options.h"
 #include "text/read_number.h"
 
 namespace ergocast::cli {

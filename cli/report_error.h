@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/node.h"
+#include "runtime/process/node.h"
 #include "scenario/scenario.h"
 #include "text/printable.h"
 

@@ -10,7 +10,7 @@ set(ERGOCAST_CMAKEDIR ${ERGOCAST_LIBDIR}/cmake/Ergocast)
 # A program with ergocast_agent also needs messages as bytes.
 add_library(ergocast_agent_and_codec INTERFACE)
 target_link_libraries(ergocast_agent_and_codec INTERFACE ergocast_agent ergocast_codec)
-set(INSTALLED ergocast_text ergocast_core ergocast_modes ergocast_target ergocast_team ergocast_codec ergocast_agent)
+set(INSTALLED ergocast_text ergocast_core ergocast_modes ergocast_plan ergocast_target ergocast_team ergocast_codec ergocast_agent)
 
 # They may be linked into a shared library, such as a robot's plug-in or a Python module.
 set(SHAREABLE ${INSTALLED} ergocast_coordinator ergocast_event_log ergocast_geo ergocast_lab ergocast_logger
@@ -43,11 +43,11 @@ install(FILES ${CMAKE_SOURCE_DIR}/cmake/ErgocastConfig.cmake
     ${CMAKE_BINARY_DIR}/ErgocastConfigVersion.cmake
   DESTINATION ${ERGOCAST_CMAKEDIR} COMPONENT dev)
 
-# Their headers. Our sources include "core/basis.h", others "ergocast/core/basis.h".
+# Their headers. Our sources include "core/basis/basis.h", others "ergocast/core/basis/basis.h".
 file(GLOB HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
-  ${CMAKE_SOURCE_DIR}/core/*.h ${CMAKE_SOURCE_DIR}/target/*.h ${CMAKE_SOURCE_DIR}/team/*.h
-  ${CMAKE_SOURCE_DIR}/agent/*.h)
-list(REMOVE_ITEM HEADERS core/vectorized.h core/free_gains.h target/map_text.h)
+  ${CMAKE_SOURCE_DIR}/core/*/*.h ${CMAKE_SOURCE_DIR}/plan/*.h ${CMAKE_SOURCE_DIR}/target/*.h
+  ${CMAKE_SOURCE_DIR}/target/maps/*.h ${CMAKE_SOURCE_DIR}/team/*.h ${CMAKE_SOURCE_DIR}/agent/*.h)
+list(REMOVE_ITEM HEADERS core/base/vectorized.h core/basis/free_gains.h target/maps/map_text.h)
 list(APPEND HEADERS lcmtypes/channels.h lcmtypes/codec.h lcmtypes/message_authenticator.h)
 foreach(header ${HEADERS})
   file(STRINGS ${CMAKE_SOURCE_DIR}/${header} needed REGEX "^#include \"")

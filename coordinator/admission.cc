@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "coordinator/coordinator.h"
-#include "core/kinds.h"
-#include "core/vehicle.h"
+#include "core/mission/kinds.h"
+#include "core/motion/vehicle.h"
 
 namespace ergocast {
 namespace {

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <utility>
 
-#include "core/require.h"
-#include "team/plan.h"
+#include "core/base/require.h"
+#include "plan/plan.h"
 
 namespace ergocast {
 namespace {

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "coordinator/mission_pages.h"
-#include "core/hold.h"
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/mission/hold.h"
+#include "core/mission/mission.h"
 #include "team/messages.h"
 #include "team/participant.h"
 

@@ -7,14 +7,15 @@
 #include <utility>
 
 #include "coordinator/coordinator.h"
-#include "runtime/event_loop.h"
-#include "runtime/logging.h"
-#include "runtime/node.h"
-#include "runtime/shipped_scenarios.h"
-#include "runtime/traffic_watch.h"
-#include "scenario/override_options.h"
+#include "plan/plan.h"
+#include "runtime/bus/random_identity.h"
+#include "runtime/process/event_loop.h"
+#include "runtime/process/logging.h"
+#include "runtime/process/node.h"
+#include "runtime/process/shipped_scenarios.h"
+#include "runtime/process/traffic_watch.h"
+#include "scenario/parse/override_options.h"
 #include "scenario/scenario.h"
-#include "team/plan.h"
 
 namespace ergocast {
 namespace {

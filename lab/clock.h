@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 
 namespace ergocast::lab {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 #include "lab/random_stream.h"
 
 namespace ergocast::lab {

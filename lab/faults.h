@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 
 namespace ergocast::lab {
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/block_layout.h"
-#include "core/kinds.h"
-#include "core/noise.h"
-#include "core/perturbation.h"
-#include "core/separation.h"
+#include "core/base/noise.h"
+#include "core/law/block_layout.h"
+#include "core/law/perturbation.h"
+#include "core/mission/kinds.h"
+#include "core/motion/filter_rules.h"
 #include "sim/world.h"
 
 namespace ergocast::lab {

@@ -19,7 +19,7 @@
 
 #include "agent/anti_entropy.h"
 #include "coordinator/coordinator.h"
-#include "core/mission.h"
+#include "core/mission/mission.h"
 #include "lab/faults.h"
 #include "lab/shadow.h"
 #include "lab/table_view.h"
@@ -170,7 +170,8 @@ class Invariants {
   void began(double t_s, const TableView& holder);
   /// An agent has answered a tick. What it holds never shrinks; no author's steps exceed the ticks
   /// so far that count; c_k is Σ S / Σ elapsed of what it holds; c_00 = 1. Where its law looks
-  /// ahead, ĉ_k follows by the equation of core/forecast.h from what has reached it (lab/shadow.h).
+  /// ahead, ĉ_k follows by the equation of core/law/forecast.h from what has reached it
+  /// (lab/shadow.h).
   void answered(double t_s, const TableView& holder);
   /// An agent's core has refused `counts` messages, none of them damaged.
   void refused(double t_s, const Author& who, const RefusalCounts& counts);

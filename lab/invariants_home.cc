@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/kinds.h"
-#include "core/vehicle.h"
+#include "core/mission/kinds.h"
+#include "core/motion/vehicle.h"
 #include "lab/invariants.h"
 
 namespace ergocast::lab {

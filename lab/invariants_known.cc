@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/kinds.h"
+#include "core/mission/kinds.h"
 #include "lab/invariants.h"
 
 namespace ergocast::lab {

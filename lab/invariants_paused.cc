@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
-#include "core/kinds.h"
-#include "core/station.h"
-#include "core/vehicle.h"
+#include "core/mission/kinds.h"
+#include "core/mission/station.h"
+#include "core/motion/vehicle.h"
 #include "lab/invariants.h"
 
 namespace ergocast::lab {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "core/geometry.h"
+#include "core/base/geometry.h"
 
 namespace ergocast::lab {
 

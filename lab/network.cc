@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 
 namespace ergocast::lab {
 namespace {

@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 #include "lab/faults.h"
 #include "team/messages.h"
 

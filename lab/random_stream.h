@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 
 namespace ergocast::lab {
 

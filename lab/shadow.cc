@@ -8,7 +8,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "core/forecast.h"
+#include "core/law/forecast.h"
 
 namespace ergocast::lab {
 namespace {

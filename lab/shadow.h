@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one agent has to forecast: ĉ of core/forecast.h, computed again by its equation from the
+// What one agent has to forecast: ĉ of core/law/forecast.h, computed again by its equation from the
 // messages that reached the agent.
 //
 // A shadow keeps the blocks and the places that its agent received. It does not use the forecast,
@@ -14,9 +14,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/basis.h"
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/basis/basis.h"
+#include "core/mission/mission.h"
 #include "lab/table_view.h"
 #include "lab/wire_modes.h"
 #include "team/messages.h"

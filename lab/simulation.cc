@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 #include "lcmtypes/codec.h"
-#include "team/plan.h"
+#include "plan/plan.h"
 
 namespace ergocast::lab {
 namespace {

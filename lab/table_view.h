@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "core/basis.h"
-#include "core/coverage_table.h"
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/basis/basis.h"
+#include "core/law/coverage_table.h"
+#include "core/mission/mission.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {

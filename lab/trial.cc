@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "team/plan.h"
+#include "plan/plan.h"
 
 namespace ergocast::lab {
 namespace {

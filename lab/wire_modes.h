@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which mode each number of a contribution belongs to. Shares no code with core/block_layout.h, so
-// that no mistake there is one here, too.
+// Which mode each number of a contribution belongs to. Shares no code with core/law/block_layout.h,
+// so that no mistake there is one here, too.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/mission.h"
+#include "core/mission/mission.h"
 
 namespace ergocast::lab {
 

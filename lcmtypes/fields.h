@@ -23,7 +23,7 @@
 #include <ergocast/world_state_t.hpp>
 #include <limits>
 
-#include "core/mission_limits.h"
+#include "plan/mission_limits.h"
 #include "team/messages.h"
 
 namespace ergocast {

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/require.h"
+#include "core/base/require.h"
 
 namespace ergocast {
 namespace {

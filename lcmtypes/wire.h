@@ -17,8 +17,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/block_sums.h"
-#include "core/require.h"
+#include "core/base/block_sums.h"
+#include "core/base/require.h"
 #include "lcmtypes/message_authenticator.h"
 
 namespace ergocast {

@@ -2,7 +2,7 @@
 // Writes the list of a mission's fields in Protobuf's text format.
 #include "logger/mission_text.h"
 
-#include "core/mission_fields.h"
+#include "plan/mission_fields.h"
 #include "text/shortest.h"
 
 namespace ergocast {

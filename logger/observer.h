@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // φ² of the team for an outside observer, computed from the true positions of the vehicles. If
-// kinds have footprints or qualities, it is of what the team has seen (core/kinds.h).
+// kinds have footprints or qualities, it is of what the team has seen (core/mission/kinds.h).
 #pragma once
 
-#include "core/basis.h"
-#include "core/kinds.h"
-#include "core/mission.h"
+#include "core/basis/basis.h"
+#include "core/mission/kinds.h"
+#include "core/mission/mission.h"
 
 namespace ergocast {
 

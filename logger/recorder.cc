@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/require.h"
-#include "core/separation.h"
+#include "core/base/require.h"
+#include "core/motion/filter_rules.h"
 
 namespace ergocast {
 namespace {

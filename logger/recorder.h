@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 #include "logger/observer.h"
 #include "logger/run_data.h"
 #include "team/messages.h"
@@ -51,8 +51,8 @@ struct RunFacts {
   /// Where a distance is kept: the least distance of any two bodies at any recorded tick [m]. The
   /// greatest number if there is none.
   double nearest_m = std::numeric_limits<double>::max();
-  /// For each agent with a station (core/station.h): the greatest distance of its vehicle from
-  /// there [m]. Recorded ticks of its rest and the end of the mission count.
+  /// For each agent with a station (core/mission/station.h): the greatest distance of its vehicle
+  /// from there [m]. Recorded ticks of its rest and the end of the mission count.
   std::map<AgentId, double> from_home_m;
 };
 

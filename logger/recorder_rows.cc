@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/separation.h"
-#include "core/station.h"
+#include "core/mission/station.h"
+#include "core/motion/starts.h"
 #include "logger/recorder.h"
 
 namespace ergocast {

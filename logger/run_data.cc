@@ -13,15 +13,15 @@
 #include <span>
 #include <string_view>
 
-#include "core/kinds.h"
-#include "core/station.h"
+#include "core/mission/kinds.h"
+#include "core/mission/station.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "logger/table_lines.h"
 #include "modes/provide.h"
 #include "modes/table_file.h"
-#include "team/plan.h"
+#include "plan/plan.h"
 #include "text/input_file.h"
 
 namespace ergocast {

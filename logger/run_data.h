@@ -11,10 +11,10 @@
 #include <variant>
 #include <vector>
 
-#include "core/basis.h"
-#include "core/hold.h"
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/basis/basis.h"
+#include "core/mission/hold.h"
+#include "core/mission/mission.h"
 #include "logger/slope.h"
 
 namespace ergocast {

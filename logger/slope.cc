@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/require.h"
+#include "core/base/require.h"
 
 namespace ergocast {
 namespace {

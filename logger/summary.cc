@@ -7,9 +7,10 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/kinds.h"
-#include "core/station.h"
-#include "core/vehicle.h"
+#include "core/mission/kinds.h"
+#include "core/mission/station.h"
+#include "core/motion/home.h"
+#include "core/motion/vehicle.h"
 #include "logger/run_record.h"
 #include "logger/slope.h"
 #include "text/input_file.h"

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/require.h"
+#include "core/base/require.h"
 
 namespace ergocast {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/free_modes.h"
+#include "core/basis/free_modes.h"
 
 namespace ergocast {
 namespace {

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/geometry.h"
+#include "core/base/geometry.h"
 
 namespace ergocast {
 

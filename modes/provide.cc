@@ -9,8 +9,8 @@
 #include <mutex>
 #include <vector>
 
-#include "core/rings.h"
-#include "core/walls.h"
+#include "core/base/rings.h"
+#include "core/motion/walls.h"
 #include "modes/eigen_modes.h"
 #include "modes/free_grid.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <variant>
 
-#include "core/mission.h"
+#include "core/mission/mission.h"
 #include "modes/table.h"
 
 namespace ergocast {

@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/free_modes.h"
+#include "core/basis/free_modes.h"
 #include "modes/eigen_modes.h"
 #include "modes/free_grid.h"
 

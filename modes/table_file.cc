@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 
 namespace ergocast {
 namespace {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "core/basis.h"
+#include "core/basis/basis.h"
 
 namespace ergocast::python {
 

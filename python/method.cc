@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Binds the basis and the mission. Coefficients have two indices in a plane, three in a box.
-#include "core/mission.h"
-#include "core/mission_limits.h"
-#include "core/station.h"
+#include "core/mission/mission.h"
+#include "core/mission/station.h"
+#include "plan/mission_limits.h"
 #include "python/arrays.h"
 #include "python/module.h"
 

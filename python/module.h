@@ -6,13 +6,14 @@
 
 namespace ergocast::python {
 
-/// Domain, Basis, Mission, ControlLaw, and functions of them: core/basis.h.
+/// Domain, Basis, Mission, ControlLaw, and functions of them: core/basis/basis.h.
 void add_method(pybind11::module_& module);
-/// Controller, CoverageTable, IdealTeam: core/control.h, core/coverage_table.h, core/ideal_team.h.
+/// Controller, CoverageTable, IdealTeam: core/law/control.h, core/law/coverage_table.h,
+/// lab/ideal_team.h.
 void add_team(pybind11::module_& module);
 /// Gaussian, Region, Target: target/target.h.
 void add_target(pybind11::module_& module);
-/// Record, compile_mission(), simulate(): logger/run_data.h, cli/simulated_record.h.
+/// Record, compile_mission(), simulate(): logger/run_data.h, cli/record/simulated_record.h.
 void add_records(pybind11::module_& module);
 
 }  // namespace ergocast::python

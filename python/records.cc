@@ -7,10 +7,10 @@
 #include <array>
 #include <fstream>
 
-#include "cli/recorded_team.h"
-#include "cli/run_directory.h"
-#include "cli/simulated_record.h"
-#include "core/kinds.h"
+#include "cli/record/run_directory.h"
+#include "cli/record/simulated_record.h"
+#include "cli/team/recorded_team.h"
+#include "core/mission/kinds.h"
 #include "logger/observer.h"
 #include "logger/run_data.h"
 #include "logger/summary.h"
@@ -18,7 +18,7 @@
 #include "python/module.h"
 #include "report/report.h"
 #include "report/target_density.h"
-#include "runtime/shipped_scenarios.h"
+#include "runtime/process/shipped_scenarios.h"
 #include "text/printable.h"
 
 namespace ergocast::python {

@@ -8,7 +8,7 @@
 
 #include "python/arrays.h"
 #include "python/module.h"
-#include "scenario/polygon_flaw.h"
+#include "scenario/rules/polygon_flaw.h"
 
 namespace ergocast::python {
 namespace {

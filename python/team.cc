@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Binds the parts of agents: the controller, the coverage table, and the team with perfect
 // communication.
-#include "core/control.h"
-#include "core/coverage_table.h"
-#include "core/ideal_team.h"
+#include "core/law/control.h"
+#include "core/law/coverage_table.h"
+#include "lab/ideal_team.h"
 #include "python/arrays.h"
 #include "python/module.h"
 
@@ -47,7 +47,7 @@ Numbers command(Steering& steering, int agent, Tick tick, const Numbers& x_m) {
 }
 
 void add_controller(py::module_& module) {
-  py::class_<Steering>(module, "Controller", R"(The control step of a mission: core/control.h.
+  py::class_<Steering>(module, "Controller", R"(The control step of a mission: core/law/control.h.
 
 Before the first set_coverage() B is 0.)")
       .def(py::init<const Mission&>(), "mission"_a)
@@ -107,8 +107,9 @@ int merge(Coverage& mine, const Coverage& theirs) {
 }
 
 void add_coverage_table(py::module_& module) {
-  py::class_<Coverage>(module, "CoverageTable",
-                       R"(The coverage of all agents as one agent knows it: core/coverage_table.h.
+  py::class_<Coverage>(
+      module, "CoverageTable",
+      R"(The coverage of all agents as one agent knows it: core/law/coverage_table.h.
 
 One row of cumulative sums Σ f dt for each (agent, incarnation); more steps win, so
 that merging is commutative, associative and idempotent.)")
@@ -167,7 +168,7 @@ void step(lab::IdealTeam& team, Tick count) {
 void add_ideal_team(py::module_& module) {
   using lab::IdealTeam;
   py::class_<IdealTeam>(module, "IdealTeam",
-                        R"(The method with perfect communication: core/ideal_team.h.
+                        R"(The method with perfect communication: lab/ideal_team.h.
 
 Bit for bit a lockstep mission for which stands_for() is true, several times as fast.
 edges: "reflect", or "none": agents leave the domain, as in the paper's theorems.)")

@@ -8,9 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/kinds.h"
-#include "core/station.h"
-#include "core/way_home.h"
+#include "core/mission/kinds.h"
+#include "core/mission/station.h"
+#include "core/motion/way_home.h"
 #include "report/base64.h"
 #include "report/markup.h"
 #include "report/track_grid.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "core/mission.h"
+#include "core/mission/mission.h"
 #include "logger/run_data.h"
 #include "report/target_density.h"
 
@@ -25,8 +25,8 @@ nlohmann::ordered_json page_mission(const Mission& mission, const Field& density
 
 /// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from"}: the record's
 /// data for the page. "home_from", {"0": tick, …}, is present only without `team`: the ticks at
-/// which agents with a station went home by the rule of core/way_home.h.
-/// @param team  the agents' states over time (cli/recorded_team.h), or null
+/// which agents with a station went home by the rule of core/motion/way_home.h.
+/// @param team  the agents' states over time (cli/team/recorded_team.h), or null
 nlohmann::ordered_json page_record(const RunData& run, const Mission& mission,
                                    const nlohmann::ordered_json& summary, const Field& density,
                                    const nlohmann::ordered_json& team);

@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "core/mission.h"
+#include "core/mission/mission.h"
 
 namespace ergocast {
 
@@ -22,7 +22,8 @@ struct ReportPage {
 /// Makes the page from the run's trajectory.csv, metrics.csv and, if they exist, summary.json and
 /// target_density.csv. An empty run and an incomplete last line are allowed. On failure, an error
 /// with its place and remedy.
-/// @param team  how the agents were over time, for the page (cli/recorded_team.h); may be null
+/// @param team  how the agents were over time, for the page (cli/team/recorded_team.h); may be
+/// null
 /// @pre `mission` is that of the run's plan.
 std::variant<ReportPage, std::string> draw_report(const std::filesystem::path& run_dir,
                                                   const Mission& mission,

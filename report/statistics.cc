@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/noise.h"
-#include "core/require.h"
+#include "core/base/noise.h"
+#include "core/base/require.h"
 
 namespace ergocast {
 namespace {

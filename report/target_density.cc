@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "logger/run_record.h"
-#include "target/csv_map.h"
+#include "target/maps/csv_map.h"
 
 namespace ergocast {
 namespace {

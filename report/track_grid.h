@@ -9,8 +9,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "core/geometry.h"
-#include "core/ids.h"
+#include "core/base/geometry.h"
+#include "core/base/ids.h"
 
 namespace ergocast {
 

@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "geo/local_plane.h"
 #include "scenario/scenario.h"
+#include "target/geo/local_plane.h"
 
 namespace ergocast {
 

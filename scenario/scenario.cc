@@ -5,20 +5,20 @@
 
 #include <utility>
 
-#include "scenario/checks.h"
-#include "scenario/compile_target.h"
-#include "scenario/convert.h"
-#include "scenario/defaults.h"
-#include "scenario/findings.h"
-#include "scenario/free_domain.h"
+#include "scenario/compile/compile_target.h"
+#include "scenario/compile/defaults.h"
+#include "scenario/compile/free_domain.h"
+#include "scenario/compile/polygon_files.h"
 #include "scenario/origin.h"
-#include "scenario/polygon_files.h"
+#include "scenario/parse/convert.h"
+#include "scenario/parse/findings.h"
+#include "scenario/parse/text.h"
+#include "scenario/rules/checks.h"
+#include "scenario/rules/validate.h"
+#include "scenario/rules/validate_stations.h"
+#include "scenario/rules/validate_walls.h"
+#include "scenario/rules/warnings.h"
 #include "scenario/scenario.pb.h"
-#include "scenario/text.h"
-#include "scenario/validate.h"
-#include "scenario/validate_stations.h"
-#include "scenario/validate_walls.h"
-#include "scenario/warnings.h"
 #include "text/input_file.h"
 
 namespace ergocast {

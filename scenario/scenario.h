@@ -6,47 +6,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "core/mission.h"
+#include "core/mission/mission.h"
+#include "scenario/parse/problem.h"
+#include "scenario/parse/source.h"
 #include "target/density_picture.h"
 
 namespace ergocast {
-
-/// One problem of a scenario.
-struct Problem {
-  std::string where;   ///< "file:line:column" or "file: field.path"
-  std::string what;    ///< the error, with the limit it breaks
-  std::string remedy;  ///< what to write instead
-};
-/// "where: what (remedy)", one line.
-std::string to_string(const Problem& problem);
-
-/// A number, word or truth value for the field at `path`, such as "law.epsilon" or
-/// "agents.starts[0].x_m", as the text format writes it.
-struct FieldValue {
-  std::string path, value;
-  std::string flag;  ///< the name of its source in problems
-};
-
-/// Values from the command line that replace those of the file.
-struct Overrides {
-  std::optional<std::uint64_t> seed{};
-  std::optional<double> duration_s{};
-  std::optional<Pace> pace{};
-  std::optional<double> realtime_factor{};
-  /// The team's size: the listed starts are cut, or random ones added.
-  std::optional<int> agents{};
-  /// Applied in this order, after all others.
-  std::vector<FieldValue> fields{};
-};
-
-/// Limit (Scenario): length of a scenario file [bytes]. Beyond it: the command refuses it.
-inline constexpr std::size_t kMaxScenarioBytes = std::size_t{1} << 20;
 
 /// A scenario without problems, all defaults filled in, random starts drawn.
 class Scenario {
@@ -88,7 +58,7 @@ class Scenario {
   /// the longer side of the domain.
   const DensityGrid& target_density() const;
 
-  /// The mission in the form of the cores, within_limits() of core/mission_limits.h. μ is computed
+  /// The mission in the form of the cores, within_limits() of plan/mission_limits.h. μ is computed
   /// only once, here.
   const Mission& mission() const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The interface of a physics engine that moves the bodies of a world in place of the kinematics of
-// core/vehicle.h. Its vehicles may follow late, slip and touch each other.
+// core/motion/vehicle.h. Its vehicles may follow late, slip and touch each other.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@
 #include <string>
 #include <variant>
 
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/mission/mission.h"
 
 namespace ergocast {
 

@@ -2,7 +2,9 @@
 // Where bodies begin, where a restarted world finds them, and what keeps them apart in real time.
 #include <algorithm>
 
-#include "core/geometry.h"
+#include "core/base/geometry.h"
+#include "core/motion/filter_rules.h"
+#include "core/motion/starts.h"
 #include "sim/world.h"
 
 namespace ergocast {
@@ -116,7 +118,7 @@ void World::filter_commands() {
   }
 }
 
-// ---- a physics in the place of core/vehicle.h ----
+// ---- a physics in the place of core/motion/vehicle.h ----
 
 /// Makes the physics once a mission is known. False if that fails.
 bool World::make_physics() {

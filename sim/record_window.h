@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 #include "team/messages.h"
 
 namespace ergocast {

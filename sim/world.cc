@@ -8,9 +8,12 @@
 #include <cmath>
 #include <utility>
 
-#include "core/geometry.h"
-#include "core/noise.h"
-#include "core/vehicle.h"
+#include "core/base/geometry.h"
+#include "core/base/noise.h"
+#include "core/motion/filter_rules.h"
+#include "core/motion/push.h"
+#include "core/motion/starts.h"
+#include "core/motion/vehicle.h"
 
 namespace ergocast {
 namespace {

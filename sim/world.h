@@ -3,9 +3,9 @@
 //
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
 //   v_n is the command, cut to the vehicle's speed limit. Where bodies keep a distance, a world in
-//   real time then filters all commands together (core/separation.h). Old and late commands do not
-//   account for where the others have gone. Where there are walls, a world always filters, and the
-//   walls stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
+//   real time then filters all commands together (core/motion/separation.h). Old and late commands
+//   do not account for where the others have gone. Where there are walls, a world always filters,
+//   and the walls stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
 //   result.
 //
 // In lockstep a tick is repeated until every member of the roster has answered it. The world runs a
@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "core/ids.h"
-#include "core/separation.h"
+#include "core/base/ids.h"
+#include "core/motion/separation.h"
 #include "sim/physics.h"
 #include "sim/record_window.h"
 #include "team/bodies.h"
@@ -32,7 +32,7 @@ class World {
  public:
   static constexpr Role kRole = Role::kWorld;
 
-  /// @param physics  what moves the bodies; without it core/vehicle.h does
+  /// @param physics  what moves the bodies; without it core/motion/vehicle.h does
   World(RunId run, Incarnation incarnation, PhysicsMaker physics = {});
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
@@ -172,7 +172,7 @@ class World {
   std::optional<SeparationFilter> filter_;  // if it guards, has walls, or a body is no point
   std::vector<Neighbour> bodies_;           // of the tick, for the guard
   PhysicsMaker physics_maker_;
-  std::unique_ptr<Physics> physics_;  // null: core/vehicle.h
+  std::unique_ptr<Physics> physics_;  // null: core/motion/vehicle.h
   std::vector<PhysicalBody> moved_;
   bool no_physics_ = false;  // the maker has none for this mission
   bool refused_ = false;     // by fail()

@@ -10,8 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "runtime/event_loop.h"
-#include "runtime/traffic_watch.h"
+#include "runtime/bus/random_identity.h"
+#include "runtime/process/event_loop.h"
+#include "runtime/process/traffic_watch.h"
 #include "sim/world.h"
 
 namespace ergocast {

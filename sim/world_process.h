@@ -2,13 +2,13 @@
 // A world as a process, whatever moves its bodies.
 #pragma once
 
-#include "runtime/node.h"
+#include "runtime/process/node.h"
 #include "sim/physics.h"
 
 namespace ergocast {
 
 /// Takes part in a mission until it is over, or a signal ends it. Returns the exit code.
-/// @param physics  what moves the bodies; without it core/vehicle.h does
+/// @param physics  what moves the bodies; without it core/motion/vehicle.h does
 int run_world(const NodeOptions& node, PhysicsMaker physics = {});
 
 }  // namespace ergocast

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "core/basis.h"
+#include "core/basis/basis.h"
 
 namespace ergocast {
 

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "core/basis.h"
-#include "core/geometry.h"
+#include "core/base/geometry.h"
+#include "core/basis/basis.h"
 
 namespace ergocast {
 

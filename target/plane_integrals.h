@@ -2,7 +2,7 @@
 // What a density makes of the modes of a plane.
 #pragma once
 
-#include "core/basis.h"
+#include "core/basis/basis.h"
 
 namespace ergocast {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/rings.h"
+#include "core/base/rings.h"
 
 namespace ergocast {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "core/require.h"
+#include "core/base/require.h"
 #include "target/cosine_integrals.h"
 
 namespace ergocast {

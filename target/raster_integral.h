@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/basis.h"
+#include "core/basis/basis.h"
 #include "target/plane_integrals.h"
 #include "target/rectangle.h"
 #include "target/trapezoids.h"

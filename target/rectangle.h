@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "core/geometry.h"
+#include "core/base/geometry.h"
 
 namespace ergocast {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/require.h"
+#include "core/base/require.h"
 #include "target/cosine_integrals.h"
 #include "target/gaussian_integrals.h"
 #include "target/leaning_gaussian.h"

@@ -13,7 +13,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/basis.h"
+#include "core/basis/basis.h"
 #include "target/heights.h"
 #include "target/plane_integrals.h"
 #include "target/polygon.h"

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 
 namespace ergocast {
 

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/require.h"
-#include "core/vehicle.h"
+#include "core/base/require.h"
+#include "core/motion/filter_rules.h"
+#include "core/motion/vehicle.h"
 
 namespace ergocast {
 namespace {

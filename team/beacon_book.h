@@ -30,10 +30,10 @@
 #include <span>
 #include <vector>
 
-#include "core/ids.h"
-#include "core/mission.h"
-#include "core/roster.h"
-#include "core/separation.h"
+#include "core/base/ids.h"
+#include "core/mission/mission.h"
+#include "core/mission/roster.h"
+#include "core/motion/separation.h"
 #include "team/messages.h"
 
 namespace ergocast {

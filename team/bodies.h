@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/separation.h"
+#include "core/motion/separation.h"
 #include "team/messages.h"
 
 namespace ergocast {

@@ -11,7 +11,7 @@
 #include <chrono>
 #include <optional>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 
 namespace ergocast {
 

@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/mission/mission.h"
 #include "team/author_map.h"
 #include "team/messages.h"
 

@@ -11,10 +11,11 @@
 #include <variant>
 #include <vector>
 
-#include "core/contribution.h"
-#include "core/hold.h"
-#include "core/ids.h"
-#include "core/roster.h"
+#include "core/base/contribution.h"
+#include "core/base/ids.h"
+#include "core/mission/hold.h"
+#include "core/mission/roster.h"
+#include "plan/plan.h"
 
 namespace ergocast {
 
@@ -29,7 +30,7 @@ inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 /// Limit (Messages): parts of a plan. Beyond it: the scenario is refused.
 inline constexpr int kMaxPlanParts = 512;
-inline constexpr std::size_t kMaxPlanBytes = std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage;
+static_assert(std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage == kMaxPlanBytes);
 inline constexpr int kMaxHoldsPerMessage = 1;
 inline constexpr int kMaxEchoesPerMessage = kMostLeasedAgents;
 inline constexpr int kMaxReasonLength = 150;
@@ -108,7 +109,8 @@ struct Digest {
   std::array<DigestEntry, kMaxDigestEntriesPerMessage> entries;
 };
 
-/// An agent with a station (core/station.h) may also be kReturning, on its way home, or kResting.
+/// An agent with a station (core/mission/station.h) may also be kReturning, on its way home, or
+/// kResting.
 enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished, kReturning, kResting };
 const char* to_string(AgentPhase phase);
 /// Whether it answers ticks.
@@ -164,8 +166,8 @@ struct Stop {
 /// change that was already made, or an old tick.
 struct Pause {
   Header header;  ///< header.tick: the newest that the operator knows
-  /// How many beginnings and ends of holds are already named (named_changes(), core/hold.h). An
-  /// even number pauses, an odd one resumes.
+  /// How many beginnings and ends of holds are already named (named_changes(),
+  /// core/mission/hold.h). An even number pauses, an odd one resumes.
   std::int32_t changes = 0;
   Signature signature{};
 };
@@ -185,7 +187,7 @@ struct WorldState {
   std::int64_t missed_deadlines = 0;  ///< real time: commands that came too late for their tick
   std::int64_t skipped_ticks = 0;     ///< real time: ticks that a delayed world skipped
   std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
-  Tick uncounted_ticks = 0;           ///< ticks before this one that did not count, core/hold.h
+  Tick uncounted_ticks = 0;  ///< ticks before this one that did not count, core/mission/hold.h
   std::int32_t part = 0, parts = 1;
   bool last = false;  ///< the mission is over, and the world leaves: this is its last message
   std::int32_t vehicle_count = 0;

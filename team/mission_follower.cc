@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "team/plan.h"
+#include "plan/plan.h"
 
 namespace ergocast {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/mission/mission.h"
 #include "team/messages.h"
 
 namespace ergocast {

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <optional>
 
-#include "core/ids.h"
-#include "core/noise.h"
+#include "core/base/ids.h"
+#include "core/base/noise.h"
 #include "team/messages.h"
 
 namespace ergocast {

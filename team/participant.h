@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 #include "team/command_window.h"
 #include "team/liveness.h"
 #include "team/messages.h"

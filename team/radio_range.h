@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 #include "team/messages.h"
 
 namespace ergocast {

@@ -130,8 +130,8 @@ ergocast_test(NAME cli_tests LABELS unit
     cli/team_monitor_test.cc
     cli/workers_test.cc
     ${CMAKE_SOURCE_DIR}/cli/progress_line.cc
-    ${CMAKE_SOURCE_DIR}/cli/team_monitor.cc
-    ${CMAKE_SOURCE_DIR}/cli/workers.cc
+    ${CMAKE_SOURCE_DIR}/cli/team/team_monitor.cc
+    ${CMAKE_SOURCE_DIR}/cli/study/workers.cc
   LIBS ergocast::core ergocast::runtime)
 
 ergocast_test(NAME page_server_tests LABELS unit
@@ -141,8 +141,8 @@ ergocast_test(NAME page_server_tests LABELS unit
 
 ergocast_test(NAME deploy_tests LABELS unit
   SOURCES
-    ops/deploy/files_test.cc
-    ops/deploy/hosts_file_test.cc
+    cli/deploy/files_test.cc
+    cli/deploy/hosts_file_test.cc
   LIBS ergocast_deploy)
 
 ergocast_test(NAME status_tests LABELS unit
@@ -168,11 +168,11 @@ ergocast_test(NAME logger_tests LABELS unit
     logger/summary_test.cc
   LIBS ergocast::report ergocast::scenario)
 
-# team/plan.proto is for other programs; ours do not need its code.
-ergocast_messages(ergocast_plan_message team/plan.proto)
+# plan/plan.proto is for other programs; ours do not need its code.
+ergocast_messages(ergocast_plan_message plan/plan.proto)
 
 ergocast_test(NAME geo_tests LABELS unit
-  SOURCES geo/svg_test.cc
+  SOURCES target/geo/svg_test.cc
   LIBS ergocast::geo)
 
 ergocast_test(NAME scenario_tests LABELS unit
@@ -194,13 +194,13 @@ ergocast_test(NAME scenario_tests LABELS unit
 
 ergocast_test(NAME studies_tests LABELS unit
   SOURCES
-    lab/studies/confidence_test.cc
-    lab/studies/encoding_test.cc
-    lab/studies/linearised_test.cc
-    lab/studies/rare_modes_test.cc
-    lab/studies/study_run_test.cc
-    lab/studies/study_table_test.cc
-    lab/studies/table_test.cc
+    studies/confidence_test.cc
+    studies/encoding_test.cc
+    studies/linearised_test.cc
+    studies/rare_modes_test.cc
+    studies/study_run_test.cc
+    studies/study_table_test.cc
+    studies/table_test.cc
   LIBS ergocast_studies ergocast_theorems ergocast_scenario_messages PNG::PNG)
 
 ergocast_test(NAME example_tests LABELS unit
@@ -215,17 +215,17 @@ endif()
 
 ergocast_test(NAME doctor_tests LABELS unit
   SOURCES
-    ops/doctor/bus_listener_test.cc
-    ops/doctor/fragment_rule_test.cc
-    ops/doctor/kernel_limits_test.cc
-    ops/doctor/peer_findings_test.cc
-    ops/doctor/peer_ledger_test.cc
-    ops/doctor/ports_test.cc
-    ops/doctor/print_test.cc
-    ops/doctor/probe_test.cc
-    ops/doctor/programs_test.cc
-    ops/doctor/routing_test.cc
-    ops/doctor/socket_table_test.cc
+    cli/doctor/bus_listener_test.cc
+    cli/doctor/fragment_rule_test.cc
+    cli/doctor/kernel_limits_test.cc
+    cli/doctor/peer_findings_test.cc
+    cli/doctor/peer_ledger_test.cc
+    cli/doctor/ports_test.cc
+    cli/doctor/print_test.cc
+    cli/doctor/probe_test.cc
+    cli/doctor/programs_test.cc
+    cli/doctor/routing_test.cc
+    cli/doctor/socket_table_test.cc
   LIBS ergocast_doctor nlohmann_json::nlohmann_json)
 
 ergocast_test(NAME layering_tests LABELS unit

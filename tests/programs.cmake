@@ -17,7 +17,7 @@ ergocast_test(NAME memory_tests LABELS unit
 ergocast_test(NAME same_mission_tests LABELS lab
   SOURCES
     lab/moved_scenario_test.cc
-    lab/studies/same_as_simulate_test.cc
+    studies/same_as_simulate_test.cc
     support/drawn_scenario.cc
   LIBS ergocast_studies ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
 ergocast_test(NAME paper_tests LABELS paper
@@ -62,50 +62,50 @@ add_library(no_socket_filter SHARED support/no_socket_filter.cc)
 # Real programs and real LCM.
 ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
   SOURCES
-    process/bad_input_test.cc
+    process/commands/bad_input_test.cc
     process/bus_reader_test.cc
     process/by_hand_test.cc
     process/command_replay_test.cc
     process/datagram_filter_test.cc
-    process/deploy_test.cc
-    process/doctor_test.cc
+    process/commands/deploy_test.cc
+    process/commands/doctor_test.cc
     process/driver_test.cc
-    process/export_test.cc
+    process/commands/export_test.cc
     process/fault_test.cc
     process/flood_test.cc
     process/found_test.cc
     process/freeze_test.cc
     process/full_disk_test.cc
     process/gathering_test.cc
-    process/key_test.cc
+    process/commands/key_test.cc
     process/kinds_test.cc
     process/launch_test.cc
     process/lcm_conformance_test.cc
     process/libraries_test.cc
-    process/log_test.cc
+    process/commands/log_test.cc
     process/lost_files_test.cc
     process/modes_test.cc
     process/page_attack_test.cc
-    process/logs_test.cc
+    process/commands/logs_test.cc
     process/no_metric_test.cc
-    process/replay_test.cc
+    process/commands/replay_test.cc
     process/restart_test.cc
     process/run_test.cc
     process/segments_test.cc
     process/separation_test.cc
-    process/set_test.cc
-    process/status_test.cc
+    process/commands/set_test.cc
+    process/commands/status_test.cc
     process/home_test.cc
     process/pause_test.cc
-    process/stop_test.cc
-    process/study_test.cc
+    process/commands/stop_test.cc
+    process/commands/study_test.cc
     process/team_size_test.cc
-    process/trials_test.cc
-    process/typing_test.cc
-    process/verify_test.cc
-    process/versions_test.cc
+    process/commands/trials_test.cc
+    process/commands/typing_test.cc
+    process/commands/verify_test.cc
+    process/commands/versions_test.cc
     process/waiting_test.cc
-    process/watch_test.cc
+    process/commands/watch_test.cc
     process/world_safety_test.cc
     support/http.cc
   LIBS ergocast_doctor ergocast::event_log)
@@ -178,7 +178,7 @@ add_test(NAME reference_is_current
   COMMAND ${CMAKE_SOURCE_DIR}/docs/reference/make --check ${CMAKE_BINARY_DIR})
 set_tests_properties(reference_is_current PROPERTIES LABELS process)
 add_dependencies(all_process reference-facts)
-add_test(NAME mcap_reference_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/export/mcap_test.sh
+add_test(NAME mcap_reference_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/report/export/mcap_test.sh
   $<TARGET_FILE:ergocast> ${CMAKE_BINARY_DIR}/mcap_reader)
 set_tests_properties(mcap_reference_reader PROPERTIES LABELS process TIMEOUT 300)
 ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})

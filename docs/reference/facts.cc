@@ -16,7 +16,7 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/fields.h"
 #include "lcmtypes/wire.h"
-#include "scenario/fields.h"
+#include "scenario/parse/fields.h"
 #include "scenario/scenario.pb.h"
 #include "team/subscriptions.h"
 #include "text/shortest.h"

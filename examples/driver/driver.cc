@@ -7,6 +7,9 @@
 #include <chrono>
 #include <utility>
 
+#include "core/motion/filter_rules.h"
+#include "core/motion/starts.h"
+
 namespace ergocast::example {
 namespace {
 

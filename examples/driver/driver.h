@@ -15,8 +15,8 @@
 #include <optional>
 #include <string>
 
-#include "core/ids.h"
-#include "core/separation.h"
+#include "core/base/ids.h"
+#include "core/motion/separation.h"
 #include "examples/driver/robot.h"
 #include "team/messages.h"
 #include "team/participant.h"

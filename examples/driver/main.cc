@@ -6,9 +6,10 @@
 #include <string>
 
 #include "examples/driver/driver.h"
-#include "runtime/event_loop.h"
-#include "runtime/logging.h"
-#include "runtime/node.h"
+#include "runtime/bus/random_identity.h"
+#include "runtime/process/event_loop.h"
+#include "runtime/process/logging.h"
+#include "runtime/process/node.h"
 
 namespace ergocast::example {
 namespace {

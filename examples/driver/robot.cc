@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/geometry.h"
+
 namespace ergocast::example {
 
 void Robot::move(double dt_s) {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "core/vehicle.h"
+#include "core/motion/vehicle.h"
 
 namespace ergocast::example {
 
@@ -30,7 +30,7 @@ class Robot {
   /// Simulates `dt_s`. A real robot moves by itself.
   void move(double dt_s);
 
-  /// Simulates a tick with the unicycle model of core/vehicle.h, which the agents expect.
+  /// Simulates a tick with the unicycle model of core/motion/vehicle.h, which the agents expect.
   /// @pre the mission's unicycles turn no faster than kTurnLimit_radps
   void move_as_unicycle(const Motion& motion);
 

@@ -19,8 +19,8 @@
 
 #include "examples/mujoco/mujoco_physics.h"
 #include "lab/simulation.h"
+#include "plan/plan.h"
 #include "scenario/scenario.h"
-#include "team/plan.h"
 
 namespace ergocast::mujoco {
 namespace {

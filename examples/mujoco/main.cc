@@ -5,8 +5,8 @@
 #include <string>
 
 #include "examples/mujoco/mujoco_physics.h"
-#include "runtime/logging.h"
-#include "runtime/node.h"
+#include "runtime/process/logging.h"
+#include "runtime/process/node.h"
 #include "sim/world_process.h"
 
 int main(int argc, char** argv) {

@@ -7,9 +7,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "core/require.h"
-#include "core/separation.h"
-#include "core/vehicle.h"
+#include "core/base/require.h"
+#include "core/motion/vehicle.h"
 
 namespace ergocast::mujoco {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/walls.h"
+#include "core/motion/walls.h"
 
 namespace ergocast::mujoco {
 namespace {

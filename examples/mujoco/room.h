@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/mission/mission.h"
 
 namespace ergocast::mujoco {
 

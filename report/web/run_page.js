@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Brings data, drawing and controls together on the page of a run.
-import { S, ask, focusOf, mapState, onFrame, shown } from './state.js';
-import { TAILS } from './map.js';
-import { markersOf } from './markers.js';
-import { recordedRun } from './run.js';
-import { advance, seek } from './timeline.js';
-import { hover, pin } from './team.js';
-import { drawPictures, layout, readPixels, view } from './screen.js';
-import { drawHeadline } from './headline.js';
-import { set, setTheme } from './legend.js';
-import { livePage, showRecord } from './shown_run.js';
-import { connectButtons, connectChart, connectKeys } from './controls.js';
-import { connectMap } from './map_pointer.js';
-import { connectSpace, showView } from './space_controls.js';
-import { svgText } from './save.js';
-import { addLog, watchLive } from './live.js';
+import { S, ask, focusOf, mapState, onFrame, shown } from './panels/state.js';
+import { TAILS } from './map/map.js';
+import { markersOf } from './map/markers.js';
+import { recordedRun } from './data/run.js';
+import { advance, seek } from './panels/timeline.js';
+import { hover, pin } from './panels/team.js';
+import { drawPictures, layout, readPixels, view } from './panels/screen.js';
+import { drawHeadline } from './panels/headline.js';
+import { set, setTheme } from './map/legend.js';
+import { livePage, showRecord } from './panels/shown_run.js';
+import { connectButtons, connectChart, connectKeys } from './panels/controls.js';
+import { connectMap } from './map/map_pointer.js';
+import { connectSpace, showView } from './map/space_controls.js';
+import { svgText } from './panels/save.js';
+import { addLog, watchLive } from './data/live.js';
 import { $, clamp, put } from './text.js';
 
 let frames = []; // milliseconds that each took

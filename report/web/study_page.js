@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Brings data, figures, table and controls together on the page of a study.
 import { themeColours } from './colours.js';
-import { S, curvesOf } from './study_state.js';
-import { QUANTITIES, Study, cellsOf, intervalText, sorted } from './study.js';
-import { cellAt, middleOf, paintHeatMap } from './heat_map.js';
-import { paintFieldChart } from './field_chart.js';
-import { curveReading, curveScales, paintCurves } from './curves.js';
-import { buildTable, showCounts, showTable } from './study_table.js';
+import { S, curvesOf } from './study/study_state.js';
+import { QUANTITIES, Study, cellsOf, intervalText, sorted } from './study/study.js';
+import { cellAt, middleOf, paintHeatMap } from './study/heat_map.js';
+import { paintFieldChart } from './study/field_chart.js';
+import { curveReading, curveScales, paintCurves } from './study/curves.js';
+import { buildTable, showCounts, showTable } from './study/study_table.js';
 import { SvgContext } from './svg.js';
 import { download } from './download.js';
 import { $, element, grouped, put, readable } from './text.js';

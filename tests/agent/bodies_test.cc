@@ -2,7 +2,6 @@
 // An agent whose body keeps a distance: what it waits for, commands and reports.
 #include <gtest/gtest.h>
 
-#include "core/separation.h"
 #include "tests/agent/driven_agent.h"
 
 namespace ergocast {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/forecast.h"
+#include "core/law/forecast.h"
 #include "tests/agent/live_team.h"
 #include "tests/support/bytes.h"
 

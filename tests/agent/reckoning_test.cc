@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/look_ahead.h"
+#include "core/law/look_ahead.h"
 #include "tests/agent/driven_agent.h"
 
 namespace ergocast {

@@ -9,7 +9,7 @@
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
-#include "runtime/key_file.h"
+#include "runtime/process/key_file.h"
 
 namespace ergocast::bench {
 namespace {

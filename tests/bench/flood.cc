@@ -21,11 +21,11 @@
 #include <thread>
 #include <variant>
 
-#include "runtime/child.h"
-#include "runtime/clock.h"
-#include "runtime/key_file.h"
-#include "runtime/transport.h"
-#include "tests/process/replayer.h"
+#include "runtime/bus/clock.h"
+#include "runtime/bus/transport.h"
+#include "runtime/process/child.h"
+#include "runtime/process/key_file.h"
+#include "tests/process/support/replayer.h"
 #include "tests/support/own_host.h"
 
 namespace ergocast::bench {

@@ -16,7 +16,7 @@
 #include <thread>
 #include <variant>
 
-#include "runtime/child.h"
+#include "runtime/process/child.h"
 #include "scenario/scenario.h"
 #include "tests/bench/ping_pong.h"
 #include "tests/bench/temporary_folder.h"

@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "runtime/child.h"
+#include "runtime/process/child.h"
 #include "tests/support/browser.h"
 
 namespace ergocast::bench {

@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "core/coverage_table.h"
+#include "core/law/coverage_table.h"
 #include "lcmtypes/codec.h"
-#include "runtime/node.h"
+#include "runtime/bus/random_identity.h"
+#include "runtime/process/node.h"
 #include "sim/world.h"
 #include "tests/bench/forked.h"
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "core/ids.h"
-#include "core/mission.h"
+#include "core/base/ids.h"
+#include "core/mission/mission.h"
 #include "tests/bench/raw_buses.h"
 
 namespace ergocast::bench {

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <lcm/lcm-cpp.hpp>
 
-#include "core/require.h"
-#include "ops/doctor/group_listener.h"
+#include "cli/doctor/group_listener.h"
+#include "core/base/require.h"
 
 namespace ergocast::bench {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/ids.h"
-#include "runtime/lcm_url.h"
+#include "core/base/ids.h"
+#include "runtime/bus/lcm_url.h"
 #include "team/messages.h"
 
 namespace ergocast::bench {

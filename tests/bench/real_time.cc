@@ -17,7 +17,7 @@
 #include <thread>
 #include <variant>
 
-#include "runtime/child.h"
+#include "runtime/process/child.h"
 #include "tests/bench/temporary_folder.h"
 
 namespace ergocast::bench {

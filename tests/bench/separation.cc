@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Times the last step of a command if bodies keep distances, for comparison with the control step
 // of control_step.cc. All or none of the teammates are near enough to matter.
-#include "core/separation.h"
+#include "core/motion/separation.h"
 
 #include <benchmark/benchmark.h>
 

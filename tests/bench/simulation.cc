@@ -11,8 +11,8 @@
 #include <string>
 
 #include "logger/null_buffer.h"
+#include "plan/plan.h"
 #include "scenario/scenario.h"
-#include "team/plan.h"
 
 namespace ergocast::bench {
 namespace {

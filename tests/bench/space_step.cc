@@ -12,10 +12,10 @@
 #include <numbers>
 #include <vector>
 
-#include "core/control.h"
-#include "core/coverage_table.h"
-#include "core/noise.h"
-#include "core/perturbation.h"
+#include "core/base/noise.h"
+#include "core/law/control.h"
+#include "core/law/coverage_table.h"
+#include "core/law/perturbation.h"
 
 namespace ergocast::bench {
 namespace {

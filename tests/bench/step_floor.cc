@@ -11,8 +11,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/basis.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/basis/basis.h"
 
 namespace ergocast::bench {
 namespace {

@@ -7,9 +7,9 @@
 #include <array>
 #include <vector>
 
-#include "core/look_ahead.h"
-#include "core/mission.h"
-#include "core/perturbation.h"
+#include "core/law/look_ahead.h"
+#include "core/law/perturbation.h"
+#include "core/mission/mission.h"
 #include "team/messages.h"
 
 namespace ergocast::bench {

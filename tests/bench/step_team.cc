@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/require.h"
+#include "core/base/require.h"
 #include "modes/provide.h"
 
 namespace ergocast::bench {

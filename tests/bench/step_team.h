@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "core/control.h"
-#include "core/coverage_table.h"
-#include "core/forecast.h"
-#include "core/mission.h"
+#include "core/law/control.h"
+#include "core/law/coverage_table.h"
+#include "core/law/forecast.h"
+#include "core/mission/mission.h"
 
 namespace ergocast::bench {
 

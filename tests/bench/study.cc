@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/ideal_team.h"
-#include "lab/studies/study_run.h"
+#include "lab/ideal_team.h"
 #include "scenario/scenario.h"
+#include "studies/study_run.h"
 #include "tests/bench/step_floor.h"
 
 namespace ergocast::bench {

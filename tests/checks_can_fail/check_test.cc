@@ -8,12 +8,12 @@
 #include <set>
 #include <sstream>
 
-#include "scenario/defaults.h"
-#include "scenario/fields.h"
+#include "scenario/compile/defaults.h"
+#include "scenario/parse/fields.h"
 #include "scenario/scenario.pb.h"
 #include "tests/checks_can_fail/expect_said.h"
 #include "tests/checks_can_fail/scenario_mistakes.h"
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 #include "tests/scenario/water_column.h"
 #include "tests/support/grey_png.h"
 
@@ -492,13 +492,15 @@ class CheckCanFail : public Scenarios {
 };
 
 const std::vector<Unsayable> kUnsayable = {
-    {"target/csv_map.cc", "changed while it was read", "the map has to change between two reads"},
-    {"target/png_map.cc", "cannot be opened any more", "it was opened a moment before"},
-    {"target/netcdf_file.cc", "needs libnetcdf", "this machine has it"},
-    {"target/netcdf_file.cc", "write the file again",
+    {"target/maps/csv_map.cc", "changed while it was read",
+     "the map has to change between two reads"},
+    {"target/maps/png_map.cc", "cannot be opened any more", "it was opened a moment before"},
+    {"target/maps/netcdf_file.cc", "needs libnetcdf", "this machine has it"},
+    {"target/maps/netcdf_file.cc", "write the file again",
      "the file has to be cut off amid its numbers"},
-    {"target/netcdf_file.cc", "is stored in parts of more than", "the classic format has no parts"},
-    {"scenario/text.cc", "is longer than the limit", "a file is bounded before it is read"},
+    {"target/maps/netcdf_file.cc", "is stored in parts of more than",
+     "the classic format has no parts"},
+    {"scenario/parse/text.cc", "is longer than the limit", "a file is bounded before it is read"},
 };
 
 TEST_F(CheckCanFail, InEachOfItsFindings) {
@@ -508,11 +510,15 @@ TEST_F(CheckCanFail, InEachOfItsFindings) {
   plant_outside_the_text();
   plant_warnings();
   // The texts of override_options.cc are those of --help.
-  std::vector<std::string> sources =
-      sources_in("scenario", {"scenario/assign.cc", "scenario/override_options.cc"});
-  for (const std::string& file : sources_in("target")) sources.push_back(file);
+  std::vector<std::string> sources;
+  for (const char* folder : {"scenario", "scenario/parse", "scenario/rules", "scenario/compile",
+                             "target", "target/maps"}) {
+    for (const std::string& file :
+         sources_in(folder, {"scenario/parse/assign.cc", "scenario/parse/override_options.cc"}))
+      sources.push_back(file);
+  }
   expect_all_said(sources, said_, kUnsayable);
-  expect_all_said({"scenario/assign.cc"}, said_of_flags_, {});
+  expect_all_said({"scenario/parse/assign.cc"}, said_of_flags_, {});
 }
 
 }  // namespace

@@ -11,14 +11,14 @@
 #include <map>
 #include <set>
 
-#include "ops/doctor/probe.h"
-#include "ops/doctor/socket_table.h"
-#include "runtime/key_file.h"
-#include "runtime/node.h"
-#include "runtime/socket.h"
+#include "cli/doctor/probe.h"
+#include "cli/doctor/socket_table.h"
+#include "runtime/bus/socket.h"
+#include "runtime/process/key_file.h"
+#include "runtime/process/node.h"
 #include "tests/checks_can_fail/expect_said.h"
 #include "tests/hosts/team_on_hosts.h"
-#include "tests/process/stranger.h"
+#include "tests/process/support/stranger.h"
 
 namespace ergocast::test {
 namespace {
@@ -476,7 +476,7 @@ std::vector<Plant> DoctorCanFail::plants() {
 }
 
 const std::vector<Unsayable> kUnsayable = {
-    {"ops/doctor/ports.cc", "ss -ulpn", "a thousand ports would have to be taken"},
+    {"cli/doctor/ports.cc", "ss -ulpn", "a thousand ports would have to be taken"},
 };
 
 TEST_F(DoctorCanFail, InEachOfItsFindings) {
@@ -503,8 +503,8 @@ TEST_F(DoctorCanFail, InEachOfItsFindings) {
   said_.push_back(output());
 
   std::vector<std::string> sources =
-      sources_in("ops/doctor", {"ops/doctor/command_output.cc", "ops/doctor/print.cc"});
-  sources.push_back("cli/doctor.cc");
+      sources_in("cli/doctor", {"cli/doctor/command_output.cc", "cli/doctor/print.cc"});
+  sources.push_back("cli/doctor/doctor_command.cc");
   expect_all_said(sources, said_, kUnsayable);
 }
 

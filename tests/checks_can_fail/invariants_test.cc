@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "tests/checks_can_fail/words.h"
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Simulations whose φ² is no number fail and report it; tests/process/no_metric_test.cc has a real
 // mission.
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

@@ -4,12 +4,12 @@
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
-#include "runtime/key_file.h"
+#include "runtime/process/key_file.h"
 #include "scenario/scenario.h"
 #include "team/mission_follower.h"
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
-#include "tests/process/stranger.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
+#include "tests/process/support/stranger.h"
 
 namespace ergocast::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <sstream>
 
 #include "logger/mission_text.h"
-#include "team/plan.h"
+#include "plan/plan.h"
 #include "tests/checks_can_fail/expect_said.h"
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {
@@ -269,9 +269,9 @@ TEST_F(VerifyCanFail, InEachOfItsFindings) {
   ASSERT_EQ(ergocast({"verify", "--help"}), 0) << output();
   said_.push_back(output());
 
-  expect_all_said({"cli/verify.cc", "cli/record_comparison.cc", "cli/trajectory_comparison.cc",
-                   "logger/table_lines.cc", "team/plan.cc"},
-                  said_, {{"team/plan.cc", "out of memory", "nothing here is large enough"}},
+  expect_all_said({"cli/record/verify.cc", "cli/record/record_comparison.cc",
+                   "cli/record/trajectory_comparison.cc", "logger/table_lines.cc", "plan/plan.cc"},
+                  said_, {{"plan/plan.cc", "out of memory", "nothing here is large enough"}},
                   Words::kMayBeShared);
 }
 

@@ -10,7 +10,7 @@ namespace ergocast::test {
 
 /// The text of one statement, or of a function that it calls.
 struct Saying {
-  std::string place;               ///< "scenario/validate.cc:101"
+  std::string place;               ///< "scenario/rules/validate.cc:101"
   std::vector<std::string> parts;  ///< always printed, in this order, with values in between
   /// Alternative texts: the branches of `condition ? … : …`, each in parts.
   std::vector<std::vector<std::string>> alternatives;

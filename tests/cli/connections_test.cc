@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page's connections on a clock that the test sets: the cost of a client, and the connection
 // that a new one replaces.
-#include "cli/connections.h"
+#include "cli/watch/connections.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A team's frames: a browser gets each once, however late it asks.
-#include "cli/live_team.h"
+#include "cli/team/live_team.h"
 
 #include <gtest/gtest.h>
 

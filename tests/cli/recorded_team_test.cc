@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A recorded event log shows when an agent was silent, and when only the logger was absent.
-#include "cli/recorded_team.h"
+#include "cli/team/recorded_team.h"
 
 #include <gtest/gtest.h>
 

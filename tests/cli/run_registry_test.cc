@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The registry of live runs: its entries, stale entries, and the owner of a trusted folder.
-#include "cli/run_registry.h"
+#include "cli/watch/run_registry.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

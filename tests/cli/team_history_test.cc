@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The history of the statuses: the columns of metrics.csv, within bounds.
-#include "cli/team_history.h"
+#include "cli/team/team_history.h"
 
 #include <gtest/gtest.h>
 

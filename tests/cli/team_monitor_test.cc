@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The processes of a run that still run, as known to a command that has just started to listen.
-#include "cli/team_monitor.h"
+#include "cli/team/team_monitor.h"
 
 #include <gtest/gtest.h>
 

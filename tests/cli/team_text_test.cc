@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table that people read: aligned, narrow, and with the worst on top.
-#include "cli/team_text.h"
+#include "cli/team/team_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The state of a team as a listening process knows it: agents with trouble, and its start.
-#include "cli/team_view.h"
+#include "cli/team/team_view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Jobs in worker processes: a job that hangs or crashes loses only its own result.
-#include "cli/workers.h"
+#include "cli/study/workers.h"
 
 #include <gtest/gtest.h>
 

@@ -13,12 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/control.h"
-#include "core/coverage_table.h"
-#include "core/forecast.h"
-#include "core/separation.h"
-#include "core/wall_following.h"
-#include "core/walls.h"
+#include "core/law/control.h"
+#include "core/law/coverage_table.h"
+#include "core/law/forecast.h"
+#include "core/motion/push.h"
+#include "core/motion/separation.h"
+#include "core/motion/wall_following.h"
+#include "core/motion/walls.h"
 #include "team/beacon_book.h"
 #include "tests/modes/rooms.h"
 #include "tests/support/team.h"

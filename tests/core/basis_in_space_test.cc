@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/basis.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/basis/basis.h"
 
 namespace ergocast {
 namespace {

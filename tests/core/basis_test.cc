@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The cosine basis (2): values against the cosines themselves, the gradient against differences of
 // the values, the weights against their definition, Parseval against a mean over the domain.
-#include "core/basis.h"
+#include "core/basis/basis.h"
 
 #include <gtest/gtest.h>
 

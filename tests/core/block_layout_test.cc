@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which modes are in which block, and that tables and forecasts do not depend on it.
-#include "core/block_layout.h"
+#include "core/law/block_layout.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/forecast.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/law/forecast.h"
 #include "tests/core/forecast_history.h"
 
 namespace ergocast {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sums that copies share: what one holder changes, the others do not see.
-#include "core/block_sums.h"
+#include "core/base/block_sums.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,10 @@
 
 #include <cmath>
 
-#include "core/control.h"
-#include "core/ideal_team.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/law/control.h"
+#include "core/motion/starts.h"
+#include "lab/ideal_team.h"
 
 namespace ergocast {
 namespace {

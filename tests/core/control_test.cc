@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The control step against the paper's formulas written out term by term, and B against the slope
 // of φ² itself.
-#include "core/control.h"
+#include "core/law/control.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/coverage_table.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/law/coverage_table.h"
 #include "tests/support/team.h"
 
 namespace ergocast {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The coverage table as a CRDT: with any loss, repetition or order, tables that received the same
 // blocks are equal; and c_k, (4), from its blocks.
-#include "core/coverage_table.h"
+#include "core/law/coverage_table.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 
 namespace ergocast {
 namespace {

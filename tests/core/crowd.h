@@ -11,9 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry.h"
-#include "core/mission.h"
-#include "core/separation.h"
+#include "core/base/geometry.h"
+#include "core/mission/mission.h"
+#include "core/motion/separation.h"
 
 namespace ergocast::test {
 

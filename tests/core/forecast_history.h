@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/forecast.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/law/forecast.h"
 
 namespace ergocast::test {
 

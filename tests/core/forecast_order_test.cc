@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/forecast.h"
+#include "core/law/forecast.h"
 #include "tests/core/forecast_history.h"
 
 namespace ergocast {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // ĉ on random tables, compared with its formula, and which agents count in it.
-#include "core/forecast.h"
+#include "core/law/forecast.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reflection at the edges: a point never ends outside, and one that is inside is not touched.
-#include "core/geometry.h"
+#include "core/base/geometry.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 
 namespace ergocast {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which ticks count while a mission is paused now and then, against counting them one by one.
-#include "core/hold.h"
+#include "core/mission/hold.h"
 
 #include <gtest/gtest.h>
 

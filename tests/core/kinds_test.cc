@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a kind's sensor sees, how its rows count, and by which modes it steers.
-#include "core/kinds.h"
+#include "core/mission/kinds.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/control.h"
-#include "core/coverage_table.h"
-#include "core/mission_limits.h"
-#include "core/vehicle.h"
+#include "core/law/control.h"
+#include "core/law/coverage_table.h"
+#include "core/motion/vehicle.h"
+#include "plan/mission_limits.h"
 
 namespace ergocast {
 namespace {

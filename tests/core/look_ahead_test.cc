@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far ahead an agent looks: the target's spread, the horizon and the weights of gains.
-#include "core/look_ahead.h"
+#include "core/law/look_ahead.h"
 
 #include <gtest/gtest.h>
 

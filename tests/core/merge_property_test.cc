@@ -10,8 +10,8 @@
 #include <set>
 #include <string>
 
-#include "core/coverage_table.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/law/coverage_table.h"
 
 namespace ergocast {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The list of a mission's fields is complete.
-#include "core/mission_fields.h"
+#include "plan/mission_fields.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 //
 // The seeds are fixed, so a bound of z standard errors does not make a test fail at times. It shows
 // how unlikely such numbers are if the claim is true: z = 5 is one in 1.7 million, two-sided.
-#include "core/noise.h"
+#include "core/base/noise.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The adaptive perturbation: between its floor and its ceiling, strong across the directions that
 // the field leaves open, and nowhere else.
-#include "core/perturbation.h"
+#include "core/law/perturbation.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 
 namespace ergocast {
 namespace {

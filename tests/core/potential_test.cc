@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/control.h"
-#include "core/forecast.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/law/control.h"
+#include "core/law/forecast.h"
 #include "target/target.h"
 
 namespace ergocast {

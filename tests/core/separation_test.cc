@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bodies that keep a distance: attacks on the filter, each with the flaws that it detects.
-#include "core/separation.h"
+#include "core/motion/separation.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "core/vehicle.h"
+#include "core/motion/filter_rules.h"
+#include "core/motion/starts.h"
+#include "core/motion/vehicle.h"
 #include "tests/core/crowd.h"
 
 namespace ergocast {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/vehicle.h"
+#include "core/motion/vehicle.h"
 
 namespace ergocast {
 namespace {

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/station.h"
+#include "core/mission/station.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/geometry.h"
-#include "core/vehicle.h"
-#include "core/way_home.h"
+#include "core/base/geometry.h"
+#include "core/motion/home.h"
+#include "core/motion/push.h"
+#include "core/motion/vehicle.h"
+#include "core/motion/way_home.h"
 
 namespace ergocast {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The projection on intersections of cones, against searches that know only the definition.
-#include "core/step_constraints.h"
+#include "core/motion/step_constraints.h"
 
 #include <gtest/gtest.h>
 

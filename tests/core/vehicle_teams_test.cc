@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/ideal_team.h"
-#include "core/separation.h"
+#include "core/motion/separation.h"
+#include "core/motion/starts.h"
+#include "lab/ideal_team.h"
 #include "tests/core/vehicles.h"
 
 namespace ergocast {

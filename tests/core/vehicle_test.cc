@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Vehicles that are no points: what they execute, and how they brake, turn and loiter.
-#include "core/vehicle.h"
+#include "core/motion/vehicle.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry.h"
+#include "core/base/geometry.h"
 #include "tests/core/vehicles.h"
 
 namespace ergocast {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/vehicle.h"
+#include "core/motion/vehicle.h"
 #include "tests/support/team.h"
 
 namespace ergocast::test {

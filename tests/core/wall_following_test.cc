@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Agents that walls hold up find their way out of dead ends, and other agents are not affected.
-#include "core/wall_following.h"
+#include "core/motion/wall_following.h"
 
 #include <gtest/gtest.h>
 
-#include "core/separation.h"
-#include "core/walls.h"
+#include "core/motion/separation.h"
+#include "core/motion/walls.h"
 
 namespace ergocast {
 namespace {

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/noise.h"
-#include "core/separation.h"
-#include "core/walls.h"
+#include "core/base/noise.h"
+#include "core/motion/push.h"
+#include "core/motion/separation.h"
+#include "core/motion/starts.h"
+#include "core/motion/walls.h"
 #include "tests/core/vehicles.h"
 
 namespace ergocast {

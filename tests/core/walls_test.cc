@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Walls: what is solid, how far it is, which rings are walls, and which places a way joins.
-#include "core/walls.h"
+#include "core/motion/walls.h"
 
 #include <gtest/gtest.h>
 
-#include "core/free_region.h"
-#include "core/separation.h"
+#include "core/motion/free_region.h"
+#include "core/motion/starts.h"
 
 namespace ergocast {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/vehicle.h"
+#include "core/motion/vehicle.h"
 #include "tests/support/team.h"
 
 namespace ergocast::example {

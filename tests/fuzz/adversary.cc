@@ -7,9 +7,9 @@
 #include <array>
 #include <cstring>
 
-#include "core/require.h"
+#include "cli/doctor/group_listener.h"
+#include "core/base/require.h"
 #include "lcmtypes/codec.h"
-#include "ops/doctor/group_listener.h"
 
 namespace ergocast::fuzz {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "lcmtypes/message_authenticator.h"
-#include "runtime/lcm_url.h"
-#include "runtime/socket.h"
+#include "runtime/bus/lcm_url.h"
+#include "runtime/bus/socket.h"
 #include "tests/fuzz/datagrams.h"
 
 namespace ergocast::fuzz {

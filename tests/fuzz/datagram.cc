@@ -6,10 +6,10 @@
 // Input: a byte with the length of the channel's name, the name, the datagram.
 #include <cmath>
 
-#include "core/coverage_table.h"
+#include "cli/doctor/bus_listener.h"
+#include "core/law/coverage_table.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
-#include "ops/doctor/bus_listener.h"
 #include "tests/fuzz/datagrams.h"
 #include "tests/fuzz/target.h"
 

@@ -2,8 +2,8 @@
 // A segment of an event log, plain and as a compressed one: events within the limits of any
 // message, and then an end or a problem.
 #include "lcmtypes/message_authenticator.h"
-#include "runtime/event_log_reader.h"
-#include "runtime/lcm_datagram.h"
+#include "runtime/bus/lcm_datagram.h"
+#include "runtime/record/event_log_reader.h"
 #include "tests/fuzz/files.h"
 #include "tests/fuzz/target.h"
 

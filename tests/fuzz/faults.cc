@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A file of faults for the laboratory.
-#include "cli/fault_file.h"
+#include "cli/study/fault_file.h"
 #include "tests/fuzz/files.h"
 #include "tests/fuzz/target.h"
 

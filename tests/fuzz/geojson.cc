@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A GeoJSON file: refused with a problem, or polygons of places that exist.
-#include "geo/geojson.h"
+#include "target/geo/geojson.h"
 
 #include "tests/fuzz/target.h"
 

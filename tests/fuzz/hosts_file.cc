@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A hosts file: refused with problems, or hosts from which every kind of deployment is written.
-#include "ops/deploy/deploy.h"
+#include "cli/deploy/deploy.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mission key's file: refused in a sentence, or a key that reads back from its own text.
-#include "runtime/key_file.h"
+#include "runtime/process/key_file.h"
 
 #include <sys/stat.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A bus's URL: an accepted one prints as text that reads back the same.
-#include "runtime/lcm_url.h"
+#include "runtime/bus/lcm_url.h"
 
 #include "tests/fuzz/target.h"
 

@@ -5,9 +5,9 @@
 // The first byte of the input is Features, the second selects the core.
 #include <sstream>
 
-#include "cli/team_text.h"
+#include "cli/team/team_text.h"
 #include "lcmtypes/codec.h"
-#include "team/plan.h"
+#include "plan/plan.h"
 #include "tests/fuzz/small_team.h"
 #include "tests/fuzz/target.h"
 #include "tests/fuzz/turns.h"

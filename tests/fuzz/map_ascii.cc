@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An ESRI ASCII grid.
-#include "target/ascii_grid.h"
+#include "target/maps/ascii_grid.h"
 #include "tests/fuzz/map_target.h"
 
 namespace ergocast::fuzz {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A table of numbers as a map.
-#include "target/csv_map.h"
+#include "target/maps/csv_map.h"
 #include "tests/fuzz/map_target.h"
 
 namespace ergocast::fuzz {

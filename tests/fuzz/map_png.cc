@@ -3,7 +3,7 @@
 // corrected.
 #include <zlib.h>
 
-#include "target/png_map.h"
+#include "target/maps/png_map.h"
 #include "tests/fuzz/datagrams.h"
 #include "tests/fuzz/map_target.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The common part of the targets of all map formats: read every row, and check the guarantees of
-// target/map_file.h.
+// target/maps/map_file.h.
 #pragma once
 
 #include <vector>
 
-#include "target/map_file.h"
+#include "target/maps/map_file.h"
 #include "tests/fuzz/files.h"
 #include "tests/fuzz/target.h"
 

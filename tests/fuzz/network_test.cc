@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <lcm/lcm-cpp.hpp>
 
-#include "runtime/key_file.h"
+#include "runtime/process/key_file.h"
 #include "tests/fuzz/adversary.h"
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

@@ -2,8 +2,8 @@
 // LCM datagrams that `ergocast doctor` receives: "LC02", a number, a channel, a message.
 //
 // Input: a length of 2 bytes, high one first, then a datagram, and so on. Tags are made valid.
-#include "ops/doctor/bus_listener.h"
-#include "ops/doctor/print.h"
+#include "cli/doctor/bus_listener.h"
+#include "cli/doctor/print.h"
 #include "tests/fuzz/datagrams.h"
 #include "tests/fuzz/target.h"
 

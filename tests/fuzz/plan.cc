@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A compiled plan from the network: refused with one sentence, or a mission that a scenario can
 // describe.
-#include "team/plan.h"
+#include "plan/plan.h"
 
 #include <algorithm>
 #include <cmath>

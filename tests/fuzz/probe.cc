@@ -2,10 +2,10 @@
 // The probes that `ergocast doctor` on two hosts exchange, one after the other.
 //
 // Input: a length of 2 bytes, high one first, then a datagram, and so on.
-#include "ops/doctor/probe.h"
+#include "cli/doctor/probe.h"
 
-#include "ops/doctor/peer_exchange.h"
-#include "ops/doctor/print.h"
+#include "cli/doctor/peer_exchange.h"
+#include "cli/doctor/print.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A file of the registry of live runs: refused with a reason, or a run that is written as it was
 // read.
-#include "cli/run_registry.h"
+#include "cli/watch/run_registry.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

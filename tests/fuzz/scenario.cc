@@ -3,7 +3,7 @@
 // remedy, or it gives a mission. The mission's printed text and plan give the same mission again.
 #include "scenario/scenario.h"
 
-#include "team/plan.h"
+#include "plan/plan.h"
 #include "tests/fuzz/files.h"
 #include "tests/fuzz/target.h"
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <variant>
 
+#include "cli/doctor/peer_ledger.h"
 #include "lcmtypes/channels.h"
-#include "ops/doctor/peer_ledger.h"
+#include "plan/plan.h"
 #include "scenario/scenario.h"
-#include "team/plan.h"
 #include "tests/fuzz/small_team.h"
 #include "tests/lcmtypes/sample_messages.h"
 #include "tests/support/grey_png.h"

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "cli/team_text.h"
-#include "core/require.h"
+#include "cli/team/team_text.h"
+#include "core/base/require.h"
 #include "lcmtypes/codec.h"
-#include "team/plan.h"
+#include "plan/plan.h"
 #include "tests/support/team.h"
 
 namespace ergocast::fuzz {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "agent/agent.h"
-#include "cli/team_view.h"
+#include "cli/team/team_view.h"
 #include "coordinator/coordinator.h"
 #include "logger/recorder.h"
 #include "sim/world.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernel's table of UDP sockets.
-#include "ops/doctor/socket_table.h"
+#include "cli/doctor/socket_table.h"
 
 #include "tests/fuzz/target.h"
 

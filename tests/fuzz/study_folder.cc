@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A study's folder: study.json, and after a line "--" study.csv.
-#include "cli/study_directory.h"
+#include "cli/study/study_directory.h"
 #include "tests/fuzz/files.h"
 #include "tests/fuzz/target.h"
 

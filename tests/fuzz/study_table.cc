@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lines of a study's table: lines that were read are written again with the same figures.
-#include "lab/studies/study_table.h"
+#include "studies/study_table.h"
 
 #include "tests/fuzz/target.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An SVG drawing: refused with a problem, or rings of finite corners.
-#include "geo/svg.h"
+#include "target/geo/svg.h"
 
 #include "tests/fuzz/target.h"
 

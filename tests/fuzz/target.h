@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/require.h"
+#include "core/base/require.h"
 
 namespace ergocast::fuzz {
 

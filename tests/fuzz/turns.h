@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "core/ids.h"
+#include "core/base/ids.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

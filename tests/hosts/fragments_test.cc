@@ -3,10 +3,10 @@
 // ours.
 #include <lcm/lcm-cpp.hpp>
 
-#include "runtime/group_socket.h"
-#include "runtime/lcm_url.h"
-#include "runtime/socket.h"
-#include "tests/process/mission.h"
+#include "runtime/bus/group_socket.h"
+#include "runtime/bus/lcm_url.h"
+#include "runtime/bus/socket.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

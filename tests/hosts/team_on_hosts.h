@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
 #include "tests/support/lan.h"
 
 namespace ergocast::test {

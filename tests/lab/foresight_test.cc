@@ -8,7 +8,7 @@
 #include <iterator>
 #include <string>
 
-#include "core/basis.h"
+#include "core/basis/basis.h"
 #include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(Laboratory, LockstepForesight,
 /// on.
 double metric_after_a_death(const std::string& law, const std::string& agents, std::uint64_t seed) {
   std::string text =
-      with(text_of("lab/studies/law/random.textproto"), "u_max_mps: 20", "u_max_mps: 20 " + law);
+      with(text_of("studies/law/random.textproto"), "u_max_mps: 20", "u_max_mps: 20 " + law);
   text = with(text, "agents {", "agents { " + agents);
   text = with(text, "dt_s: 0.1", "dt_s: 0.1 pace: REALTIME broadcast_period_ticks: 20");
   Overrides overrides;

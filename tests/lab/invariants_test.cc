@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "core/forecast.h"
+#include "core/law/forecast.h"
 
 namespace ergocast::test {
 namespace {

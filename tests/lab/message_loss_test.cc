@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <string>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 #include "tests/support/simulated_team.h"
 
 namespace ergocast::test {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/coverage_table.h"
-#include "core/noise.h"
+#include "core/base/noise.h"
+#include "core/law/coverage_table.h"
 #include "lcmtypes/codec.h"
 #include "tests/lcmtypes/sample_messages.h"
 

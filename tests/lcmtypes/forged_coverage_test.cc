@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/coverage_table.h"
+#include "core/law/coverage_table.h"
 #include "lcmtypes/codec.h"
 #include "tests/lcmtypes/sample_messages.h"
 

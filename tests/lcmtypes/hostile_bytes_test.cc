@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 #include "lcmtypes/codec.h"
 #include "tests/lcmtypes/sample_messages.h"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 #include "tests/logger/record.h"
 
 namespace ergocast {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 #include "logger/run_record.h"
 #include "modes/provide.h"
 #include "tests/logger/record.h"

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "core/free_modes.h"
+#include "core/basis/free_modes.h"
 #include "tests/modes/rooms.h"
 
 namespace ergocast {

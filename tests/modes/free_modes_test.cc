@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The basis of a free domain: values, field and weights, compared with cosines where they are
 // equal.
-#include "core/free_modes.h"
+#include "core/basis/free_modes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/basis.h"
-#include "core/look_ahead.h"
+#include "core/basis/basis.h"
+#include "core/law/look_ahead.h"
 #include "tests/modes/rooms.h"
 
 namespace ergocast {

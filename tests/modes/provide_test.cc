@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/coverage_table.h"
+#include "core/law/coverage_table.h"
 #include "tests/modes/rooms.h"
 
 namespace ergocast {

@@ -14,7 +14,7 @@
 #include <random>
 #include <string>
 
-#include "core/basis.h"
+#include "core/basis/basis.h"
 #include "modes/table_file.h"
 #include "tests/modes/rooms.h"
 #include "tests/support/temp_folder.h"

@@ -9,7 +9,7 @@ source=$(cd "$(dirname "$0")/../.." && pwd)
 
 check_headers() {
   (cd "$root/usr/include" && find ergocast -name '*.h' | sort) >"$work/headers"
-  grep -q ergocast/core/control.h "$work/headers" || fail 'no headers'
+  grep -q ergocast/core/law/control.h "$work/headers" || fail 'no headers'
   cat >"$work/alone" <<'END'
 echo "#include <$1>" | g++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -isystem /usr/include/eigen3 -x c++ -
 END

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 #include "tests/support/browser.h"
 
 namespace ergocast::test {

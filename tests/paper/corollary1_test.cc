@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/studies/theorems/bounds.h"
+#include "studies/theorems/bounds.h"
 
 namespace ergocast::test {
 namespace {

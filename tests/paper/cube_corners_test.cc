@@ -3,7 +3,7 @@
 // law covers all peaks. docs/law.md has the figures of 100 seeds.
 #include <gtest/gtest.h>
 
-#include "core/ideal_team.h"
+#include "lab/ideal_team.h"
 #include "tests/scenario/scenarios.h"
 
 namespace ergocast {

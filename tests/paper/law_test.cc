@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law that scenarios get by default, from the starts that hold the classical one
-// (lab/studies/law/*.textproto). Statements about probabilities hold except with probability 1e-9
+// (studies/law/*.textproto). Statements about probabilities hold except with probability 1e-9
 // over the choice of seeds; docs/law.md has the figures of many more.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/perturbation.h"
+#include "core/law/perturbation.h"
 #include "lab/manifolds.h"
-#include "lab/studies/theorems/confidence.h"
+#include "studies/theorems/confidence.h"
 #include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
@@ -16,7 +16,7 @@ namespace {
 
 Mission mission_from(const std::string& start, std::uint64_t seed = 1) {
   const auto file =
-      std::filesystem::path(ERGOCAST_SOURCE_DIR) / "lab/studies/law" / (start + ".textproto");
+      std::filesystem::path(ERGOCAST_SOURCE_DIR) / "studies/law" / (start + ".textproto");
   Overrides overrides;
   overrides.seed = seed;
   return std::get<Scenario>(Scenario::load(file, overrides)).mission();

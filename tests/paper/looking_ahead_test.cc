@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "core/look_ahead.h"
-#include "core/noise.h"
-#include "lab/studies/theorems/invariance.h"
+#include "core/base/noise.h"
+#include "core/law/look_ahead.h"
+#include "studies/theorems/invariance.h"
 #include "target/target.h"
 #include "tests/support/simulated_team.h"
 

@@ -13,8 +13,8 @@
 #include <numbers>
 
 #include "lab/manifolds.h"
-#include "lab/studies/theorems/escape.h"
-#include "lab/studies/theorems/invariance.h"
+#include "studies/theorems/escape.h"
+#include "studies/theorems/invariance.h"
 #include "target/target.h"
 #include "tests/support/simulated_team.h"
 

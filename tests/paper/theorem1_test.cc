@@ -6,7 +6,7 @@
 //
 // Many seeds can show two things, each except with probability 1e-9: a least probability of escape
 // by a given time, and that the time is distributed as the linearised recursion predicts
-// (lab/studies/theorems/linearised.h). No number of seeds shows a probability of 1.
+// (studies/theorems/linearised.h). No number of seeds shows a probability of 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@
 #include <limits>
 
 #include "lab/manifolds.h"
-#include "lab/studies/theorems/confidence.h"
-#include "lab/studies/theorems/escape.h"
-#include "lab/studies/theorems/invariance.h"
+#include "studies/theorems/confidence.h"
+#include "studies/theorems/escape.h"
+#include "studies/theorems/invariance.h"
 #include "tests/support/simulated_team.h"
 
 namespace ergocast::test {

@@ -10,8 +10,8 @@
 
 #include <cmath>
 
-#include "lab/studies/theorems/bounds.h"
-#include "lab/studies/theorems/confidence.h"
+#include "studies/theorems/bounds.h"
+#include "studies/theorems/confidence.h"
 #include "tests/support/simulated_team.h"
 
 namespace ergocast::test {

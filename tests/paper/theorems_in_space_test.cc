@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lab/studies/theorems/bounds.h"
+#include "studies/theorems/bounds.h"
 #include "tests/support/simulated_team.h"
 
 namespace ergocast::test {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One socket of ours among others at its port: the messages that it receives, and those that it
 // counts as lost.
-#include "runtime/bus_reader.h"
+#include "runtime/bus/bus_reader.h"
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
-#include "runtime/bus_writer.h"
+#include "runtime/bus/bus_writer.h"
 #include "tests/lcmtypes/sample_messages.h"
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Programs that people start one by one, without `ergocast run`.
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

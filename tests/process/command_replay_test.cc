@@ -3,10 +3,10 @@
 // later.
 #include <lcm/lcm-cpp.hpp>
 
-#include "runtime/key_file.h"
+#include "runtime/process/key_file.h"
 #include "team/command_window.h"
-#include "tests/process/mission.h"
-#include "tests/process/stranger.h"
+#include "tests/process/support/mission.h"
+#include "tests/process/support/stranger.h"
 
 namespace ergocast::test {
 namespace {

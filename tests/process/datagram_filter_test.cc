@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The messages that the kernel passes to our sockets, with real sockets: always subscribed ones, a
 // share of the repeats during a flood, and no others.
-#include "runtime/datagram_filter.h"
+#include "runtime/bus/datagram_filter.h"
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
-#include "runtime/socket.h"
+#include "runtime/bus/socket.h"
 #include "tests/lcmtypes/sample_messages.h"
 
 namespace ergocast::test {

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
-#include "tests/process/record.h"
-#include "tests/process/stranger.h"
+#include "core/motion/starts.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
+#include "tests/process/support/record.h"
+#include "tests/process/support/stranger.h"
 
 namespace ergocast::test {
 namespace {

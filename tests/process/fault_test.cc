@@ -2,11 +2,11 @@
 // Processes that hang, that get a stop signal, or that receive messages of a foreign sender.
 #include <lcm/lcm-cpp.hpp>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
-#include "runtime/lcm_url.h"
-#include "tests/process/mission.h"
+#include "runtime/bus/lcm_url.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

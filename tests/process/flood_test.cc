@@ -4,12 +4,12 @@
 #include <map>
 
 #include "lcmtypes/codec.h"
-#include "runtime/key_file.h"
-#include "runtime/socket.h"
+#include "runtime/bus/socket.h"
+#include "runtime/process/key_file.h"
 #include "team/messages.h"
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
-#include "tests/process/replayer.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
+#include "tests/process/support/replayer.h"
 
 namespace ergocast::test {
 namespace {

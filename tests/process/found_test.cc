@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A run is found without its URL: list, status, watch, spy and stop take the only live one.
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

@@ -2,8 +2,8 @@
 // A process that stands still for five seconds and then continues, as on a machine that swaps or a
 // laptop with its lid closed: no process is lost, and in lockstep no bit changes. No mission here
 // ends before the test ends it.
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

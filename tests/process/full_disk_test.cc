@@ -3,9 +3,9 @@
 #include <sys/mount.h>
 #include <sys/statvfs.h>
 
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
-#include "tests/process/record.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
+#include "tests/process/support/record.h"
 
 namespace ergocast::test {
 namespace {

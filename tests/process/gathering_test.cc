@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Messages collect in the kernel as long as a mission allows, but none is read late.
-#include "runtime/clock.h"
-#include "runtime/transport.h"
+#include "runtime/bus/clock.h"
+#include "runtime/bus/transport.h"
 #include "tests/lcmtypes/sample_messages.h"
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

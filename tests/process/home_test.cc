@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stations: real processes go home and rest there until the mission's end; people see both.
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

@@ -2,7 +2,7 @@
 // Real processes of several kinds: their record, the output about them, and an unknown kind.
 #include <fstream>
 
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

@@ -2,7 +2,7 @@
 // `ergocast run` on a machine that cannot restart a killed process at once: the mission continues.
 #include <sys/resource.h>
 
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

@@ -4,10 +4,10 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/channels.h"
-#include "runtime/clock.h"
-#include "runtime/transport.h"
+#include "runtime/bus/clock.h"
+#include "runtime/bus/transport.h"
 #include "tests/lcmtypes/sample_messages.h"
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

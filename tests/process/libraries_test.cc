@@ -5,7 +5,7 @@
 #include <array>
 #include <memory>
 
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

@@ -3,10 +3,10 @@
 // Only the file itself is lost. The mission continues, also with restarted processes.
 #include <filesystem>
 
-#include "runtime/key_file.h"
-#include "tests/process/bus_observer.h"
-#include "tests/process/free_rooms.h"
-#include "tests/process/mission.h"
+#include "runtime/process/key_file.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/free_rooms.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

@@ -2,8 +2,8 @@
 // The table of modes of a free domain: `ergocast run` passes it to its processes, and the record
 // has it. A process that got none, or another one, computes it. A process that computes another
 // table cannot take part. Every output of φ² of such a mission names its basis.
-#include "tests/process/free_rooms.h"
-#include "tests/process/mission.h"
+#include "tests/process/support/free_rooms.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

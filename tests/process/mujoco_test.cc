@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Robots in a physics engine in place of ergocast-sim, in lockstep; everything else is unchanged.
-#include "tests/process/mission.h"
-#include "tests/process/record.h"
+#include "tests/process/support/mission.h"
+#include "tests/process/support/record.h"
 
 namespace ergocast::test {
 namespace {

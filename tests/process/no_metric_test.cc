@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A φ² that is no number fails a mission, and the failure names the cause.
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

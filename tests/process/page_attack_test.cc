@@ -7,7 +7,7 @@
 #include <sstream>
 #include <thread>
 
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 #include "tests/support/http.h"
 
 namespace ergocast::test {

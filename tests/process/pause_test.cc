@@ -3,8 +3,8 @@
 // if one restarts meanwhile.
 #include <algorithm>
 
-#include "tests/process/mission.h"
-#include "tests/process/record.h"
+#include "tests/process/support/mission.h"
+#include "tests/process/support/record.h"
 
 namespace ergocast::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <lcm/lcm-cpp.hpp>
 #include <tuple>
 
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A record in several segments, as left by a logger that was killed and restarted.
-#include "runtime/event_log.h"
-#include "tests/process/programs.h"
+#include "runtime/record/event_log.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

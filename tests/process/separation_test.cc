@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/process/programs.h"
+#include "tests/process/support/programs.h"
 
 namespace ergocast::test {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The waits of tests end with the process that they wait for, and only with that one.
-#include "tests/process/waiting.h"
+#include "tests/process/support/waiting.h"
 
 #include <gtest/gtest-spi.h>
 
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 namespace {

@@ -2,9 +2,9 @@
 // Limits and emergency stops of vehicles, with the real programs.
 #include <cmath>
 
-#include "tests/process/bus_observer.h"
-#include "tests/process/mission.h"
-#include "tests/process/record.h"
+#include "tests/process/support/bus_observer.h"
+#include "tests/process/support/mission.h"
+#include "tests/process/support/record.h"
 
 namespace ergocast::test {
 namespace {

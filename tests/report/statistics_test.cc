@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/noise.h"
+#include "core/base/noise.h"
 
 namespace ergocast {
 namespace {

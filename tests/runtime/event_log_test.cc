@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The event log's limits, and a full disk.
-#include "runtime/event_log.h"
+#include "runtime/record/event_log.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -12,8 +12,8 @@
 #include <set>
 #include <vector>
 
-#include "runtime/event_log_reader.h"
-#include "runtime/segment_compressor.h"
+#include "runtime/record/event_log_reader.h"
+#include "runtime/record/segment_compressor.h"
 #include "tests/support/temp_folder.h"
 
 /// Replaces the system's call, as for a disk that cannot keep its data.

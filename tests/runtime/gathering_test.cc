@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How long the messages of a mission may gather.
-#include "runtime/gathering.h"
+#include "runtime/bus/gathering.h"
 
 #include <gtest/gtest.h>
 

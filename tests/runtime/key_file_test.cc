@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Key files come back as written; loose permissions, other files and other text are refused.
-#include "runtime/key_file.h"
+#include "runtime/process/key_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // LCM's datagram is read as it was written, and no bytes lead to a read past its end.
-#include "runtime/lcm_datagram.h"
+#include "runtime/bus/lcm_datagram.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Log lines in the journal's format.
-#include "runtime/logging.h"
+#include "runtime/process/logging.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The lateness and the blocked time of a loop, from the times that it reports.
-#include "runtime/loop_lag.h"
+#include "runtime/process/loop_lag.h"
 
 #include <gtest/gtest.h>
 

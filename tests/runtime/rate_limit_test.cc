@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An agent that does what the mission asks is never limited; one that exceeds its budget soon is.
-#include "runtime/rate_limit.h"
+#include "runtime/bus/rate_limit.h"
 
 #include <gtest/gtest.h>
 

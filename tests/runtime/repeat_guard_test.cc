@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The start and end of a flood of repeats are detected; a team's legitimate repeats are no flood.
-#include "runtime/repeat_guard.h"
+#include "runtime/bus/repeat_guard.h"
 
 #include <gtest/gtest.h>
 

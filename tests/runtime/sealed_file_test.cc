@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A file that a launcher hands to a process: no process can change it, and only a child that gets
 // it can read it.
-#include "runtime/sealed_file.h"
+#include "runtime/record/sealed_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "runtime/child.h"
+#include "runtime/process/child.h"
 #include "tests/support/temp_folder.h"
 
 namespace ergocast {

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <numbers>
 
-#include "geo/geojson.h"
-#include "geo/local_plane.h"
 #include "scenario/origin.h"
+#include "target/geo/geojson.h"
+#include "target/geo/local_plane.h"
 #include "tests/scenario/scenarios.h"
 #include "tests/support/temp_folder.h"
 
@@ -178,7 +178,7 @@ TEST_F(GeoJsonTarget, RefusesWhatIsNoPolygonWithItsMember) {
          "has 5000 vertices, above the limit 4096 (simplify it: ogr2ogr -simplify");
 }
 
-// Each bracket would take a hundred bytes. tests/process/bad_input_test.cc has larger ones.
+// Each bracket would take a hundred bytes. tests/process/commands/bad_input_test.cc has larger ones.
 TEST_F(GeoJsonTarget, RefusesWhatIsNestedDeeperThanAnyPolygon) {
   expect(std::string(1000, '['), "is nested in more than 64 levels (simplify it");
 }

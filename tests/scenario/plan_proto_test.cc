@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// team/plan.proto describes the bytes of the plan: Protobuf reads them with it and writes the same.
+// plan/plan.proto describes the bytes of the plan: Protobuf reads them with it and writes the same.
 #include <gtest/gtest.h>
 
-#include "core/mission_fields.h"
-#include "team/plan.h"
+#include "plan/mission_fields.h"
+#include "plan/plan.h"
 #include "team/plan.pb.h"
 #include "tests/team/rich_mission.h"
 
@@ -17,7 +17,7 @@ void expect_all_said(const pb::Message& message) {
   const pb::Reflection& at = *message.GetReflection();
   EXPECT_TRUE(at.GetUnknownFields(message).empty())
       << message.GetDescriptor()->full_name() << ": "
-      << at.GetUnknownFields(message).field(0).number() << " is not in team/plan.proto";
+      << at.GetUnknownFields(message).field(0).number() << " is not in plan/plan.proto";
   for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
     const pb::FieldDescriptor* field = message.GetDescriptor()->field(i);
     const bool printed =
@@ -29,7 +29,7 @@ void expect_all_said(const pb::Message& message) {
   }
 }
 
-/// Compares the names of team/plan.proto by number with the list of a mission's fields.
+/// Compares the names of plan/plan.proto by number with the list of a mission's fields.
 class PlanNames : public FieldVisitor {
  public:
   explicit PlanNames(const pb::Descriptor& message) : message_(message) {}

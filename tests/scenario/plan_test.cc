@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From a scenario to its plan and back to a scenario's text: both have the same limits.
-#include "team/plan.h"
+#include "plan/plan.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "core/mission_fields.h"
 #include "logger/mission_text.h"
+#include "plan/mission_fields.h"
 #include "scenario/scenario.pb.h"
 #include "team/messages.h"
 #include "tests/scenario/scenarios.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Invalid polygons and valid ones.
-#include "scenario/polygon_flaw.h"
+#include "scenario/rules/polygon_flaw.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "plan/plan.h"
 #include "scenario/scenario.h"
-#include "team/plan.h"
 
 namespace ergocast::test {
 

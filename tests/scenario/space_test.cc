@@ -5,7 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "core/ideal_team.h"
+#include "core/motion/starts.h"
+#include "lab/ideal_team.h"
 #include "target/target.h"
 #include "tests/scenario/scenarios.h"
 #include "tests/support/temp_folder.h"

@@ -3,8 +3,8 @@
 // steps too coarse for agents with a forecast.
 #include <gtest/gtest.h>
 
-#include "core/kinds.h"
-#include "scenario/footprint_reach.h"
+#include "core/mission/kinds.h"
+#include "scenario/rules/footprint_reach.h"
 #include "tests/scenario/scenarios.h"
 
 namespace ergocast {

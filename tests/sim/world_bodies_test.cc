@@ -3,7 +3,7 @@
 // how commands are filtered in real time.
 #include <gtest/gtest.h>
 
-#include "core/separation.h"
+#include "core/motion/starts.h"
 #include "tests/sim/driven_world.h"
 
 namespace ergocast {

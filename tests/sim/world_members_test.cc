@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry.h"
-#include "core/noise.h"
+#include "core/base/geometry.h"
+#include "core/base/noise.h"
+#include "core/motion/starts.h"
 #include "tests/sim/driven_world.h"
 
 namespace ergocast {

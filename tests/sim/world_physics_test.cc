@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A world whose bodies are not moved by core/vehicle.h.
+// A world whose bodies are not moved by core/motion/vehicle.h.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -11,13 +11,13 @@
 #include <thread>
 #include <utility>
 
-#include "tests/process/mission.h"
+#include "tests/process/support/mission.h"
 
 namespace ergocast::test {
 
 /// The programs that this machine lacks for the tests: " xvfb xdotool"; empty if none.
 inline std::string missing_for_spy(bool with_screen) {
-  const std::string jar = std::string(ERGOCAST_BIN_DIR) + "/../ops/spy/ergocast-spy.jar";
+  const std::string jar = std::string(ERGOCAST_BIN_DIR) + "/../cli/spy/ergocast-spy.jar";
   std::vector<std::pair<std::string, std::string>> needs{{jar, " default-jdk liblcm-java"}};
   if (with_screen) {
     needs.insert(needs.end(), {{"/usr/share/java/jchart2d.jar", " libjchart2d-java"},

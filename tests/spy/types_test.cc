@@ -6,10 +6,10 @@
 
 #include "lcm_types.h"
 #include "lcmtypes/channels.h"
-#include "runtime/clock.h"
-#include "runtime/transport.h"
+#include "plan/plan.h"
+#include "runtime/bus/clock.h"
+#include "runtime/bus/transport.h"
 #include "scenario/scenario.h"
-#include "team/plan.h"
 #include "tests/lcmtypes/sample_messages.h"
 #include "tests/spy/spy_desk.h"
 

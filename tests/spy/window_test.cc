@@ -88,7 +88,7 @@ TEST_F(Spy, DebiansScriptTakesTheJarToo) {
   if (!std::filesystem::exists("/usr/bin/lcm-spy")) GTEST_SKIP() << "not installed: liblcm-bin";
   Child mission = start_mission();
   setenv("JDK_JAVA_OPTIONS", "-XX:+IgnoreUnrecognizedVMOptions", 1);
-  setenv("CLASSPATH", (std::string(ERGOCAST_BIN_DIR) + "/../ops/spy/ergocast-spy.jar").c_str(), 1);
+  setenv("CLASSPATH", (std::string(ERGOCAST_BIN_DIR) + "/../cli/spy/ergocast-spy.jar").c_str(), 1);
   setenv("LCM_DEFAULT_URL", kUrl, 1);
   Child spy = begin({"/usr/bin/lcm-spy"});
   const auto log = log_;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "runtime/child.h"
+#include "runtime/process/child.h"
 
 namespace ergocast::test {
 

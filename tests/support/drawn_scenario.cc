@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "lab/random_stream.h"
-#include "scenario/fields.h"
+#include "scenario/parse/fields.h"
 #include "tests/support/grey_png.h"
 #include "tests/support/netcdf_writer.h"
 

@@ -14,11 +14,11 @@
 #include <variant>
 #include <vector>
 
-#include "core/ideal_team.h"
+#include "lab/ideal_team.h"
 #include "lab/simulation.h"
 #include "lab/trial.h"
+#include "plan/plan.h"
 #include "scenario/scenario.h"
-#include "team/plan.h"
 
 namespace ergocast::test {
 

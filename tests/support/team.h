@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
-#include "core/mission.h"
+#include "core/mission/mission.h"
+#include "plan/plan.h"
 #include "team/messages.h"
 #include "team/mission_follower.h"
-#include "team/plan.h"
 #include "team/subscriptions.h"
 
 namespace ergocast::test {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The content of maps is read exactly, and a file that cannot be a map is refused with a remedy.
-#include "target/map_file.h"
+#include "target/maps/map_file.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 
-#include "target/csv_map.h"
+#include "target/maps/csv_map.h"
 #include "tests/support/grey_png.h"
 #include "tests/support/temp_folder.h"
 

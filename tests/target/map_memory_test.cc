@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "target/map_file.h"
+#include "target/maps/map_file.h"
 #include "target/raster_integral.h"
 #include "tests/support/grey_png.h"
 #include "tests/support/temp_folder.h"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "core/basis.h"
+#include "core/basis/basis.h"
 #include "target/polygon.h"
 #include "target/rectangle.h"
 

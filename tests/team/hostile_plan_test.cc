@@ -6,10 +6,10 @@
 #include <limits>
 #include <random>
 
-#include "core/mission_limits.h"
-#include "core/walls.h"
+#include "core/motion/walls.h"
+#include "plan/mission_limits.h"
+#include "plan/plan.h"
 #include "team/messages.h"
-#include "team/plan.h"
 #include "tests/team/rich_mission.h"
 
 namespace ergocast {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The compiled plan: every field of a mission is encoded, to the last bit.
-#include "team/plan.h"
+#include "plan/plan.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <vector>
 
-#include "core/mission_fields.h"
-#include "core/walls.h"
+#include "core/motion/walls.h"
+#include "plan/mission_fields.h"
 #include "team/messages.h"
 #include "tests/team/rich_mission.h"
 
@@ -153,7 +153,7 @@ TEST(Plan, CarriesEachSwitchByItself) {
   EXPECT_GE(count, 10);
 }
 
-// ops/spy/Plan.java and the plans of recorded runs rely on these bytes. A new field must not change
+// cli/spy/Plan.java and the plans of recorded runs rely on these bytes. A new field must not change
 // them.
 TEST(Plan, KeepsTheBytesOfItsFields) {
   Mission mission = rich_mission();

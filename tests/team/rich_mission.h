@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/mission_fields.h"
+#include "plan/mission_fields.h"
 
 namespace ergocast::test {
 

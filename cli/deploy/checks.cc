@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares the roles of all hosts with the mission, and lists the processes that each host
+// starts.
+#include <algorithm>
+
+#include "cli/deploy/deploy.h"
+
+namespace ergocast {
+namespace {
+
+using Hosts = std::vector<DeployHost>;
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
+std::vector<std::string> names_with(const Hosts& hosts, bool DeployHost::*role) {
+  std::vector<std::string> names;
+  for (const DeployHost& host : hosts) {
+    if (host.*role) names.push_back(host.name);
+  }
+  return names;
+}
+
+void check_single_roles(const Hosts& hosts, const std::string& file,
+                        std::vector<Problem>& problems) {
+  const auto at_most_one = [&](const char* role, const std::vector<std::string>& names) {
+    if (names.size() < 2) return;
+    problems.push_back({file, std::string(role) + " is the role of several hosts: " + joined(names),
+                        std::string("leave ") + role + " to one of them"});
+  };
+  const auto coordinators = names_with(hosts, &DeployHost::coordinator);
+  at_most_one("coordinator", coordinators);
+  if (coordinators.empty()) {
+    problems.push_back({file, "no host is the coordinator", "give the role coordinator to one"});
+  }
+  at_most_one("logger", names_with(hosts, &DeployHost::logger));
+  const auto worlds = names_with(hosts, &DeployHost::sim);
+  const auto drivers = names_with(hosts, &DeployHost::driver);
+  at_most_one("sim", worlds);
+  if (worlds.empty() && drivers.empty()) {
+    problems.push_back(
+        {file, "nobody moves the agents",
+         "give the role sim to one host, or driver to those whose own program does"});
+  }
+  if (!worlds.empty() && !drivers.empty()) {
+    problems.push_back(
+        {file, "there are a simulated world and drivers", "leave out sim, or every driver"});
+  }
+}
+
+}  // namespace
+
+std::vector<Problem> problems_of(const Hosts& hosts, const DeployMission& mission,
+                                 const std::string& file, bool apart) {
+  std::vector<Problem> problems;
+  check_single_roles(hosts, file, problems);
+  std::size_t agents = 0;
+  for (const DeployHost& host : hosts) agents += host.agents.size();
+  if (agents < static_cast<std::size_t>(mission.quorum)) {
+    problems.push_back({file,
+                        std::to_string(agents) + " agents are fewer than the quorum of " +
+                            std::to_string(mission.quorum) + " of " + mission.name,
+                        "add agents, or lower agents.quorum in the scenario"});
+  }
+  if (mission.lockstep && !names_with(hosts, &DeployHost::driver).empty()) {
+    problems.push_back(
+        {file,
+         mission.name + " is in lockstep, and robots follow the clock: their drivers refuse it",
+         "give --realtime, or write pace: REALTIME in the scenario, or give the role "
+         "sim in the place of driver"});
+  }
+  if (apart && mission.url.ttl == 0) {
+    LcmUrl wider = mission.url;
+    wider.ttl = 1;
+    problems.push_back({"--lcm-url",
+                        "ttl=0 keeps every message on its own host or in its own container",
+                        "give '" + wider.base() + "'"});
+  }
+  return problems;
+}
+
+std::string roles_of(const DeployHost& host) {
+  std::vector<std::string> roles;
+  if (host.coordinator) roles.push_back("coordinator");
+  if (host.logger) roles.push_back("logger");
+  if (host.sim) roles.push_back("simulated world");
+  if (host.driver) roles.push_back("driver (not ours)");
+  std::string ids;
+  for (const int id : host.agents) ids += ' ' + std::to_string(id);
+  if (!ids.empty()) roles.push_back((host.agents.size() == 1 ? "agent" : "agents") + ids);
+  return joined(roles);
+}
+
+std::vector<DeployProcess> processes_of(const DeployHost& host) {
+  std::vector<DeployProcess> processes;
+  if (host.logger) processes.push_back({"logger", {"ergocast-logger", "--out", "record"}});
+  if (host.sim) processes.push_back({"sim", {"ergocast-sim"}});
+  for (const int id : host.agents) {
+    const std::string number = std::to_string(id);
+    processes.push_back({"agent-" + number, {"ergocast-agent", "--id", number}});
+  }
+  return processes;
+}
+
+}  // namespace ergocast

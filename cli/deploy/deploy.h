@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The assignment of processes to computers, and the files that start a mission on them. This code
+// opens no file and starts no process. It does not trust names and paths.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "runtime/bus/lcm_url.h"
+#include "scenario/scenario.h"
+
+namespace ergocast {
+
+struct DeployHost {
+  std::string name;     ///< from the hosts file; a safe file name
+  std::string address;  ///< "user@computer" for ssh; the name, if the file gives none
+  bool coordinator = false, logger = false, sim = false;
+  bool driver = false;      ///< a program of the user replaces the world
+  std::vector<int> agents;  ///< ascending
+};
+
+/// "coordinator, logger, agents 0 1", for people.
+std::string roles_of(const DeployHost& host);
+
+/// Reads a hosts file, one computer in each line: `name [user@computer] role…` with the roles
+/// `coordinator`, `logger`, `sim`, `driver`, `agent N…` and `agents=COUNT` (which takes free
+/// numbers). `#` begins a comment. Returns all problems at once; they name the file as `file`.
+std::variant<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::string_view text,
+                                                                        const std::string& file);
+
+/// The mission to deploy.
+struct DeployMission {
+  std::string name;
+  std::filesystem::path folder;  ///< whole path of the scenario's folder
+  std::vector<std::string>
+      files;  ///< the scenario's file in `folder`, then its maps, relative to it
+  int quorum = 1;
+  bool lockstep = false;
+  /// Options of the coordinator that change the scenario, as the words of a command.
+  std::vector<std::string> overrides;
+  LcmUrl url;
+  /// Whole path of the mission key, as in `ergocast keygen`; empty: none.
+  std::filesystem::path keys;
+  /// Name of the file with the mission's table of modes, which is beside the written files. Empty:
+  /// none, and each host computes the table if the mission needs one.
+  std::string modes;
+};
+
+/// Problems of a valid hosts file with this mission. The problems name the file as `file`.
+/// @param apart  the processes use separate networks: hosts or containers
+std::vector<Problem> problems_of(const std::vector<DeployHost>& hosts, const DeployMission& mission,
+                                 const std::string& file, bool apart);
+
+struct DeployProcess {
+  std::string name;                  ///< "agent-3", "logger", "sim"
+  std::vector<std::string> command;  ///< program and arguments, without the URL
+};
+
+/// All processes but the coordinator, in the order of their start. Records go into "record".
+std::vector<DeployProcess> processes_of(const DeployHost& host);
+
+struct TextFile {
+  std::string name;
+  std::string text;
+  bool executable = false;
+};
+
+/// One script that starts, shows, stops and collects the mission over ssh.
+std::vector<TextFile> ssh_files(const std::vector<DeployHost>& hosts, const DeployMission& mission);
+/// One script that sets up the installed systemd services of every host over ssh.
+std::vector<TextFile> systemd_files(const std::vector<DeployHost>& hosts,
+                                    const DeployMission& mission);
+/// A Compose file for every host; a single host's containers have a bridge of their own.
+std::vector<TextFile> compose_files(const std::vector<DeployHost>& hosts,
+                                    const DeployMission& mission);
+
+}  // namespace ergocast

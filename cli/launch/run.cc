@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast run`: prepares the run directory and the key, starts all processes, watches the
+// mission, and completes the summary.
+#include <poll.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <future>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/launch/launcher.h"
+#include "cli/launch/mission_watch.h"
+#include "cli/watch/page_process.h"
+#include "cli/watch/progress.h"
+#include "cli/watch/run_registry.h"
+#include "cli/mission_options.h"
+#include "cli/record/run_directory.h"
+#include "cli/report_error.h"
+#include "logger/run_record.h"
+#include "logger/summary.h"
+#include "modes/table_file.h"
+#include "plan/plan.h"
+#include "runtime/bus/clock.h"
+#include "runtime/bus/random_identity.h"
+#include "runtime/bus/transport.h"
+#include "runtime/process/key_file.h"
+#include "runtime/process/node.h"
+#include "runtime/process/signals.h"
+#include "runtime/record/sealed_file.h"
+#include "cli/watch/serve_page.h"
+
+namespace ergocast::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+struct RunOptions : MissionOptions {
+  std::optional<LcmUrl> url;  ///< nothing: this host only, on ports that the run reserves
+  MessageAuthenticator authenticator;
+  std::string key_file;  ///< the file of the key in `authenticator`; empty: none
+  std::int64_t event_log_mib = kEventLogMib;
+  bool event_log_zstd = false;
+  fs::path world;                            ///< empty: ergocast-sim
+  std::vector<std::string> world_arguments;  ///< of that program
+  bool watch = false;                        ///< serves a page
+  PageOptions page;
+};
+
+constexpr auto kNoteAfter = 500ms;
+constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
+
+/// Returns when all processes have ended.
+/// @param page  may be null
+void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, PageProcess* page,
+               StopSignals& signals, ProgressDisplay& display) {
+  int asked = 0;
+  while (!launcher.all_ended()) {
+    const bool over = mission.stage() == Stage::kOver;
+    transport.deliver_until(now() + (over ? kAttendPeriodAtEnd : kAttendPeriod), signals.fd());
+    if (const int count = signals.take(); count > 0) {
+      asked += count;
+      if (asked == 1) display.print("ending the mission in order; once more to end it now");
+      if (asked == 2) launcher.escalate(1);
+      if (asked > 2) launcher.escalate(2);
+      mission.stop(false, "Ctrl-C or SIGTERM");
+    }
+    if (mission.stopping()) launcher.expect_end(now());
+    launcher.attend(now(), mission.stage());
+    if (page != nullptr) page->attend(now());
+    // Without a coordinator no other process detects an overdue tick.
+    if (const auto overdue = mission.overdue(now()); overdue && launcher.leaderless()) {
+      launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
+    }
+    if (mission.deserted(now()) && launcher.leaderless()) {
+      launcher.fail("no agent flies any more, and no coordinator is left to admit one");
+    }
+    if (launcher.failure()) mission.stop(true, *launcher.failure());
+    mission.repeat(transport, now(), launcher.led());
+    mission.answer(transport, now());
+  }
+  launcher.attend(now(), mission.stage());
+}
+
+/// The summary of a run whose logger left none.
+nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
+  const Timing& timing = scenario.mission().timing;
+  return {{"run_id", to_hex(run)},
+          {"result", "failed"},
+          {"reason", "the logger left no summary"},
+          {"version", version()},
+          {"build", build_text()},
+          {"scenario", scenario.name()},
+          {"scenario_hash", plan_hash(encode_plan(scenario.mission()))},
+          {"seed", scenario.mission().seed},
+          {"mode", timing.pace == Pace::kLockstep ? "lockstep" : "realtime"},
+          {"dt_s", timing.dt_s},
+          {"tick_count", timing.tick_count}};
+}
+
+/// The summary that this run's logger has written. Any other file of that name does not count.
+std::optional<nlohmann::ordered_json> loggers_summary(const Launcher::Setup& setup) {
+  auto read = read_summary(setup.run_dir);
+  auto* const summary = std::get_if<nlohmann::ordered_json>(&read);
+  if (summary == nullptr || !summary->is_object()) return std::nullopt;
+  for (const char* key : {"run_id", "result", "reason"}) {
+    if (!summary->contains(key) || !(*summary)[key].is_string()) return std::nullopt;
+  }
+  if ((*summary)["run_id"] != to_hex(setup.run)) return std::nullopt;
+  return std::move(*summary);
+}
+
+/// The logger's summary with the values that only the launcher knows.
+nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher::Setup& setup,
+                                       const Launcher& launcher, const MissionWatch& mission) {
+  const auto written = loggers_summary(setup);
+  auto summary = written ? *written : makeshift_summary(scenario, setup.run);
+  const auto fail = [&summary](const std::string& reason) {
+    summary["result"] = "failed";
+    summary["reason"] = reason;
+  };
+  const bool complete = mission.complete() && !mission.failed() && !mission.stopping();
+  const bool cut_short = complete && (!written || summary["result"] == "stopped");
+  if (cut_short) {
+    const char* why = launcher.record_broken() ? "" : ": the logger fell behind";
+    fail(std::string("the mission is complete, but its record is not") + why);
+  }
+  if (launcher.failure()) fail(*launcher.failure());
+  if (mission.failed()) fail(mission.reason());
+  summary["reason"] = summary.value("reason", "") + launcher.losses();
+  summary["authenticated"] = !setup.key_file.empty();
+  summary["restarts"] = launcher.restarts();
+  summary["record_complete"] = !launcher.record_broken() && !cut_short;
+  auto processes = nlohmann::ordered_json::array();
+  for (const ProcessFate& process : launcher.fates()) {
+    processes.push_back(
+        {{"name", process.name}, {"restarts", process.restarts}, {"end", process.fate}});
+  }
+  summary["processes"] = std::move(processes);
+  return summary;
+}
+
+void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDisplay& display) {
+  display.print("run " + to_hex(setup.run) + " of " + scenario.name() + " into " +
+                setup.run_dir.string());
+  display.print("  swarm    " + setup.url.of(Bus::kSwarm));
+  display.print("  world    " + setup.url.of(Bus::kWorld));
+  display.print("  command  " + setup.url.of(Bus::kCommand));
+  display.print("  key      " +
+                (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
+}
+
+/// The registry's entry of this run, for other commands of this user.
+LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
+  return {.run = setup.run,
+          .scenario = scenario.name(),
+          .version = version(),
+          .started = wall_clock_text(),
+          .url = setup.url,
+          .run_dir = fs::absolute(setup.run_dir),
+          .key_file = setup.key_file,
+          .pid = getpid()};
+}
+
+/// The page of the mission, if it is wanted; an error if it cannot be served.
+std::variant<std::unique_ptr<PageProcess>, std::string> begin_page(const RunOptions& options,
+                                                                   const Launcher::Setup& setup,
+                                                                   ProgressDisplay& display) {
+  if (!options.watch) return std::unique_ptr<PageProcess>();
+  auto started = PageProcess::start({.program = setup.programs / "ergocast",
+                                     .run_dir = setup.run_dir,
+                                     .url = setup.url,
+                                     .run = setup.run,
+                                     .key_file = setup.key_file,
+                                     .page = options.page},
+                                    display);
+  if (auto* page = std::get_if<0>(&started)) {
+    display.print("  page     " + (*page)->url());
+    display.also_to([page = page->get()](const std::string& line) { page->print(line); });
+  }
+  return started;
+}
+
+/// Shows the record on the page until Ctrl-C.
+void show_record(PageProcess& page, StopSignals& signals) {
+  constexpr int kAttend_ms = 100;
+  page.finish();
+  std::printf("  page      %s, until Ctrl-C\n", page.url().c_str());
+  std::fflush(stdout);
+  for (pollfd stop{signals.fd(), POLLIN, 0}; poll(&stop, 1, kAttend_ms) <= 0;) page.attend(now());
+}
+
+/// The program that replaces the world; an error if it does not exist.
+std::variant<fs::path, std::string> world_program(const fs::path& wanted,
+                                                  const fs::path& programs) {
+  if (wanted.empty()) return programs / "ergocast-sim";
+  const fs::path program = wanted.has_parent_path() ? fs::absolute(wanted) : programs / wanted;
+  if (access(program.c_str(), X_OK) == 0 && fs::is_regular_file(program)) return program;
+  return "--world " + wanted.string() + ": there is no program " + program.string() +
+         " (name one that takes --lcm-url and --run-id, with its folder)";
+}
+
+/// Makes the sealed files that the processes inherit, from the data in this process. An error if
+/// memory is missing.
+/// @pre options.seal can sign
+std::optional<std::string> seal_files(const RunOptions& options, const Mission& mission,
+                                      Launcher::Setup& setup) {
+  std::optional<std::string> problem;
+  const auto keep = [&problem](const std::string& name, std::span<const std::byte> bytes,
+                               std::optional<SealedFile>& file) {
+    auto made = SealedFile::make(name, bytes);
+    if (auto* sealed = std::get_if<SealedFile>(&made)) file = std::move(*sealed);
+    if (auto* why = std::get_if<std::string>(&made)) problem = std::move(*why);
+  };
+  keep(kPlanFile, encode_plan(mission), setup.plan);
+  if (const auto& table = mission.basis.table)
+    keep(table_file_name(table->hash), table->file, setup.modes);
+  if (const MissionKey* key = options.authenticator.key()) {
+    const std::string text = key_text(*key, true);
+    keep("key", std::as_bytes(std::span(text)), setup.key);
+  }
+  return problem;
+}
+
+/// Runs the mission. LCM works and the run directory is ready.
+int run_mission(const RunOptions& options, const Scenario& scenario, const Launcher::Setup& setup,
+                StopSignals& signals) {
+  const MessageAuthenticator& authenticator = options.authenticator;
+  ProgressDisplay display;
+  MissionWatch mission(setup.run, scenario.mission().timing, display,
+                       scenario.mission().basis.free_domain);
+  auto opened = Transport::open(
+      setup.url, setup.run, authenticator, subscriptions_of(MissionWatch::kRole),
+      {.on_message = [&mission](const Message& message, Bus bus, AgentId transmitter) {
+        mission.receive(message, bus, transmitter, now());
+      }});
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
+    return report_error(kExitUnavailable, *problem);
+  }
+  announce(setup, scenario, display);
+  const auto watching = begin_page(options, setup, display);
+  if (const auto* problem = std::get_if<std::string>(&watching)) {
+    return report_error(kExitUnavailable, *problem);
+  }
+  PageProcess* const page = std::get<0>(watching).get();
+  auto entry = RunEntry::write(live_run(setup, scenario));
+  if (const auto* problem = std::get_if<std::string>(&entry)) {
+    display.print("warning: " + *problem + "; give the other commands --lcm-url");
+  }
+  Launcher launcher(setup, display);
+  if (const auto problem = launcher.start()) {
+    launcher.escalate(2);
+    return report_error(kExitFailed, *problem);
+  }
+  supervise(launcher, mission, *std::get<0>(opened), page, signals, display);
+  entry = std::string();
+  display.end();
+
+  const auto summary = amended_summary(scenario, setup, launcher, mission);
+  const auto unwritten = write_file(setup.run_dir / kSummaryFile, to_text(summary));
+  conclude(setup.run_dir, summary, scenario);
+  if (page != nullptr) show_record(*page, signals);
+  if (unwritten) return report_error(kExitFailed, *unwritten);
+  return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed
+                                                                             : kExitDone;
+}
+
+/// Reads the scenario; if that takes long, a line says why nothing happens.
+std::optional<Scenario> load_with_a_note(const RunOptions& options) {
+  auto loading =
+      std::async(std::launch::async, load_or_complain, options.scenario, options.overrides);
+  if (loading.wait_for(kNoteAfter) == std::future_status::timeout)
+    print_message("reading " + options.scenario.string() +
+                  ": the modes of a free domain, or large maps, take some seconds");
+  return loading.get();
+}
+
+int run(const RunOptions& options) {
+  const auto scenario = load_with_a_note(options);
+  if (!scenario) return kExitBadInput;
+  if (!options.authenticator.can_sign())
+    return report_error(kExitBadInput, cannot_sign(options.key_file));
+  StopSignals signals;
+  Launcher::Setup setup;
+  setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
+  const auto world = world_program(options.world, setup.programs);
+  if (const auto* problem = std::get_if<std::string>(&world))
+    return report_error(kExitBadInput, *problem);
+  setup.world = std::get<fs::path>(world);
+  setup.world_arguments = options.world_arguments;
+  setup.agents = static_cast<int>(scenario->mission().starts_m.size());
+  for (const AgentKind& kind : scenario->mission().kinds)
+    setup.kinds.insert(setup.kinds.end(), static_cast<std::size_t>(kind.count), kind.name);
+  setup.run = random_identity();
+  if (!options.key_file.empty()) setup.key_file = fs::absolute(options.key_file);
+  setup.event_log_mib = options.event_log_mib;
+  setup.event_log_zstd = options.event_log_zstd;
+  setup.url = options.url.value_or(LcmUrl{});
+  if (const auto problem = why_unreachable(setup.url))
+    return report_error(kExitUnavailable, *problem);
+  const auto ports = options.url ? std::nullopt : PortReservation::take(setup.run);
+  if (!options.url) {
+    if (!ports)
+      return report_error(kExitUnavailable, "no free ports in 24000 to 26999; give --lcm-url");
+    setup.url.base_port = ports->base_port();
+  }
+  const auto prepared = prepare_run_directory(options.out, *scenario);
+  if (const auto* problem = std::get_if<std::string>(&prepared)) {
+    return report_error(kExitBadInput, *problem);
+  }
+  setup.run_dir = std::get<fs::path>(prepared);
+  if (const auto problem = seal_files(options, scenario->mission(), setup))
+    return report_error(kExitFailed, *problem);
+  return run_mission(options, *scenario, setup, signals);
+}
+
+void add_run_url_option(CLI::App& command, RunOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--lcm-url",
+          [&options](const std::string& text) {
+            auto parsed = LcmUrl::parse(text);
+            if (const auto* problem = std::get_if<std::string>(&parsed)) {
+              throw CLI::ValidationError("--lcm-url", *problem);
+            }
+            options.url = std::get<LcmUrl>(parsed);
+          },
+          "Base URL of the three buses (default: this host, free ports of the run's own)")
+      ->type_name("URL");
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("run", "Run a mission as processes over LCM on this host");
+  auto options = std::make_shared<RunOptions>();
+  add_mission_options(*command, *options);
+  add_run_url_option(*command, *options);
+  add_key_option(*command, options->authenticator, &options->key_file);
+  add_event_log_options(*command, options->event_log_mib, options->event_log_zstd);
+  command
+      ->add_option(
+          "--world", options->world,
+          "Program that replaces ergocast-sim: a driver of robots or another simulation; a "
+          "name without '/' is in the folder of ergocast")
+      ->type_name("PROGRAM");
+  command
+      ->add_option("--world-arg", options->world_arguments,
+                   "Argument of that program, as in --world-arg=--robots --world-arg=quadrotors; "
+                   "once for each argument")
+      ->type_name("ARG")
+      ->allow_extra_args(false)
+      ->needs("--world");
+  command->add_flag("--watch", options->watch,
+                    "Show the mission in a browser, and afterwards its record, until Ctrl-C");
+  add_page_options(*command, options->page);
+  for (const char* option : {"--port", "--listen"}) command->get_option(option)->needs("--watch");
+  command->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sends the same STOP every 0.1 s, each time with a new sequence number.
+#include "cli/launch/stop_request.h"
+
+#include <chrono>
+#include <utility>
+
+#include "runtime/bus/random_identity.h"
+#include "runtime/process/node.h"
+
+namespace ergocast::cli {
+namespace {
+
+constexpr auto kPeriod = std::chrono::milliseconds(100);
+
+}  // namespace
+
+StopRequest::StopRequest(RunId run, bool failed, std::string reason) {
+  stop_.header = {run, kOperator, random_identity(), 0, 0};
+  stop_.failed = failed;
+  stop_.reason = std::move(reason);
+}
+
+void StopRequest::repeat(Transport& transport, Instant now, bool at_once, Tick newest) {
+  // Sends at once when the tick becomes known, because a request without it may be ignored.
+  const bool knows_now = stop_.header.tick == 0 && newest > 0;
+  if (now < next_ && stop_.now == at_once && !knows_now) return;
+  next_ = now + kPeriod;
+  stop_.header.tick = newest;
+  stop_.now = at_once;
+  for (const Bus bus : {Bus::kCommand, Bus::kSwarm}) {  // the vehicles first
+    ++stop_.header.sequence;
+    transport.publish({bus, stop_});
+  }
+}
+
+}  // namespace ergocast::cli

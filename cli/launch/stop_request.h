@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Repeats STOP: `ergocast run` sends it to its own mission, `ergocast stop` to any mission.
+#pragma once
+
+#include <string>
+
+#include "core/base/ids.h"
+#include "runtime/bus/transport.h"
+#include "team/messages.h"
+
+namespace ergocast::cli {
+
+class StopRequest {
+ public:
+  /// @param failed  whether the mission is to count as failed
+  StopRequest(RunId run, bool failed, std::string reason);
+
+  /// Sends STOP on every bus with a receiver for it, if the last one was long enough ago.
+  /// @param at_once  all processes stop at once and the vehicles stand still; otherwise only the
+  ///                 coordinator obeys and ends the mission in order
+  /// @param newest   the newest known tick of the mission; 0 if none is known. Processes ignore a
+  /// request that names an old tick
+  void repeat(Transport& transport, Instant now, bool at_once, Tick newest);
+
+ private:
+  Stop stop_;
+  Instant next_{};
+};
+
+}  // namespace ergocast::cli

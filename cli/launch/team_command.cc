@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps a MonitoredRun for each received run, up to a limit.
+#include "cli/launch/team_command.h"
+
+#include <algorithm>
+
+#include "cli/watch/diagnose_silence.h"
+
+namespace ergocast::cli {
+namespace {
+
+constexpr auto kTurnTime = std::chrono::milliseconds(20);
+/// The number of runs beyond kMostRuns that are kept.
+constexpr std::size_t kMostInCrowd = 256;
+
+}  // namespace
+
+int TeamCommand::carry_out() {
+  if (const auto failed = open()) return *failed;
+  return act();
+}
+
+std::optional<int> TeamCommand::open() {
+  if (!options_.authenticator.can_sign())
+    return report_error(kExitBadInput, cannot_sign(options_.key_file));
+  auto opened = listen_to_teams(
+      options_,
+      [this](const Message& message, Bus bus, AgentId transmitter) {
+        receive(message, bus, transmitter);
+      },
+      [this](const Message& message, Bus, AgentId) { replay_ = header_of(message).run; });
+  if (const auto* problem = std::get_if<std::string>(&opened))
+    return report_error(kExitUnavailable, *problem);
+  transport_ = std::get<0>(std::move(opened));
+  since_ = now();
+  return std::nullopt;
+}
+
+void TeamCommand::receive(const Message& message, Bus bus, AgentId transmitter) {
+  const RunId run = header_of(message).run;
+  if (run == 0) return;
+  if (runs_.size() < kMostRuns || runs_.contains(run)) {
+    runs_.try_emplace(run, run, since_).first->second.receive(message, bus, transmitter, now());
+  } else if (crowd_.size() < kMostInCrowd || crowd_.contains(run)) {
+    Tick& tick = crowd_[run];
+    tick = std::max(tick, header_of(message).tick);
+  }
+}
+
+bool TeamCommand::look_around() {
+  const auto enough = [this] {
+    const bool one = options_.run != 0 || waited() >= kLookAround;
+    return runs_.size() > 1 || (!runs_.empty() && one) || waited() >= kListeningTime;
+  };
+  while (!enough()) {
+    if (!listen()) return false;
+  }
+  return true;
+}
+
+bool TeamCommand::listen() {
+  transport_->deliver_until(now() + kTurnTime, signals_.fd());
+  interrupted_ = interrupted_ || signals_.take() > 0;
+  return !interrupted_;
+}
+
+int TeamCommand::nobody() const {
+  if (replay_ == 0) return report_error(kExitFailed, why_nobody(options_, *transport_));
+  return report_error(
+      kExitFailed,
+      "what is heard on " + options_.url.base() + " is a replay of run " + to_hex(replay_) +
+          ": no team flies, and nobody can obey. Ctrl-C ends `ergocast replay` where it runs");
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The common part of `ergocast stop`, `pause` and `resume`. They listen for the runs on a URL and
+// send a request to one of them. Then they wait until its messages show that it obeys.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "cli/report_error.h"
+#include "cli/team/team_monitor.h"
+#include "runtime/bus/clock.h"
+#include "runtime/bus/transport.h"
+#include "runtime/process/node.h"
+#include "runtime/process/signals.h"
+
+namespace ergocast::cli {
+
+class TeamCommand {
+ public:
+  /// @param options  outlives this object
+  explicit TeamCommand(const BusOptions& options) : options_(options) {}
+  virtual ~TeamCommand() = default;
+
+  /// Opens the buses and acts. Prints errors; returns the exit code.
+  int carry_out();
+  /// Only opens the buses. If they cannot be used, prints an error and returns the exit code.
+  std::optional<int> open();
+  /// Whether a signal arrived while it listened.
+  bool was_interrupted() const { return interrupted_; }
+
+ protected:
+  /// Finds the run, sends the request and reports the result; returns the exit code.
+  virtual int act() = 0;
+
+  /// How long to wait for the first process, for a coordinator, and for a coordinator's answer.
+  static constexpr std::chrono::seconds kListeningTime{3}, kAnswerPatience{5};
+  /// Longer than the interval between an agent's messages, so that every other run on this URL is
+  /// detected.
+  static constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
+
+  /// Listens until a run is received, and any other run on this URL would be. False if a signal
+  /// arrived.
+  bool look_around();
+  /// Listens for one turn. False if a signal arrived.
+  bool listen();
+  auto waited() const { return now() - since_; }
+
+  int nobody() const;
+  int choose() const { return report_error(kExitBadInput, choice_of(runs_)); }
+  int interrupted() const {
+    return report_error(kExitFailed, "interrupted before the team was seen to obey");
+  }
+
+  std::unique_ptr<Transport> transport_;
+  std::map<RunId, MonitoredRun> runs_;
+  /// Runs beyond kMostRuns since it was last cleared, each with its newest tick.
+  std::map<RunId, Tick> crowd_;
+  Instant since_{};
+
+ private:
+  void receive(const Message& message, Bus bus, AgentId transmitter);
+
+  const BusOptions& options_;
+  StopSignals signals_;
+  bool interrupted_ = false;
+  RunId replay_ = 0;  // of the newest message that `ergocast replay` sent; 0: none
+};
+
+}  // namespace ergocast::cli

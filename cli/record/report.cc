@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast report`: reads the plan from a record, makes the page of that record again, and lets
+// Python draw the figures.
+#include "report/report.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/mission_options.h"
+#include "cli/record/run_directory.h"
+#include "cli/report_error.h"
+#include "cli/team/recorded_team.h"
+#include "runtime/process/node.h"
+#include "runtime/process/shipped_folder.h"
+#include "text/printable.h"
+
+namespace ergocast::cli {
+namespace {
+
+/// Debian's, for which python3-ergocast is built.
+constexpr const char* kPython = "/usr/bin/python3";
+/// Arguments: the folder of the package of a build, or "", and the run directory.
+constexpr const char* kDraw = R"(import sys
+sys.path[:0] = filter(None, sys.argv[1:2])
+try:
+    import matplotlib
+    from ergocast import plot
+except ModuleNotFoundError as missing:
+    package = "python3-" + missing.name.split(".")[0]
+    print(f"no figures: they need {package}; as root: apt-get install {package}", file=sys.stderr)
+    sys.exit(3)
+sys.exit(plot.main(sys.argv[2])))";
+
+/// Becomes Python.
+int draw_figures(const std::filesystem::path& run_dir) {
+  std::fflush(stdout);
+  // -P: what happens to lie in the working directory is not imported.
+  std::vector<std::string> words{kPython, "-P", "-c", kDraw, python_of_this_build(), run_dir};
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv(kPython, arguments.data());
+  return report_error(kExitUnavailable, std::string("no figures: ") + kPython + ": " +
+                                            std::strerror(errno) +
+                                            "; as root: apt-get install python3-ergocast");
+}
+
+int report(const std::filesystem::path& run_dir, bool figures) {
+  const auto mission = recorded_mission_or_complain(run_dir);
+  if (!mission) return kExitBadInput;
+  std::string log_problem;
+  const auto team = recorded_team(run_dir, *mission, &log_problem);
+  if (const auto problem = write_report(run_dir, *mission, team))
+    return report_error(kExitBadInput, *problem);
+  if (!log_problem.empty()) {
+    std::fprintf(stderr, "the report lacks the rest of the event log: %s\n",
+                 printable(log_problem).c_str());
+  }
+  std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());
+  return figures ? draw_figures(run_dir) : kExitDone;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("report", "Make a run's report again");
+  struct Options {
+    std::filesystem::path run_dir;
+    bool figures = false;
+  };
+  auto options = std::make_shared<Options>();
+  add_run_dir_argument(*command, options->run_dir);
+  command->add_flag("--figures", options->figures,
+                    "Also draw DIR/figures/*.svg and *.pdf; needs python3-ergocast and "
+                    "python3-matplotlib");
+  command->callback([&action, options] {
+    action = [options] { return report(options->run_dir, options->figures); };
+  });
+}
+
+}  // namespace ergocast::cli

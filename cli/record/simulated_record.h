@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Simulates a mission into a run directory: for `ergocast simulate`, and for Python.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+
+#include "cli/record/simulated_events.h"
+#include "lab/simulation.h"
+#include "logger/run_record.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::cli {
+
+/// The result of a simulated mission.
+struct SimulatedRecord {
+  nlohmann::ordered_json summary;
+  bool failed = false;  ///< the mission, not its record
+};
+
+/// Simulates the mission until it is over or the disk is full, and writes the tables and
+/// summary.json.
+/// @param record  empty; in a folder of prepare_run_directory()
+/// @param look    called every few hundred events; it may end the simulation
+/// @param events  writes the event log, too; may be null
+/// @return        the error if the record is incomplete
+std::variant<SimulatedRecord, std::string> simulate_into(
+    RunRecord& record, const Scenario& scenario, const std::function<void(lab::Simulation&)>& look,
+    SimulatedEvents* events = nullptr);
+
+}  // namespace ergocast::cli

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast simulate`: simulates a mission into a run directory and shows how far it is.
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/watch/progress.h"
+#include "cli/mission_options.h"
+#include "cli/record/run_directory.h"
+#include "cli/record/simulated_events.h"
+#include "cli/record/simulated_record.h"
+#include "cli/report_error.h"
+#include "cli/study/trials.h"
+#include "runtime/process/signals.h"
+
+namespace ergocast::cli {
+namespace {
+
+void show(const lab::Simulation& simulation, const Mission& mission, ProgressDisplay& display) {
+  const Recorder& recorder = simulation.recorder();
+  MissionProgress at;
+  at.tick = at.world_tick = recorder.next_row();
+  at.tick_count = mission.timing.tick_count;
+  at.dt_s = mission.timing.dt_s;
+  at.ergodic_metric = recorder.facts().ergodic_metric_last;
+  at.agents_alive = at.agents_expected = static_cast<int>(mission.starts_m.size());
+  at.free_domain = mission.basis.free_domain;
+  display.show(at);
+}
+
+/// Shows the progress on the terminal; a signal ends the simulation.
+std::variant<SimulatedRecord, std::string> simulate_and_show(RunRecord& record,
+                                                             const Scenario& scenario,
+                                                             bool event_log) {
+  StopSignals signals;
+  ProgressDisplay display;
+  std::optional<SimulatedEvents> events;
+  if (event_log) events.emplace(record.folder(), scenario.mission());
+  const auto look = [&](lab::Simulation& simulation) {
+    show(simulation, scenario.mission(), display);
+    if (signals.take() > 0) simulation.end("Ctrl-C or SIGTERM");
+  };
+  return simulate_into(record, scenario, look, events ? &*events : nullptr);
+}
+
+int simulate(const MissionOptions& options, bool event_log) {
+  const auto scenario = load_or_complain(options.scenario, options.overrides);
+  if (!scenario) return kExitBadInput;
+  const auto prepared = prepare_run_directory(options.out, *scenario);
+  if (const auto* problem = std::get_if<std::string>(&prepared)) {
+    return report_error(kExitBadInput, *problem);
+  }
+  const auto& folder = std::get<std::filesystem::path>(prepared);
+  auto created = RunRecord::create(folder);
+  if (const auto* problem = std::get_if<std::string>(&created)) {
+    return report_error(kExitBadInput, *problem);
+  }
+  const auto simulated = simulate_and_show(*std::get<0>(created), *scenario, event_log);
+  if (const auto* error = std::get_if<std::string>(&simulated)) {
+    return report_error(kExitFailed, *error);
+  }
+  const auto& result = std::get<SimulatedRecord>(simulated);
+  conclude(folder, result.summary, *scenario);
+  return result.failed ? kExitFailed : kExitDone;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("simulate", "Run a mission in this process, in virtual time");
+  auto options = std::make_shared<TrialsOptions>();
+  add_mission_options(*command, options->mission);
+  auto* seeds = add_seeds_option(*command, options->seeds,
+                                 "One mission for each seed, in the laboratory; --out is then "
+                                 "a CSV file")
+                    ->excludes("--seed");
+  command
+      ->add_option("--faults", options->faults,
+                   "Faults: a file, or \"swarm\" to draw them by the seed")
+      ->type_name("FILE|swarm")
+      ->needs(seeds);
+  add_jobs_option(*command, options->jobs)->needs(seeds);
+  auto event_log = std::make_shared<bool>(false);
+  command->add_flag("--event-log", *event_log, "Write every message, as run does: events-000.lcm …")
+      ->excludes(seeds);
+  command->callback([&action, options, event_log, seeds] {
+    action = [options, event_log, many = seeds->count() > 0] {
+      return many ? trials(*options) : simulate(options->mission, *event_log);
+    };
+  });
+}
+
+}  // namespace ergocast::cli

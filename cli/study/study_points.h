@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points of a study: every scenario with every combination of the varied fields, compiled.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cli/study/study_directory.h"
+#include "cli/study/study_options.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::cli {
+
+struct StudyPoints {
+  StudyIdentity identity;
+  std::vector<Scenario> scenarios;    ///< one for each point
+  std::vector<std::string> missions;  ///< the command `ergocast run` of each point, without a seed
+};
+
+/// Returns the points, or all problems of all points, each once.
+std::variant<StudyPoints, std::vector<std::string>> study_points(const StudyOptions& options);
+
+}  // namespace ergocast::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page and the terminal show the same summaries.
+#include "cli/study/study_results.h"
+
+#include <cstdio>
+
+#include "text/shell_word.h"
+#include "logger/run_record.h"
+#include "runtime/process/node.h"
+#include "studies/study_page.h"
+#include "text/printable.h"
+
+namespace ergocast::cli {
+
+std::optional<std::string> conclude(StudyDirectory& directory, const StudyResults& results) {
+  if (auto problem = directory.sort()) return problem;
+  const auto summaries = studies::summarize(results.study, directory.rows());
+  std::printf("%s", studies::study_text(results.study, summaries).c_str());
+  std::printf("\none mission of each row, here with the first seed:\n");
+  std::vector<std::string> missions = results.missions;
+  for (std::string& mission : missions) {
+    mission += " --seed " + std::to_string(results.first_seed);
+    std::printf("  %s\n", printable(mission).c_str());
+  }
+  const std::string command = results.command + " --out " + shell_word(results.out.string());
+  return write_file(results.out / "report.html",
+                    studies::study_page({results.study, version(), command, missions}, summaries));
+}
+
+}  // namespace ergocast::cli

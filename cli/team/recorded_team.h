@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The state of a recorded mission's agents over time.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/mission/mission.h"
+
+namespace ergocast::cli {
+
+/// Reads the event log of a run directory as a listener would have received it. Returns null if
+/// there is no log, else {"t": [mission time, …], "metric": [median of the agents' φ², …],
+/// "agents": {"0": {"state": [index into "words", …], "phase": [index into "phases", …],
+/// "silent_s", "metric", "age_s", "lag_s", "lost", "drops", "waits_for"}, …}, "words", "phases",
+/// "incidents"}. Each list has an item for each t; null: not known.
+///
+/// A time without any message is an absence of the logger, and is left out. Absences of the logger
+/// itself are not reported, because its log cannot show them.
+/// @param problem  set to the cause if reading ended before the log's end
+nlohmann::ordered_json recorded_team(const std::filesystem::path& run_dir, const Mission& mission,
+                                     std::string* problem = nullptr);
+
+}  // namespace ergocast::cli

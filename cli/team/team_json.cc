@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes the picture of a team as JSON, with null for unknown values.
+#include <nlohmann/json.hpp>
+
+#include "cli/team/overload.h"
+#include "cli/team/team_text.h"
+
+namespace ergocast {
+namespace {
+
+template <class T>
+nlohmann::ordered_json or_null(bool known, const T& value) {
+  return known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json json_of(const AgentRow& row) {
+  nlohmann::ordered_json json = {{"id", row.author.agent},
+                                 {"incarnation", to_hex(row.author.incarnation)},
+                                 {"state", to_string(row.condition)},
+                                 {"silent_s", row.silent_s},
+                                 {"restarts", row.restarts}};
+  if (!row.kind.empty()) json["kind"] = row.kind;
+  if (!row.status) return json;
+  const AgentStatus& status = *row.status;
+  json["host"] = status.host;
+  json["phase"] = to_string(status.phase);
+  json["tick"] = row.tick;
+  json["waiting_for"] = or_null(status.waiting_for != kUnassigned, name_of(status.waiting_for));
+  json["ergodic_metric"] = or_null(status.answered_tick >= 0, status.ergodic_metric);
+  json["max_staleness_s"] = status.max_staleness_s;
+  json["loop_lag_s"] = status.loop_lag_s;
+  json["blocked_s"] = row.blocked_s;
+  json["blocked_by"] = or_null(status.blocked_by != kUnassigned, status.blocked_by);
+  json["messages_sent"] = status.messages_sent;
+  json["contributions_received"] = status.contributions_received;
+  json["contributions_lost"] = status.contributions_lost;
+  json["kernel_drops"] = status.kernel_drops;
+  for (std::size_t i = 0; i < status.refused.size(); ++i) {
+    json["refused"][to_string(static_cast<Refusal>(i))] = status.refused[i];
+  }
+  json["babbler"] = or_null(status.rate_offender != kUnassigned, status.rate_offender);
+  return json;
+}
+
+}  // namespace
+
+std::string team_json(const TeamPicture& at) {
+  const auto warning = overload_warning(at.missed_deadlines, at.tick, at.agents_expected);
+  nlohmann::ordered_json json = {
+      {"run_id", to_hex(at.run)},
+      {"replay", at.replay},
+      {"authenticated", at.authenticated},
+      {"scenario", or_null(!at.scenario.empty(), at.scenario)},
+      {"state", at.state ? nlohmann::ordered_json(to_string(*at.state)) : nlohmann::ordered_json()},
+      {"reason", at.reason},
+      {"trouble", at.trouble},
+      {"paused", at.paused},
+      {"tick", at.counted},
+      {"tick_count", or_null(at.tick_count > 0, at.tick_count)},
+      {"t_s", or_null(at.dt_s > 0, static_cast<double>(at.counted) * at.dt_s)},
+      {"world_tick", at.tick},
+      {"ergodic_metric", or_null(at.ergodic_metric.has_value(), at.ergodic_metric.value_or(0))},
+      {"free_domain", at.free_domain},
+      {"agents_alive", at.agents_alive},
+      {"agents_expected", at.agents_expected},
+      {"missed_deadlines", at.missed_deadlines},
+      {"late_share", late_share(at.missed_deadlines, at.tick, at.agents_expected)},
+      {"warning", or_null(warning.has_value(), warning.value_or(""))},
+      {"skipped_ticks", at.skipped_ticks},
+      {"clamped_commands", at.clamped_commands},
+      {"forgotten", at.forgotten}};
+  json["holds"] = nlohmann::ordered_json::array();
+  for (const Hold& hold : at.holds)
+    json["holds"].push_back({hold.from, or_null(!hold.open(), hold.until)});
+  json["agents"] = nlohmann::ordered_json::array();
+  for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
+  for (const ProcessRow& row : at.processes) {
+    json["processes"][row.name] = {{"state", row.trouble  ? "silent"
+                                             : !row.heard ? "not heard"
+                                             : at.over    ? "ended"
+                                                          : "alive"},
+                                   {"silent_s", row.silent_s},
+                                   {"incarnation", or_null(row.heard, to_hex(row.incarnation))},
+                                   {"host", or_null(!row.host.empty(), row.host)},
+                                   {"tick", or_null(row.heard, row.tick)}};
+  }
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace ergocast

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stores the last message of every process of a run. A process that is silent for long has ended.
+#include "cli/team/team_monitor.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <utility>
+
+#include "scenario/scenario.h"
+
+namespace ergocast::cli {
+namespace {
+
+/// The maximum number of members. Members of former incarnations are removed when the roster ends
+/// them.
+constexpr std::size_t kMaxIncarnations = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
+constexpr AgentId kProcesses[] = {kLogger, kWorld, kCoordinator};
+
+std::string name_of(AgentId sender) {
+  if (sender >= 0) return "agent " + std::to_string(sender);
+  return sender == kCoordinator ? "the coordinator" : sender == kWorld ? "the world" : "the logger";
+}
+
+}  // namespace
+
+std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
+                                                                      OnMessage on_message,
+                                                                      OnMessage on_replayed) {
+  return Transport::open(
+      options.url, options.run, options.authenticator, subscriptions_of(Role::kMonitor),
+      {.on_message = std::move(on_message), .on_replayed = std::move(on_replayed)});
+}
+
+MonitoredRun::MonitoredRun(RunId run, Instant since)
+    : me_(kRole, {run, kUnassigned, 0}), since_(since) {}
+
+void MonitoredRun::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+  const auto arrival = me_.accept(message, bus, transmitter, now);
+  if (!arrival) return;
+  tick_ = std::max(tick_, arrival->from.tick);
+  std::visit([&](const auto& m) { on(m, *arrival); }, message);
+}
+
+/// An agent may repeat a part long after the coordinator exited; a repetition changes nothing.
+void MonitoredRun::on(const MissionPart& part, const Arrival&) {
+  over_ = over_ || part.state == MissionState::kEnded || part.state == MissionState::kFailed;
+  if (over_ && !part.reason.empty()) reason_ = part.reason;
+  for (const RosterEntry& entry : part.roster) {
+    if (agents_.size() < kMaxIncarnations) agents_.try_emplace(entry.author);
+    if (entry.active_until >= 0) agents_.erase(entry.author);
+  }
+}
+
+void MonitoredRun::on(const AgentStatus& status, const Arrival& arrival) {
+  const Author author{status.header.sender, status.header.incarnation};
+  if (!arrival.fresh || author.agent < 0) return;
+  if (agents_.size() >= kMaxIncarnations && !agents_.contains(author)) return;
+  agents_[author] = status.phase == AgentPhase::kFinished;
+}
+
+/// Each robot may have its own driver, which has its own ticks.
+void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
+  if (!arrival.fresh) return;
+  note_end(arrival, world.last);
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    VehicleSeen& seen = vehicles_[vehicle.id];
+    if (world.header.tick >= seen.tick) seen = {world.header.tick, vehicle.velocity_mps};
+  }
+}
+
+void MonitoredRun::on(const RecordAck& ack, const Arrival& arrival) {
+  if (arrival.fresh) note_end(arrival, ack.last);
+}
+
+/// A process's last message may be read before earlier messages on another bus.
+void MonitoredRun::note_end(const Arrival& arrival, bool ended) {
+  const Author author{arrival.from.sender, arrival.from.incarnation};
+  if (processes_.size() >= kMaxIncarnations && !processes_.contains(author)) return;
+  bool& known = processes_[author];
+  known = known || ended;
+}
+
+bool MonitoredRun::unheard() const {
+  return agents_.empty() && !over_ &&
+         std::none_of(std::begin(kProcesses), std::end(kProcesses),
+                      [this](AgentId process) { return seen(process); });
+}
+
+bool MonitoredRun::stands_still() const {
+  return std::all_of(vehicles_.begin(), vehicles_.end(),
+                     [](const auto& one) { return one.second.velocity_mps.isZero(0); });
+}
+
+bool MonitoredRun::silent(const Author& agent, Instant now) const {
+  return me_.silent(agent, now) && now - since_ >= silence_of(agent.agent);
+}
+
+/// Whether it still sends and has not reported its end. A coordinator that has reported the
+/// mission's end exits by itself.
+bool MonitoredRun::there(AgentId process, Instant now) const {
+  if (!seen(process) || me_.silent(process, now)) return false;
+  if (process == kCoordinator) return !over_;
+  return std::any_of(processes_.begin(), processes_.end(), [process](const auto& one) {
+    return one.first.agent == process && !one.second;
+  });
+}
+
+std::vector<std::string> MonitoredRun::agents_there(Instant now) const {
+  std::vector<std::string> names;
+  for (const auto& [author, finished] : agents_) {
+    if (!finished && !silent(author, now)) names.push_back(name_of(author.agent));
+  }
+  return names;
+}
+
+std::vector<std::string> MonitoredRun::still_there(Instant now) const {
+  std::vector<std::string> names = agents_there(now);
+  for (const AgentId process : kProcesses) {
+    if (there(process, now)) names.push_back(name_of(process));
+  }
+  return names;
+}
+
+std::vector<std::string> MonitoredRun::still_moving(Instant now) const {
+  std::vector<std::string> names = agents_there(now);
+  if (there(kWorld, now) && !stands_still()) names.push_back(name_of(kWorld));
+  if (there(kCoordinator, now)) names.push_back(name_of(kCoordinator));
+  return names;
+}
+
+std::vector<std::string> MonitoredRun::lost(Instant now) const {
+  std::vector<std::string> names;
+  for (const auto& [author, finished] : agents_) {
+    if (!finished && silent(author, now)) names.push_back(name_of(author.agent));
+  }
+  return names;
+}
+
+std::string MonitoredRun::mission_time(Tick tick) const {
+  const Tick counted = me_.counted(tick);
+  std::string text = "tick " + std::to_string(counted);
+  if (!knows_mission()) return text;
+  char time[32];
+  std::snprintf(time, sizeof time, ", t = %.1f s",
+                static_cast<double>(counted) * me_.timing().dt_s);
+  return text + time;
+}
+
+double MonitoredRun::seconds_until(Tick tick) const {
+  const Timing& timing = me_.timing();
+  if (timing.pace == Pace::kLockstep || tick <= tick_) return 0;
+  return static_cast<double>(tick - tick_) * timing.dt_s / timing.realtime_factor;
+}
+
+std::string choice_of(const std::map<RunId, MonitoredRun>& runs) {
+  std::string text = "several runs are heard on this URL; choose one with --run-id:";
+  for (const auto& [run, team] : runs) {
+    text += "\n  --run-id " + to_hex(run) + "  " + std::to_string(team.agents()) + " agents, " +
+            team.mission_time(team.tick());
+  }
+  return text;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return text;
+}
+
+}  // namespace ergocast::cli

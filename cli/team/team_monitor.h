@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The runs received on one URL. `ergocast status` and `ergocast stop` listen to them; `stop` checks
+// here whether a run still sends.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "runtime/bus/transport.h"
+#include "runtime/process/node.h"
+#include "team/messages.h"
+#include "team/participant.h"
+
+namespace ergocast::cli {
+
+/// The maximum number of runs on one URL.
+/// Limit (Commands): runs that `status`, `stop` and `pause` tell apart. Beyond it: others are not
+/// shown; `stop --now` stops them, too, and reports it.
+inline constexpr std::size_t kMostRuns = 16;
+
+/// Called with each message, its bus and its transmitter.
+using OnMessage = std::function<void(const Message&, Bus, AgentId transmitter)>;
+
+/// Receives all messages about the state of teams, and those of replays. An error if LCM cannot be
+/// used.
+std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
+                                                                      OnMessage on_message,
+                                                                      OnMessage on_replayed);
+
+/// The messages received from one run.
+class MonitoredRun {
+ public:
+  static constexpr Role kRole = Role::kMonitor;
+
+  /// @param since  when listening began: until the allowed silence is over, a member counts as
+  /// present although nothing was received from it
+  MonitoredRun(RunId run, Instant since);
+
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
+
+  /// Whether a MISSION, from the coordinator or repeated by an agent, reported the mission's end.
+  bool over() const { return over_; }
+  const std::string& reason() const { return reason_; }
+  /// The newest of the world's ticks, which continue in a pause.
+  Tick tick() const { return tick_; }
+  /// "tick 517, t = 51.7 s": the number of counted ticks before `tick`, and its time.
+  std::string mission_time(Tick tick) const;
+  /// Wall time until the world reaches `tick`; 0 in lockstep [s]. @pre knows_mission()
+  double seconds_until(Tick tick) const;
+  RunId run() const { return me_.run(); }
+  bool knows_mission() const { return me_.knows_mission(); }
+  /// Whether the mission has begun, is known as a whole, and is not over.
+  bool is_running() const {
+    return knows_mission() && me_.follower().state() == MissionState::kRunning && !over_;
+  }
+  /// See core/mission/hold.h. @pre knows_mission()
+  std::span<const Hold> holds() const { return me_.follower().holds(); }
+  bool unheard() const;
+  bool coordinator_seen() const { return seen(kCoordinator); }
+  bool world_seen() const { return !vehicles_.empty(); }
+  /// Whether the whole roster is known.
+  bool knows_roster() const { return me_.follower().revision() >= 0; }
+  /// Whether no vehicle moved in the newest state that names it; true if none was received.
+  bool stands_still() const;
+
+  /// Processes that are not silent and have not reported their end: "agent 2", "the world".
+  std::vector<std::string> still_there(Instant now) const;
+  /// Those of them that may still move a vehicle: a world whose vehicles stand and a logger do not.
+  std::vector<std::string> still_moving(Instant now) const;
+  /// Members that are silent and have not reported that they finished.
+  std::vector<std::string> lost(Instant now) const;
+  int agents() const { return static_cast<int>(agents_.size()); }
+
+ private:
+  template <class M>
+  void on(const M&, const Arrival&) {}  // the other types need no action
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const AgentStatus& status, const Arrival& arrival);
+  void on(const WorldState& world, const Arrival& arrival);
+  void on(const RecordAck& ack, const Arrival& arrival);
+  void note_end(const Arrival& arrival, bool ended);
+  bool seen(AgentId process) const { return me_.liveness().last_sign_of_kind(process).has_value(); }
+  bool silent(const Author& agent, Instant now) const;
+  bool there(AgentId process, Instant now) const;
+  std::vector<std::string> agents_there(Instant now) const;
+
+  struct VehicleSeen {
+    Tick tick = -1;
+    Eigen::Vector3d velocity_mps{0, 0, 0};
+  };
+
+  Participant me_;
+  Instant since_;
+  std::map<Author, bool> agents_;            // whether the agent reported that it finished
+  std::map<Author, bool> processes_;         // worlds and loggers: whether they reported their end
+  std::map<AgentId, VehicleSeen> vehicles_;  // in the newest state that names it
+  Tick tick_ = 0;
+  bool over_ = false;  // the coordinator reported it
+  std::string reason_;
+};
+
+/// Asks to choose one of several runs, and lists them.
+std::string choice_of(const std::map<RunId, MonitoredRun>& runs);
+
+/// "a, b and c".
+std::string listed(const std::vector<std::string>& names);
+
+}  // namespace ergocast::cli

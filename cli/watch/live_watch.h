@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shows a running team on a page, and its record afterwards.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "cli/watch/page_server.h"
+#include "core/mission/mission.h"
+#include "report/target_density.h"
+#include "runtime/process/node.h"
+
+namespace ergocast::cli {
+
+/// Only listens to the buses. Uses one thread: the owner calls listen() and serves the page in
+/// turn.
+class LiveWatch {
+ public:
+  struct Source {
+    BusOptions bus;                  ///< run 0: the first run that is received
+    std::filesystem::path run_dir;   ///< its logs and record are shown; empty: there is none
+    std::optional<Mission> mission;  ///< with its target density, if already known
+    Field density = {};
+  };
+
+  /// Returns an error if LCM cannot be used.
+  static std::variant<std::unique_ptr<LiveWatch>, std::string> open(Source source);
+  virtual ~LiveWatch() = default;
+
+  /// The content for a server; valid as long as this object.
+  virtual PageServer::Content content() = 0;
+  /// Listens until messages arrive, `wake_fd` is readable, or 0.05 s have passed.
+  virtual void listen(int wake_fd) = 0;
+  /// Whether the mission's end has been received.
+  virtual bool over() const = 0;
+  /// Makes the page show the record of `run_dir`, or the received data if there is none. A separate
+  /// thread reads the record, because a long one takes a while.
+  virtual void finish() = 0;
+};
+
+/// The data of a record's page, {"record", "log"}; or the error.
+std::variant<nlohmann::ordered_json, std::string> recorded_page_data(
+    const std::filesystem::path& run_dir, const Mission& mission);
+
+/// The page with these data.
+Connections::Text recorded_page(const nlohmann::ordered_json& data);
+
+}  // namespace ergocast::cli

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps the socket, the pipe and the command, and starts the process with them as often as needed.
+#include "cli/watch/page_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <sstream>
+#include <utility>
+
+#include "runtime/bus/clock.h"
+#include "text/printable.h"
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How long the process may take to exit by itself.
+constexpr auto kEndOfPage = 2s;
+/// Further ends of the process are not reported.
+constexpr int kMostEndsToReport = 5;
+
+/// Uses the format of the processes' logs (runtime/process/logging.cc).
+std::shared_ptr<spdlog::logger> open_log(const std::filesystem::path& file) {
+  try {
+    auto log = std::make_shared<spdlog::logger>(
+        "run", std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string()));
+    log->set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %n: %v");
+    log->flush_on(spdlog::level::info);
+    log->set_error_handler([](const std::string&) {});  // a full disk is reported elsewhere
+    return log;
+  } catch (const spdlog::spdlog_ex&) {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+std::variant<std::unique_ptr<PageProcess>, std::string> PageProcess::start(
+    const Setup& setup, ProgressDisplay& display) {
+  auto opened = PageSocket::open(setup.page);
+  if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
+  std::unique_ptr<PageProcess> page(
+      new PageProcess(setup, std::get<PageSocket>(std::move(opened)), display));
+  page->launch(now());
+  return page;
+}
+
+PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay& display)
+    : socket_(std::move(socket)), display_(display), log_(open_log(setup.run_dir / "log/run.log")) {
+  int ends[2] = {-1, -1};
+  if (pipe2(ends, O_CLOEXEC) == 0) {
+    until_.emplace(ends[0]);
+    running_.emplace(ends[1]);
+    program_.descriptors = {socket_.fd(), until_->fd()};
+  }
+  auto& command = program_.command;
+  command = {setup.program.string(), "run-page", setup.run_dir.string(), "--lcm-url",
+             setup.url.base(),       "--run-id", to_hex(setup.run)};
+  if (!setup.key_file.empty()) {
+    command.insert(command.end(), {"--key-file", setup.key_file.string()});
+  }
+  if (!setup.page.listen.empty()) {
+    command.insert(command.end(), {"--listen", setup.page.listen});
+  }
+  if (!socket_.token().empty()) {
+    program_.environment = {std::string(kPageToken) + '=' + socket_.token()};
+  }
+  program_.log = setup.run_dir / "log/page.log";
+  program_.signal_if_orphaned = SIGKILL;
+}
+
+PageProcess::~PageProcess() {
+  if (!child_) return;
+  child_->send(SIGTERM);
+  for (const Instant until = now() + kEndOfPage; child_->running();) {
+    if (now() > until) child_->send(SIGKILL);
+    poll(nullptr, 0, 10);
+  }
+}
+
+void PageProcess::launch(Instant now) {
+  auto started = Child::start(program_);
+  if (auto* child = std::get_if<Child>(&started)) {
+    child_ = *child;
+  } else {
+    restart_at_ = now + restart_delay(ends_++);
+  }
+}
+
+void PageProcess::attend(Instant now) {
+  if (child_ && !child_->running()) {
+    if (ends_ < kMostEndsToReport) {
+      display_.print("page (process " + std::to_string(child_->pid()) + ") " + child_->fate() +
+                     ", and is started again; the mission does not need it (log/page.log)");
+    }
+    child_.reset();
+    restart_at_ = now + restart_delay(ends_++);
+  }
+  if (!child_ && now >= restart_at_) launch(now);
+}
+
+void PageProcess::print(const std::string& line) {
+  std::istringstream parts(line);
+  for (std::string part; log_ && std::getline(parts, part);) log_->info("{}", printable(part));
+}
+
+}  // namespace ergocast::cli

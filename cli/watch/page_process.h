@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page of `ergocast run --watch` in a separate process. If it ends, the mission continues.
+//
+// The socket is bound here, before the mission starts, and outlives the process that serves it. So
+// a restarted process has the same address and token, and waiting browsers connect to it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "cli/watch/progress.h"
+#include "cli/watch/page_socket.h"
+#include "core/base/ids.h"
+#include "runtime/bus/lcm_url.h"
+#include "runtime/process/child.h"
+
+namespace spdlog {
+class logger;
+}
+
+namespace ergocast::cli {
+
+/// The process inherits these descriptors, its options (cli/watch/run_page.cc), and an environment
+/// variable that only this user can read.
+inline constexpr int kPageSocket = 3;
+inline constexpr int kPageUntil = 4;  ///< a pipe that ends when the mission has ended
+inline constexpr const char* kPageToken = "ERGOCAST_PAGE_TOKEN";
+
+class PageProcess {
+ public:
+  struct Setup {
+    std::filesystem::path program;  ///< `ergocast`
+    std::filesystem::path run_dir;
+    LcmUrl url;
+    RunId run = 0;
+    std::filesystem::path key_file;  ///< empty: no key
+    PageOptions page;
+  };
+
+  /// Returns an error if the page's address cannot be used.
+  static std::variant<std::unique_ptr<PageProcess>, std::string> start(const Setup& setup,
+                                                                       ProgressDisplay& display);
+  PageProcess(const PageProcess&) = delete;
+  PageProcess& operator=(const PageProcess&) = delete;
+  /// Ends the process.
+  ~PageProcess();
+
+  std::string url() const { return socket_.url(); }
+  /// Starts the process again if it has ended; call it often.
+  void attend(Instant now);
+  /// Writes a line to the page's log, log/run.log.
+  void print(const std::string& line);
+  /// Call when the record is complete: from now on the page shows it.
+  void finish() { running_.reset(); }
+
+ private:
+  PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay& display);
+  void launch(Instant now);
+
+  PageSocket socket_;
+  ProgressDisplay& display_;
+  std::shared_ptr<spdlog::logger> log_;  // null: it cannot be opened
+  std::optional<Socket> until_;          // the process's end of the pipe
+  std::optional<Socket> running_;        // ours, as long as the mission runs
+  Child::Program program_;
+  std::optional<Child> child_;
+  int ends_ = 0;
+  Instant restart_at_{};
+};
+
+}  // namespace ergocast::cli

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The socket of a page, the address that a person opens, and the token.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "runtime/bus/socket.h"
+
+namespace ergocast::cli {
+
+struct PageOptions {
+  std::string listen;  ///< an address of this host; empty: 127.0.0.1, without a token
+  int port = 0;        ///< 0: kUsualPort, or any
+};
+
+class PageSocket {
+ public:
+  /// The default port, if it is free.
+  static constexpr int kUsualPort = 8765;
+
+  /// A new listening socket with a new token; an error if it cannot listen.
+  static std::variant<PageSocket, std::string> open(const PageOptions& options);
+
+  /// A socket that another process has opened for `listen`, with its token. An error if `fd` is no
+  /// such socket.
+  static std::variant<PageSocket, std::string> inherited(int fd, const std::string& listen,
+                                                         std::string token);
+
+  int fd() const { return socket_.fd(); }  ///< non-blocking
+  const std::string& address() const { return address_; }
+  int port() const { return port_; }
+  /// The token; empty if only this host reaches the page, which then needs none.
+  const std::string& token() const { return token_; }
+  /// The address that a person opens, with the token if there is one.
+  std::string url() const;
+  /// Whether a Host header names this server. If only this host reaches the page, no network name
+  /// is accepted: another host could resolve that name to this address.
+  bool is_called(const std::string& host) const;
+
+ private:
+  PageSocket(Socket socket, const std::string& listen, std::string token);
+
+  Socket socket_;
+  std::string address_, token_;
+  int port_;
+};
+
+}  // namespace ergocast::cli

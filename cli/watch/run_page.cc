@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast run-page`: `ergocast run --watch` starts it to serve its page
+// (cli/watch/page_process.h).
+#include <poll.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/watch/page_process.h"
+#include "cli/record/run_directory.h"
+#include "cli/report_error.h"
+#include "cli/watch/live_watch.h"
+#include "report/target_density.h"
+#include "cli/watch/serve_page.h"
+#include "runtime/process/signals.h"
+
+namespace ergocast::cli {
+namespace {
+
+struct RunPageOptions : BusOptions {
+  std::filesystem::path run_dir;
+  std::string listen;
+};
+
+/// The memory limit of this process while the mission runs. Above it the process ends, and a new
+/// one replaces it. Browsers and the network can cause only a small part of it.
+/// Limit (Page): memory of the page's process while a mission runs [bytes]. Beyond it: it ends and
+/// is started again.
+constexpr rlim_t kMostMemory = rlim_t{512} << 20;
+
+/// The memory that RLIMIT_DATA counts [bytes].
+rlim_t allocated() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    rlim_t kib = 0;
+    if (word == "VmData:" && status >> kib) return kib << 10;
+  }
+  return 0;
+}
+
+/// The previous limit.
+rlimit limit_memory() {
+  rlimit former{};
+  getrlimit(RLIMIT_DATA, &former);
+  const rlimit limit{std::min(former.rlim_cur, allocated() + kMostMemory), former.rlim_max};
+  setrlimit(RLIMIT_DATA, &limit);
+  return former;
+}
+
+/// Whether the other end of the pipe is closed.
+bool closed(int pipe) {
+  pollfd end{pipe, 0, 0};
+  return poll(&end, 1, 0) > 0;
+}
+
+int run_page(const RunPageOptions& options) {
+  StopSignals signals;
+  const char* token = std::getenv(kPageToken);
+  auto socket = PageSocket::inherited(kPageSocket, options.listen, token != nullptr ? token : "");
+  if (const auto* problem = std::get_if<std::string>(&socket)) {
+    return report_error(kExitBadInput, *problem + "; `ergocast run --watch` starts this command");
+  }
+  auto mission = recorded_mission_or_complain(options.run_dir);
+  if (!mission) return kExitBadInput;
+  auto density = read_target_density(options.run_dir / kTargetDensityFile);
+  const bool drawn = std::holds_alternative<Field>(density);
+  auto opened = LiveWatch::open({options, options.run_dir, std::move(*mission),
+                                 drawn ? std::get<Field>(std::move(density)) : Field()});
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
+    return report_error(kExitUnavailable, *problem);
+  }
+  LiveWatch& watch = *std::get<0>(opened);
+  const rlimit former = limit_memory();
+  const auto server = PageServer::make(std::get<PageSocket>(std::move(socket)), watch.content());
+  serve_until_stop(*server, signals, [&, over = false]() mutable {
+    watch.listen(server->fd());
+    if (over || !closed(kPageUntil)) return;
+    over = true;
+    setrlimit(RLIMIT_DATA, &former);  // a long record may need more; the mission is over
+    watch.finish();
+  });
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_run_page(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("run-page", "The page's process of `run --watch`");
+  command->group("");  // hidden: it is not started by hand
+  auto options = std::make_shared<RunPageOptions>();
+  command->add_option("RUN_DIR", options->run_dir, "Run directory")->required()->type_name("DIR");
+  add_bus_options(*command, *options);
+  command->add_option("--listen", options->listen, "Address that the socket is bound to");
+  command->callback([&action, options] { action = [options] { return run_page(*options); }; });
+}
+
+}  // namespace ergocast::cli

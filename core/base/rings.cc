@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tests every pair of edges in extended precision, computes areas by the shoelace formula and
+// membership by counting crossings.
+#include "core/base/rings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ergocast {
+namespace {
+
+/// The side of the line through a and b on which the point lies: 1 left, −1 right, 0 on it. In
+/// extended precision, because the sign of a small difference must be right.
+int side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& point) {
+  using Wide = long double;
+  const Wide cross = (Wide{b.x()} - a.x()) * (Wide{point.y()} - a.y()) -
+                     (Wide{b.y()} - a.y()) * (Wide{point.x()} - a.x());
+  return (cross > 0) - (cross < 0);
+}
+
+bool boxes_apart(const Segment& e, const Segment& f) {
+  const Eigen::Array2d e_low = e.from_m.cwiseMin(e.to_m), e_high = e.from_m.cwiseMax(e.to_m);
+  const Eigen::Array2d f_low = f.from_m.cwiseMin(f.to_m), f_high = f.from_m.cwiseMax(f.to_m);
+  return (e_high < f_low).any() || (f_high < e_low).any();
+}
+
+/// Whether `next`, which begins at the end of `edge`, goes back along it.
+bool folds_back(const Segment& edge, const Segment& next) {
+  return side(edge.from_m, edge.to_m, next.to_m) == 0 &&
+         (edge.to_m - edge.from_m).dot(next.to_m - next.from_m) < 0;
+}
+
+struct Edge {
+  Segment segment;
+  std::size_t ring, corner;
+};
+
+/// Whether the position of two edges to each other is allowed; `count` is the size of a ring.
+bool may_meet(const Edge& e, const Edge& f, std::size_t count) {
+  if (e.ring != f.ring) return !touch(e.segment, f.segment);
+  if ((e.corner + 1) % count == f.corner) return !folds_back(e.segment, f.segment);
+  if ((f.corner + 1) % count == e.corner) return !folds_back(f.segment, e.segment);
+  return !touch(e.segment, f.segment);
+}
+
+}  // namespace
+
+bool touch(const Segment& e, const Segment& f) {
+  return !boxes_apart(e, f) &&
+         side(e.from_m, e.to_m, f.from_m) * side(e.from_m, e.to_m, f.to_m) <= 0 &&
+         side(f.from_m, f.to_m, e.from_m) * side(f.from_m, f.to_m, e.to_m) <= 0;
+}
+
+double distance_m(const Segment& one, const Segment& other) {
+  if (touch(one, other)) return 0;
+  const auto from = [](const Eigen::Vector2d& x_m, const Segment& segment) {
+    return (segment.nearest_m(x_m) - x_m).squaredNorm();
+  };
+  return std::sqrt(std::min({from(one.from_m, other), from(one.to_m, other),
+                             from(other.from_m, one), from(other.to_m, one)}));
+}
+
+std::optional<EdgePair> touching_edges(const Rings& rings) {
+  std::vector<Edge> edges;
+  for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+    const Ring& corners = rings[ring];
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      edges.push_back({{corners[i], corners[(i + 1) % corners.size()]}, ring, i});
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!may_meet(edges[i], edges[j], rings[edges[i].ring].size()))
+        return EdgePair{edges[i].ring, edges[i].corner, edges[j].ring, edges[j].corner};
+    }
+  }
+  return {};
+}
+
+double area_m2(const Ring& ring) {
+  double twice = 0;
+  for (std::size_t i = 2; i < ring.size(); ++i) {
+    const Eigen::Vector2d a = ring[i - 1] - ring[0], b = ring[i] - ring[0];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * std::abs(twice);
+}
+
+bool contains(const Ring& ring, const Eigen::Vector2d& x_m) {
+  bool inside = false;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    if ((a.y() > x_m.y()) == (b.y() > x_m.y())) continue;
+    const double share = (x_m.y() - a.y()) / (b.y() - a.y());
+    if (x_m.x() < a.x() + share * (b.x() - a.x())) inside = !inside;
+  }
+  return inside;
+}
+
+std::vector<int> depths(const Rings& rings) {
+  std::vector<int> depths;
+  for (const Ring& ring : rings) {
+    depths.push_back(static_cast<int>(std::ranges::count_if(rings, [&](const Ring& other) {
+      return &other != &ring && contains(other, ring.front());
+    })));
+  }
+  return depths;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The control step: the one place that computes an agent's input.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "core/base/ids.h"
+#include "core/basis/basis.h"
+#include "core/law/perturbation.h"
+#include "core/mission/mission.h"
+
+namespace ergocast {
+
+/// u = −u_max B / √(‖B‖² + ε²), (8); for ε = 0 the classical law (5), whose limit we set to u = 0
+/// where B = 0.  ‖u‖ ≤ u_max up to rounding.
+Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double epsilon,
+                             double u_max_mps);
+
+/// Computes one agent's command from the team's coverage. Holds the mission's constant tables and a
+/// K-vector of scratch space; no step allocates.
+class Controller {
+ public:
+  /// @param kind  of the agents that it steers, core/mission/kinds.h
+  explicit Controller(const Mission& mission, int kind = 0);
+
+  /// Takes in the known or forecast c_k of the team, mode_count() entries. All later commands use
+  /// it.
+  void set_coverage(const Coefficients& coverage);
+
+  /// The velocity command of (10) at position `x_m`:
+  ///   v = u − k (x − centre) + perturbation,  a function of (seed, agent, tick) and the field.
+  /// In a plane v_z is 0.
+  /// @param at  the basis at `x_m`
+  Eigen::Vector3d command(AgentId agent, Tick tick, const Eigen::Vector3d& x_m, const BasisAt& at);
+
+  /// B of (6) for the last command() [1/m].
+  const Eigen::Vector3d& spectral_gradient() const { return spectral_gradient_; }
+  /// The ε that belongs to the last coverage seen.
+  double epsilon() const { return epsilon_; }
+
+  /// φ² of `coverage` against the mission's target, over all modes.
+  double metric(const Coefficients& coverage) const;
+
+ private:
+  /// An η, and where it was drawn.
+  struct Push {
+    AgentId drawn = kUnassigned;
+    Tick stretch = -1;
+    Eigen::Vector3d eta{0, 0, 0};
+  };
+
+  Eigen::Vector3d push(AgentId agent, Tick stretch);
+  /// Sets the residual λ g (c − μ) in the kind's band; returns the RMS of ‖Σ λ g (c − μ) ∇f‖ over a
+  /// domain with all sides as long as the longest [1/m].
+  double set_residual(const Coefficients& coverage);
+
+  Box domain_;
+  Basis basis_;
+  ControlLaw law_;
+  std::uint64_t seed_;
+  PerturbationScale scale_;
+  Tick push_ticks_;
+  Coefficients target_, weights_, energies_, residual_;
+  Coefficients metric_weights_;  // if the weights that it steers by are not those of φ²
+  Eigen::Vector3d spectral_gradient_{0, 0, 0};
+  double epsilon_ = 0;
+  std::array<Push, kMaxAgents> pushes_;  // the last of each agent: one is held for many ticks
+};
+
+}  // namespace ergocast

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stations: where agents are when the mission ends, and the tick from which they rest.
+//
+// An agent's endurance lasts for the mission. With reserve_s the agent has to be at its station
+// from the tick
+//
+//   R = tick_count − ⌈reserve_s / dt⌉
+//
+// on, in ticks that count, so a pause takes nothing of it. From R on the agent rests: it covers and
+// broadcasts no more, and no teammate forecasts it. Its coverage still counts. R follows from the
+// plan alone, so all processes know it without a message. The agent itself decides when it goes
+// home, core/motion/way_home.h.
+//
+// A station belongs to an agent's number, as a vehicle does, whichever process drives it. Numbers
+// beyond the plan have none.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "core/base/ids.h"
+#include "core/mission/mission.h"
+
+namespace ergocast {
+
+/// Where agent `id` is at the end, if it has a station.
+std::optional<Eigen::Vector3d> station_of(const Mission& mission, AgentId id);
+
+/// Whether any agent has one.
+bool any_station(const Mission& mission);
+
+/// R of agent `id`; the greatest number if it has no station.
+Tick rest_from(const Mission& mission, AgentId id);
+
+/// Whether agent `id` rests at a tick, by its number among those that count.
+inline bool rests(const Mission& mission, AgentId id, Tick counted) {
+  return !mission.kinds.empty() && counted >= rest_from(mission, id);
+}
+
+}  // namespace ergocast

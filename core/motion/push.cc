@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Draws the disturbance of a step from the mission's seed.
+#include "core/motion/push.h"
+
+#include <cmath>
+
+#include "core/base/geometry.h"
+#include "core/base/noise.h"
+#include "core/motion/walls.h"
+
+namespace ergocast {
+
+Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,
+                      const Eigen::Vector3d& v_mps) {
+  const double dt_s = mission.timing.dt_s;
+  const Separation& separation = mission.separation;
+  Eigen::Vector3d next_m = x_m + v_mps * dt_s;
+  if (mission.disturbance_intensity > 0) {
+    const Eigen::Vector3d pushed_m =
+        mission.disturbance_intensity * std::sqrt(dt_s) *
+        normal_in(mission.domain, mission.seed, Purpose::kDisturbance,
+                  static_cast<std::uint32_t>(id), static_cast<std::uint64_t>(tick));
+    next_m += stopped_by_walls(
+        mission, id, next_m,
+        separation.distance_m > 0 ? within_speed(pushed_m, separation.disturbance_m) : pushed_m);
+  }
+  return next_m;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The constraints that walls put on a body of any kind of vehicle.
+//
+// Q is the set that the body keeps under commands of 0, core/motion/separation_pairs.cc, and E an
+// edge of a wall. Both are convex. The body keeps the distance K. Let n be the unit vector from Q
+// towards E between their nearest points, and g ≥ 0 their distance less K. The body takes a step
+// whose next Q' has
+//
+//   n·z ≤ max over Q of n·y + g  for each z of Q'.
+//
+// E lies beyond the plane through its nearest point, so Q' is at least K away from it. If a body
+// knows its place only up to R, or moves by R while it holds its command, it knows n up to
+// asin(R/ρ), as for a neighbour.
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/geometry.h"
+#include "core/mission/kinds.h"
+#include "core/motion/filter_rules.h"
+#include "core/motion/separation.h"
+
+namespace ergocast {
+namespace {
+
+/// The vector between the nearest points of a way and an edge, from the way to the edge, if the two
+/// do not cross.
+Eigen::Vector2d shortest_to_m(const Segment& way, const Segment& edge) {
+  const Eigen::Vector2d candidates[] = {
+      edge.nearest_m(way.from_m) - way.from_m, edge.nearest_m(way.to_m) - way.to_m,
+      edge.from_m - way.nearest_m(edge.from_m), edge.to_m - way.nearest_m(edge.to_m)};
+  return *std::ranges::min_element(candidates, {},
+                                   [](const Eigen::Vector2d& one) { return one.squaredNorm(); });
+}
+
+}  // namespace
+
+void SeparationFilter::keep_from_walls(const Mover& self, const HoldingSet& own) {
+  for_segments(mission_.walls, [&](const Segment& edge) { keep_from_wall(self, own, edge); });
+}
+
+/// An edge that no step reaches needs no set.
+void SeparationFilter::keep_from_wall(const Mover& self, const HoldingSet& own,
+                                      const Segment& edge) {
+  const Separation& rule = mission_.separation;
+  const auto kind = static_cast<std::size_t>(planned_kind(mission_, self.id));
+  // V T + e more if the body follows late. late_edge_margin_m() has 2 e, and one of them is already
+  // in the uncertainty.
+  const double late_m =
+      rule.response_s > 0 ? late_edge_margin_m(mission_, self.id) - rule.position_error_m : 0;
+  const double kept_m = kept_from_walls_m_[kind] + late_m;
+  const double hold_ticks = rule.distance_m > 0 ? hold_ticks_ : 0;
+  const double unsure_m =
+      rule.position_error_m +
+      hold_ticks * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m);
+  const Segment way{own.from_m.head<2>(), (own.from_m + own.along_m).head<2>()};
+  const Eigen::Vector2d y_m = shortest_to_m(way, edge);
+  const double far_m = kept_m + unsure_m + rule.disturbance_m + constraints_.reach_m() / gain_;
+  if (y_m.squaredNorm() >= far_m * far_m) return;
+  const double rho_m = std::sqrt(y_m.squaredNorm());
+  if (rho_m <= unsure_m) {  // it may be on either side
+    for (const Eigen::Vector3d& u : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
+      take(kUnassigned, {u, 0, 0, 0});
+      take(kUnassigned, {-u, 0, 0, 0});
+    }
+    return;
+  }
+  const Eigen::Vector3d n = on_ground(y_m) / rho_m;
+  const double end_m = std::max(0.0, n.dot(own.along_m));
+  const double gap_m = gain_ * (rho_m - unsure_m - kept_m), hard_m = end_m + std::max(0.0, gap_m);
+  const double bound_m = rule.disturbance_m > 0 ? end_m + gap_m - rule.disturbance_m : hard_m;
+  take(kUnassigned, {n, unsure_m / rho_m, bound_m, hard_m});
+}
+
+}  // namespace ergocast

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Looks the way's length up in a table made once, and follows it from one visible cell to the next.
+#include "core/motion/way_home.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/base/geometry.h"
+#include "core/mission/station.h"
+#include "core/motion/home.h"
+#include "core/motion/walls.h"
+
+namespace ergocast {
+namespace {
+
+/// Multiple of v/A that it takes to turn round, and to brake at half of A.
+constexpr double kTurnsRound = 3;
+/// Circles of a fixed wing, which turns to one side only near its station.
+constexpr double kCircles = 3;
+/// The factor for turns among walls, where there are corners.
+constexpr double kCorners = 3;
+/// Standard deviations of a way that is disturbed.
+constexpr double kWayDeviations = 4;
+/// The share of a clearance that rounding may take.
+constexpr double kRounded = 1e-9;
+/// The cosine of the angle beyond which a vehicle turns before it goes on.
+constexpr double kAhead = 0.99;
+/// The same for a fixed wing, if it does not turn farther in a tick.
+constexpr double kAheadOfWings = 0.9;
+/// The speed of a command that only turns a unicycle, as a share of its own speed.
+constexpr double kLookingShare = 1e-6;
+
+/// How long a body that follows late takes to close up to an edge: 4 T for each factor of e, down
+/// to a tick.
+double closing_s(double response_s, double dt_s) {
+  if (response_s <= 0) return 0;
+  const double folds = std::ceil(std::log2(std::max(1.0, 2 * response_s / dt_s)));
+  return 4 * response_s * (1 + folds);
+}
+
+}  // namespace
+
+WayHome::WayHome(const Mission& mission, AgentId id)
+    : motion_(motion_of(mission, id)),
+      home_m_(station_of(mission, id).value()),
+      rest_from_(rest_from(mission, id)),
+      speed_mps_(home_speed_mps(mission, id)),
+      slack_s_(slack_s(mission)),
+      ahead_(motion_.vehicle.min_speed_mps == 0
+                 ? kAhead
+                 : std::min(kAheadOfWings,
+                            std::cos(std::min(motion_.vehicle.max_turn_radps * motion_.dt_s,
+                                              std::numbers::pi / 2)))),
+      drift_(kWayDeviations * mission.disturbance_intensity / speed_mps_),
+      walls_(mission.walls) {
+  if (walls_.empty()) return;
+  const double kept_m = kept_from_walls_m(mission, motion_);
+  region_.emplace(walls_, mission.domain, kept_m);
+  seen_m_ = kept_m * (1 - kRounded);
+  if (const auto cell = region_->free_cell_near(home_m_.head<2>()))
+    ways_m_ = region_->ways_m(*cell);
+}
+
+double WayHome::slack_s(const Mission& mission) const {
+  const double dt_s = motion_.dt_s, corners = mission.walls.empty() ? 1 : kCorners;
+  const VehicleLimits& vehicle = motion_.vehicle;
+  double slack = 2 * dt_s + closing_s(mission.separation.response_s, dt_s);
+  if (mission.timing.pace == Pace::kRealtime) slack += 2 * dt_s + mission.timing.command_hold_s;
+  if (motion_.has_inertia())
+    slack += corners * kTurnsRound * speed_mps_ / vehicle.max_acceleration_mps2;
+  const bool turns = vehicle.max_turn_radps > 0, circles = vehicle.kind == VehicleKind::kFixedWing;
+  if (turns)
+    slack += corners * (circles ? 2 * kCircles : 1) * std::numbers::pi / vehicle.max_turn_radps;
+  return slack;
+}
+
+double WayHome::way_m(const Eigen::Vector3d& x_m) const {
+  if (!region_) return length_of(home_m_ - x_m);
+  const Eigen::Vector2d here_m = x_m.head<2>(), there_m = home_m_.head<2>();
+  const auto from = region_->free_cell_near(here_m), to = region_->free_cell_near(there_m);
+  if (!from || !to) return std::numeric_limits<double>::infinity();
+  return length_of(on_ground(region_->center_m(*from) - here_m)) +
+         ways_m_[static_cast<std::size_t>(*from)] +
+         length_of(on_ground(region_->center_m(*to) - there_m));
+}
+
+double WayHome::needed_s(const Eigen::Vector3d& x_m) const {
+  const double travel_s = way_m(x_m) / speed_mps_;
+  if (std::isinf(travel_s)) return travel_s;  // 0 · ∞ is not a number
+  return travel_s + drift_ * std::sqrt(travel_s) + slack_s_;
+}
+
+bool WayHome::begun(Tick counted, const Eigen::Vector3d& x_m) {
+  const double left_s = static_cast<double>(rest_from_ - counted) * motion_.dt_s;
+  begun_ = begun_ || left_s <= needed_s(x_m);
+  return begun_;
+}
+
+bool WayHome::clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) const {
+  const Segment way{x_m.head<2>(), to_m};
+  bool clear = true;
+  for_segments(walls_,
+               [&](const Segment& edge) { clear = clear && distance_m(way, edge) >= seen_m_; });
+  return clear;
+}
+
+/// The visible cell around `x_m` through which the way is shortest.
+std::optional<int> WayHome::first_cell(const Eigen::Vector3d& x_m) const {
+  std::optional<int> best;
+  double best_m = std::numeric_limits<double>::infinity();
+  region_->for_cells_near(x_m.head<2>(), [&](int cell) {
+    const Eigen::Vector2d center_m = region_->center_m(cell);
+    const double way_m =
+        length_of(on_ground(center_m) - x_m) + ways_m_[static_cast<std::size_t>(cell)];
+    if (way_m >= best_m || !clear(x_m, center_m)) return;
+    best_m = way_m;
+    best = cell;
+  });
+  return best ? best : region_->free_cell_near(x_m.head<2>());
+}
+
+/// The station, or the farthest visible cell on the way to it.
+Eigen::Vector3d WayHome::next_place_m(const Eigen::Vector3d& x_m) {
+  if (!region_ || ways_m_.empty() || clear(x_m, home_m_.head<2>())) return home_m_;
+  if (!cell_ || !clear(x_m, region_->center_m(*cell_))) cell_ = first_cell(x_m);
+  if (!cell_) return home_m_;
+  for (int next = region_->nearer(ways_m_, *cell_);
+       next != *cell_ && clear(x_m, region_->center_m(next));
+       next = region_->nearer(ways_m_, *cell_))
+    cell_ = next;
+  return on_ground(region_->center_m(*cell_));
+}
+
+/// The speed at which it still stops at the end of the way: with inertia it brakes at half of A.
+double WayHome::speed_mps(double way_m) const {
+  const double dt_s = motion_.dt_s;
+  if (!motion_.has_inertia()) return std::min(speed_mps_, way_m / dt_s);
+  const double a_mps2 = motion_.vehicle.max_acceleration_mps2;
+  return std::min({speed_mps_, std::sqrt(a_mps2 * way_m), way_m / (2 * dt_s)});
+}
+
+Eigen::Vector3d WayHome::velocity_mps(const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps) {
+  const Eigen::Vector3d at_m = anchor_m(motion_, x_m, v_mps);
+  const Eigen::Vector3d to_m = next_place_m(at_m) - at_m;
+  const double apart_m = length_of(to_m), way_m = length_of(home_m_ - at_m);
+  if (apart_m == 0) return {0, 0, 0};
+  if (motion_.vehicle.max_turn_radps > 0) return turning_mps(to_m, way_m, v_mps);
+  return to_m * (speed_mps(way_m) / apart_m);
+}
+
+/// A vehicle that looks elsewhere turns first: on the spot, or on its loiter circle, whose centre
+/// stays.
+Eigen::Vector3d WayHome::turning_mps(const Eigen::Vector3d& to_m, double way_m,
+                                     const Eigen::Vector3d& v_mps) const {
+  const double slowest_mps = motion_.vehicle.min_speed_mps, apart_m = length_of(to_m);
+  const double near_m = std::max(slowest_mps, speed_mps_ / 2) * motion_.dt_s;
+  if (way_m <= near_m) return {0, 0, 0};
+  const double now_mps = length_of(v_mps);
+  const Eigen::Vector3d looks =
+      now_mps > 0 ? Eigen::Vector3d(v_mps / now_mps) : Eigen::Vector3d(1, 0, 0);
+  const double speed = std::max(slowest_mps, speed_mps(way_m));
+  if (looks.dot(to_m) >= ahead_ * apart_m) return to_m * (speed / apart_m);
+  if (slowest_mps > 0) return {0, 0, 0};
+  return to_m * (kLookingShare * speed_mps_ / apart_m);
+}
+
+}  // namespace ergocast

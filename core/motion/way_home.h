@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The way home of an agent that has a station, core/mission/station.h: when it begins, and the
+// velocity that the agent asks the filter for.
+//
+// At a tick t that counts, from a place whose way home is w long, an agent goes home if
+//
+//   (R − t) dt ≤ w / v + slack,   v: home_speed_mps()
+//
+// and then it does not turn back. Without walls w is the straight way. Among walls it leads along
+// the cells of core/motion/free_region.h, and is never too short. The agent moves straight to the
+// farthest of these cells that it can see. The slack is 2 dt and what a vehicle loses: with inertia
+// 3 v/A, to turn round and to brake; to turn on the spot π/ω, and for a fixed wing three circles,
+// three times as much among walls; and what disturbances, old commands in real time and a late
+// answer may cost. It does not contain detours around teammates: reserve_s is for those.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/base/rings.h"
+#include "core/mission/mission.h"
+#include "core/motion/free_region.h"
+#include "core/motion/vehicle.h"
+
+namespace ergocast {
+
+class WayHome {
+ public:
+  /// @pre the agent has a station
+  WayHome(const Mission& mission, AgentId id);
+
+  /// An upper bound of the time that the way home takes from `x_m` without others in the way [s];
+  /// infinite where there is no way.
+  double needed_s(const Eigen::Vector3d& x_m) const;
+
+  /// Whether the agent goes home at a tick, by its number among those that count. Once it does, it
+  /// goes on.
+  bool begun(Tick counted, const Eigen::Vector3d& x_m);
+  bool begun() const { return begun_; }
+
+  /// The velocity to ask the filter for, on the way and to stay at the station; ‖v‖ ≤
+  /// home_speed_mps(). Does not allocate.
+  Eigen::Vector3d velocity_mps(const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps);
+
+ private:
+  double way_m(const Eigen::Vector3d& x_m) const;
+  double slack_s(const Mission& mission) const;
+  bool clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) const;
+  std::optional<int> first_cell(const Eigen::Vector3d& x_m) const;
+  Eigen::Vector3d next_place_m(const Eigen::Vector3d& x_m);
+  double speed_mps(double way_m) const;
+  Eigen::Vector3d turning_mps(const Eigen::Vector3d& to_m, double way_m,
+                              const Eigen::Vector3d& v_mps) const;
+
+  Motion motion_;
+  Eigen::Vector3d home_m_;
+  Tick rest_from_;
+  double speed_mps_, slack_s_;
+  double ahead_;  // the cosine of the angle within which it goes on
+  double drift_;  // 4 σ / v; times √ of the way's time it is what disturbances cost
+  Rings walls_;
+  double seen_m_ = 0;                 // how far a straight way keeps from walls
+  std::optional<FreeRegion> region_;  // where there are walls
+  std::vector<double> ways_m_;        // from its cells to that of the station
+  std::optional<int> cell_;           // of the way, the farthest that can be seen
+  bool begun_ = false;
+};
+
+}  // namespace ergocast

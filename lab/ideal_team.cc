@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps all agents on one shared coverage, with the additions in the order of a coverage table.
+#include "lab/ideal_team.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/geometry.h"
+#include "core/base/vectorized.h"
+#include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
+#include "core/motion/push.h"
+#include "core/motion/vehicle.h"
+
+namespace ergocast::lab {
+
+IdealTeam::IdealTeam(Mission mission, Edges edges)
+    : mission_(std::move(mission)),
+      edges_(edges),
+      table_(mission_.basis, mission_.timing.dt_s),
+      look_ahead_(mission_),
+      coverage_(Coefficients::Zero(mission_.basis.mode_count())),
+      earlier_(static_cast<std::size_t>(mission_.basis.mode_count())),
+      sensors_(mission_) {
+  controllers_.emplace_back(mission_);
+  for (std::size_t kind = 1; kind < mission_.kinds.size(); ++kind)
+    controllers_.emplace_back(mission_, static_cast<int>(kind));
+  for (const Eigen::Vector3d& start_m : mission_.starts_m) {
+    const Author author{static_cast<AgentId>(agents_.size()), 1};
+    const int kind = planned_kind(mission_, author.agent);
+    table_.add_row(author);
+    table_.set_quality(author, sensors_.of(kind).quality);
+    const Motion motion = motion_of(mission_, author.agent);
+    agents_.push_back({author,
+                       kind,
+                       motion,
+                       filters_commands(mission_, author.agent),
+                       start_m,
+                       first_velocity(motion, start_m),
+                       {0, 0, 0},
+                       {0, 0, 0},
+                       std::nullopt,
+                       earlier_,
+                       earlier_,
+                       earlier_});
+    if (follows_walls(mission_)) agents_.back().follower.emplace(mission_, author.agent);
+  }
+  if (any_filtered(mission_)) separation_.emplace(mission_, 0);
+  bodies_.resize(separation_ ? agents_.size() : 0);
+}
+
+bool IdealTeam::stands_for(const Mission& mission) {
+  const Timing& timing = mission.timing;
+  const bool all_is_sent = longest_period_ticks(timing) == 1;
+  const bool all_is_known = mission.law.anticipation > 0 && mission.dead_reckoning;
+  const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
+  return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
+         (all_is_sent || all_is_known) && !any_station(mission);
+}
+
+void IdealTeam::step() {
+  sample();
+  if (look_ahead_.any()) {
+    look_ahead();
+  } else {
+    table_.average(coverage_);
+    for (Controller& controller : controllers_) controller.set_coverage(coverage_);
+  }
+  see_bodies();
+  for (Agent& agent : agents_) {
+    Controller& controller = controllers_[static_cast<std::size_t>(agent.kind)];
+    if (look_ahead_.any()) {
+      foresee(agent);
+      controller.set_coverage(coverage_);
+    }
+    const Eigen::Vector3d wanted_mps =
+        controller.command(agent.author.agent, tick_, agent.x_m, *agent.at);
+    agent.next_mps = executed(agent.motion, agent.v_mps, kept_apart(agent, wanted_mps));
+    agent.b = controller.spectral_gradient();
+  }
+  for (Agent& agent : agents_) {
+    const Eigen::Vector3d mean_mps = mean_velocity(agent.motion, agent.v_mps, agent.next_mps);
+    agent.x_m = moved(mission_, agent.author.agent, tick_, agent.x_m, mean_mps);
+    agent.v_mps = agent.next_mps;
+    if (edges_ == Edges::kReflect) agent.x_m = reflect(agent.x_m, mission_.domain);
+  }
+  ++tick_;
+}
+
+void IdealTeam::see_bodies() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    bodies_[i] = {
+        agents_[i].author.agent, agents_[i].x_m, agents_[i].motion.speed_limit_mps, 0, true,
+        agents_[i].v_mps};
+}
+
+/// What the filter leaves of a command: the last step, as in an agent.
+Eigen::Vector3d IdealTeam::kept_apart(Agent& agent, const Eigen::Vector3d& v_mps) {
+  if (!agent.filtered) return v_mps;
+  const SafeVelocity safe = separation_->safe(
+      {agent.author.agent, tick_, agent.x_m, agent.motion.speed_limit_mps, agent.v_mps},
+      agent.follower ? agent.follower->aim(tick_, agent.x_m, v_mps) : v_mps, bodies_);
+  if (agent.follower) agent.follower->note(safe.wall);
+  agent.blocked_ticks = safe.blocked ? agent.blocked_ticks + 1 : 0;
+  blocked_steps_ += safe.blocked ? 1 : 0;
+  longest_block_ticks_ = std::max(longest_block_ticks_, agent.blocked_ticks);
+  return safe.velocity_mps;
+}
+
+/// The sums of all agents at this tick, and what they gained since the last.
+void IdealTeam::sample() {
+  for (Agent& agent : agents_) {
+    agent.at.emplace(agent.x_m, mission_.domain, mission_.basis);
+    const double* const footprint = sensors_.of(agent.kind).footprint();
+    table_.add_sample(agent.author, *agent.at, footprint);
+    if (!look_ahead_.any()) continue;
+    if (mission_.dead_reckoning) {
+      set_basis(*agent.at, mission_.basis, mission_.timing.dt_s, agent.gain.data());
+      for (std::size_t k = 0; footprint != nullptr && k < agent.gain.size(); ++k)
+        agent.gain[k] *= footprint[k];
+      continue;
+    }
+    const double* sums = table_.sums_of(agent.author);
+    for (std::size_t k = 0; k < agent.gain.size(); ++k) {
+      agent.gain[k] = sums[k] - agent.sent[k];
+      agent.sent[k] = sums[k];
+    }
+  }
+}
+
+/// Computes the parts of ĉ in core/law/forecast.h, in its order of additions, where every row was
+/// sent in this tick. The sums of all agents take as many additions as those of one agent.
+ERGOCAST_VECTORIZED
+void IdealTeam::look_ahead() {
+  const auto n = static_cast<int>(agents_.size());
+  weight_s_ = look_ahead_.weight_s(look_ahead_.horizon_s(n, tick_), 1, 0, 1);
+  share_ = weight_s_ / mission_.timing.dt_s;
+  weigh(agents_.front());
+  std::fill(earlier_.begin(), earlier_.end(), 0);
+  for (std::size_t i = agents_.size() - 1; i > 0; --i) {
+    const double* sums = table_.sums_of(agents_[i].author);
+    const double* gain = agents_[i].gain.data();
+    const double* later = agents_[i].later.data();  // 0 for the last agent
+    double* all = agents_[i - 1].later.data();
+    const double q = quality(agents_[i]);
+    for (std::size_t k = 0; k < earlier_.size(); ++k)
+      all[k] = later[k] + q * (sums[k] + share_ * gain[k]);
+  }
+}
+
+/// Sets the factors of all sums in the forecast of `agent`.
+void IdealTeam::weigh(const Agent& agent) {
+  double steps = 0;
+  for (const Agent& each : agents_) steps += quality(each) * static_cast<double>(tick_ + 1);
+  double covered_s = steps * mission_.timing.dt_s;
+  for (const Agent& other : agents_) {
+    if (other.author != agent.author) covered_s += quality(other) * weight_s_;
+  }
+  per_second_ = 1 / covered_s;
+}
+
+/// Sets ĉ for the next agent in the order of the team.
+ERGOCAST_VECTORIZED
+void IdealTeam::foresee(const Agent& agent) {
+  const double* own = table_.sums_of(agent.author);
+  const double* gain = agent.gain.data();
+  const double* later = agent.later.data();
+  double* earlier = earlier_.data();
+  double* foreseen = coverage_.data();
+  const double q = quality(agent);
+  if (!sensors_.uniform()) weigh(agent);
+  for (std::size_t k = 0; k < earlier_.size(); ++k) {
+    foreseen[k] = (earlier[k] + (later[k] + q * own[k])) * per_second_;
+    earlier[k] += q * (own[k] + share_ * gain[k]);
+  }
+}
+
+Coefficients IdealTeam::coverage() const {
+  Coefficients known = Coefficients::Zero(mission_.basis.mode_count());
+  table_.average(known);
+  return known;
+}
+
+void IdealTeam::run_until(double t_s, const std::function<void()>& each) {
+  while (this->t_s() < t_s - 1e-9) {
+    step();
+    each();
+  }
+}
+
+}  // namespace ergocast::lab

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The method with perfect communication: every agent knows all coverage at once, as in the paper.
+//
+// It computes the same bits as a distributed lockstep team that broadcasts or knows all coverage
+// each tick (tests/studies/same_as_simulate_test.cc), several times as fast: for statistics
+// over many seeds.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/law/control.h"
+#include "core/law/coverage_table.h"
+#include "core/law/look_ahead.h"
+#include "core/mission/kinds.h"
+#include "core/mission/mission.h"
+#include "core/motion/separation.h"
+#include "core/motion/vehicle.h"
+#include "core/motion/wall_following.h"
+
+namespace ergocast::lab {
+
+/// What happens to a vehicle that crosses the domain's edge.
+enum class Edges {
+  kReflect,
+  kNone,  ///< it continues: the paper's theorems have no edges
+};
+
+class IdealTeam {
+ public:
+  explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect);
+
+  /// Whether a distributed team would compute the same: it is in lockstep, every agent receives
+  /// from every other, and no agent goes home; all coverage is broadcast each tick or known by dead
+  /// reckoning, without rounding.
+  static bool stands_for(const Mission& mission);
+
+  /// One tick: samples, commands from the common c_k, motion. Does not allocate.
+  void step();
+
+  /// Steps up to `t_s`, calling `each` after every one.
+  void run_until(
+      double t_s, const std::function<void()>& each = [] {});
+
+  const Mission& mission() const { return mission_; }
+  /// Steps done, and the time they took.
+  Tick tick() const { return tick_; }
+  double t_s() const { return static_cast<double>(tick_) * mission_.timing.dt_s; }
+  std::size_t size() const { return agents_.size(); }
+  /// Where an agent is now.
+  const Eigen::Vector3d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
+  /// An agent's velocity in the last step, or with inertia at the step's end.
+  const Eigen::Vector3d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
+  /// B of (6) in the last step.
+  const Eigen::Vector3d& b(std::size_t agent) const { return agents_[agent].b; }
+  /// c_k of the last step, and its φ².
+  Coefficients coverage() const;
+  double metric() const { return controllers_.front().metric(coverage()); }
+  /// Steps of single agents that a teammate or an edge has blocked, and the longest run of such
+  /// steps of one agent.
+  std::int64_t blocked_steps() const { return blocked_steps_; }
+  std::int64_t longest_block_ticks() const { return longest_block_ticks_; }
+
+ private:
+  struct Agent {
+    Author author;
+    int kind = 0;
+    Motion motion;
+    bool filtered = false;  // whether its commands pass the filter
+    Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
+    std::optional<BasisAt> at;                            // x_m
+    std::vector<double> sent;                             // its sums a tick ago
+    std::vector<double> gain;                             // since then
+    std::vector<double> later;                            // what all later agents will have covered
+    std::int64_t blocked_ticks = 0;                       // without a break
+    std::optional<WallFollower> follower = std::nullopt;  // where there are walls
+  };
+
+  void sample();
+  void look_ahead();
+  void foresee(const Agent& agent);
+  void weigh(const Agent& agent);
+  double quality(const Agent& agent) const { return sensors_.of(agent.kind).quality; }
+  void see_bodies();
+  Eigen::Vector3d kept_apart(Agent& agent, const Eigen::Vector3d& v_mps);
+
+  Mission mission_;
+  Edges edges_;
+  Tick tick_ = 0;
+  CoverageTable table_;
+  LookAhead look_ahead_;
+  Coefficients coverage_;                             // known or foreseen
+  std::vector<double> earlier_;                       // what all earlier agents will have covered
+  double weight_s_ = 0, share_ = 0, per_second_ = 0;  // of gains, share of gains, and factor of all
+  Sensors sensors_;
+  std::vector<Controller> controllers_;  // by kind
+  std::vector<Agent> agents_;
+  std::optional<SeparationFilter> separation_;
+  std::vector<Neighbour> bodies_;
+  std::int64_t blocked_steps_ = 0, longest_block_ticks_ = 0;
+};
+
+}  // namespace ergocast::lab

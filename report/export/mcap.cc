@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes the messages of all topics in order of time.
+#include <algorithm>
+#include <cmath>
+
+#include "core/mission/kinds.h"
+#include "core/mission/station.h"
+#include "report/export/exports.h"
+#include "report/export/foxglove.h"
+#include "report/export/mcap_writer.h"
+
+namespace ergocast {
+namespace {
+
+/// The number of pictures of the coverage: evenly spaced in time, the last at the mission's end.
+constexpr int kCoveragePictures = 20;
+
+struct Waiting {
+  std::uint64_t time_ns = 0;
+  McapWriter::Channel channel = 0;
+  std::string json;
+};
+
+class McapExport {
+ public:
+  McapExport(const ExportRecord& record, const std::filesystem::path& file)
+      : record_(record), mission_(record.mission), writer_(file) {
+    if (record.origin) plane_.emplace(*record.origin);
+  }
+
+  std::optional<std::string> write() {
+    metadata();
+    logs();
+    metrics();
+    densities();
+    std::stable_sort(waiting_.begin(), waiting_.end(),
+                     [](const Waiting& a, const Waiting& b) { return a.time_ns < b.time_ns; });
+    poses();
+    send_until(UINT64_MAX);
+    return writer_.finish();
+  }
+
+ private:
+  McapWriter::Channel channel(const std::string& topic, const foxglove::Schema& schema) {
+    return writer_.add_channel(topic, schema.name, schema.text);
+  }
+
+  /// The top-level values of the summary.
+  void metadata() {
+    std::map<std::string, std::string> entries;
+    if (record_.summary.is_object()) {
+      for (const auto& [key, value] : record_.summary.items()) {
+        if (value.is_primitive())
+          entries[key] = value.is_string() ? value.get<std::string>() : value.dump();
+      }
+    }
+    if (record_.origin) {
+      entries["origin.latitude_deg"] = std::to_string(record_.origin->latitude_deg);
+      entries["origin.longitude_deg"] = std::to_string(record_.origin->longitude_deg);
+    }
+    writer_.add_metadata("ergocast", entries);
+  }
+
+  void logs() {
+    if (record_.log.empty()) return;
+    const auto topic = channel("/log", foxglove::log_schema());
+    for (const ExportedLine& line : record_.log)
+      waiting_.push_back({line.time_ns, topic, foxglove::log(line)});
+  }
+
+  void metrics() {
+    const auto topic = channel("/metrics", foxglove::metrics_schema());
+    for (const MetricsRow& row : record_.run.metrics) {
+      const std::uint64_t time_ns = record_.time_ns(row.t_s);
+      waiting_.push_back({time_ns, topic, foxglove::metrics(time_ns, row, record_.metric_basis)});
+    }
+  }
+
+  void densities() {
+    const auto target = channel("/target", foxglove::grid_schema());
+    const std::uint64_t begin_ns = record_.time_ns(0);
+    waiting_.push_back({begin_ns, target, foxglove::grid(begin_ns, record_.target, mission_)});
+    const auto coverage = channel("/coverage", foxglove::grid_schema());
+    const auto cells_along = coverage_cells(mission_);
+    Coefficients sums = Coefficients::Zero(mission_.basis.mode_count());
+    const Sensors sensors(mission_);
+    double samples = 0;  // each weighted by its quality
+    int shown = 0;
+    const double end_s = record_.run.end_s();
+    const auto show = [&](double t_s) {
+      const std::uint64_t time_ns = record_.time_ns(t_s);
+      const DensityCells cells =
+          density_of(sums / samples, mission_, cells_along.first, cells_along.second);
+      waiting_.push_back({time_ns, coverage, foxglove::grid(time_ns, cells, mission_)});
+    };
+    double last_s = 0;
+    for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
+      if (point.t_s > last_s && samples > 0 && last_s >= end_s * shown / kCoveragePictures) {
+        show(last_s);
+        shown = 1 + static_cast<int>(std::floor(last_s / end_s * kCoveragePictures));
+      }
+      last_s = point.t_s;
+      if (!mission_.domain.contains(point.x_m) ||
+          rests(mission_, agent, counted_ticks(record_.run.holds, point.tick)))
+        return;
+      samples += sensors.of(planned_kind(mission_, agent))
+                     .sample(BasisAt(point.x_m, mission_.domain, mission_.basis), mission_.basis, 1,
+                             sums.data());
+    });
+    if (samples > 0) show(last_s);
+  }
+
+  void poses() {
+    std::map<AgentId, McapWriter::Channel> poses, places;
+    for (const auto& [agent, track] : record_.run.tracks) {
+      const std::string name = "/agents/" + std::to_string(agent);
+      poses[agent] = channel(name + "/pose", foxglove::pose_schema());
+      if (plane_) places[agent] = channel(name + "/location", foxglove::location_schema());
+    }
+    for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
+      const std::uint64_t time_ns = record_.time_ns(point.t_s);
+      send_until(time_ns);
+      writer_.add_message(poses.at(agent), time_ns, foxglove::pose(time_ns, point));
+      if (!plane_) return;
+      writer_.add_message(
+          places.at(agent), time_ns,
+          foxglove::location(time_ns, plane_->to_place(point.x_m.head<2>()), point.x_m.z()));
+    });
+  }
+
+  /// Writes the messages that are due before the next pose.
+  void send_until(std::uint64_t time_ns) {
+    for (; next_ < waiting_.size() && waiting_[next_].time_ns <= time_ns; ++next_) {
+      const Waiting& one = waiting_[next_];
+      writer_.add_message(one.channel, one.time_ns, one.json);
+    }
+  }
+
+  const ExportRecord& record_;
+  const Mission& mission_;
+  McapWriter writer_;
+  std::optional<LocalPlane> plane_;
+  std::vector<Waiting> waiting_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::string> write_mcap(const ExportRecord& record,
+                                      const std::filesystem::path& file) {
+  return McapExport(record, file).write();
+}
+
+}  // namespace ergocast

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shows a mission in a box along one axis, as a run in a plane that the map can draw.
+import { averageOf, picture } from './cosine_sums.js';
+import { Places, axesOf } from './places.js';
+import { targetOfModes } from './run.js';
+import { stretchOf } from '../map/space_view.js';
+
+function projectedTrack(track, axes, factors) {
+  const places = new Places(track, axes, factors),
+    seen = Object.create(track);
+  Object.defineProperty(seen, 'p', {
+    get() {
+      places.update();
+      return places.array;
+    },
+  });
+  seen.distance = row => track.distance(row);
+  return seen;
+}
+
+// The run seen along the axis that `name`, "xy", "xz" or "yz", lacks. It follows the run. Heights of
+// a flat box are `stretch[1]` times what they are.
+export function projected(run, name) {
+  run.projections ??= new Map();
+  if (run.projections.has(name)) return run.projections.get(name);
+  const axes = axesOf(name),
+    hidden = 3 - axes[0] - axes[1],
+    { mission } = run,
+    { modes } = mission,
+    [a, b] = axes,
+    tracks = new Map();
+  const pick = list => axes.map(axis => list[axis]),
+    stretch = axes.map(axis => (axis === 2 ? stretchOf(mission.size_m) : 1));
+  const size = pick(mission.size_m).map((l, i) => l * stretch[i]);
+  const seen = Object.assign(Object.create(run), {
+    axes,
+    size,
+    stretch,
+    outline: undefined,
+    levels: undefined,
+    nowhere: undefined,
+    pace: undefined,
+    mission: { ...mission, size_m: size, box_m: mission.size_m, origin_m: pick(mission.origin_m) },
+    // From above the record has the density itself.
+    density:
+      hidden === 2
+        ? run.density
+        : targetOfModes(averageOf(mission.target, modes, hidden), modes[a], modes[b], size),
+    picture: (layer, row, width, height) =>
+      picture(averageOf(run.coefficients(layer, row), modes, hidden), modes[a], modes[b], width, height),
+  });
+  Object.defineProperty(seen, 'tracks', {
+    get: () =>
+      run.tracks.map(track => {
+        if (!tracks.has(track)) tracks.set(track, projectedTrack(track, axes, stretch));
+        return tracks.get(track);
+      }),
+  });
+  run.projections.set(name, seen);
+  return seen;
+}

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Holds a mission as the page shows it, from a record or as it grows, without any drawing.
+import { picture } from './cosine_sums.js';
+import { Coverage } from './coverage.js';
+import { Track, addTracks, bytesOf } from './tracks.js';
+
+const TOLERANCE_S = 1e-6;
+const LONG_BLOCK_S = 1; // bodies that pass each other have shorter ones
+
+// The last index with list[i] ≤ t; −1: none.
+export function indexAt(list, t) {
+  let low = 0,
+    high = list.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (list[middle] <= t + TOLERANCE_S) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}
+
+export class Run {
+  constructor(mission, stride, capacity) {
+    this.mission = mission;
+    this.size = mission.size_m;
+    this.inBox = mission.size_m.length > 2;
+    this.axes = [0, 1]; // of the map, and how many times as long they are drawn
+    this.stretch = [1, 1];
+    this.stride = stride;
+    this.step = mission.dt_s * stride; // mission time between rows
+    this.capacity = capacity;
+    this.rows = 0;
+    this.tracks = []; // ascending by id
+    this.byId = new Map();
+    this.metrics = { t: [], phi: [], spread: [], age: [], received: [], lost: [] };
+    this.incidents = []; // {t, kind, sign, text, agent, until}, ascending
+    this.holds = []; // [first tick that does not count, first that counts again or null]
+    this.history = []; // {t, team} as live statuses came
+    this.times = []; // their t
+    // In ticks that count.
+    this.restFrom = new Map((mission.stations ?? []).map(station => [station.id, station.rest_from]));
+    this.homeFrom = new Map(); // tick from which an agent goes home, where no status says it
+    this.summary = null;
+    this.coverage = new Coverage(this);
+    // The modes of the wire begin with those without waves along z.
+    this.density =
+      decodeDensity(mission.density) ??
+      targetOfModes(mission.target, this.coverage.M, this.coverage.N, this.size);
+  }
+  get end() {
+    return Math.max(0, this.rows - 1) * this.step;
+  }
+  heldAt(row) {
+    const tick = row * this.stride;
+    return this.holds.some(([from, until]) => from <= tick && tick < (until ?? Infinity));
+  }
+  setHolds(holds) {
+    const pairs = Array.isArray(holds) ? holds.filter(Array.isArray) : [];
+    if (JSON.stringify(pairs) === JSON.stringify(this.holds)) return;
+    this.holds = pairs;
+    this.coverage.reset(0);
+  }
+  // Mission time at `t`, without the ticks that do not count.
+  counted(t) {
+    const tick = t / this.mission.dt_s;
+    return (
+      t -
+      this.mission.dt_s *
+        this.holds.reduce(
+          (sum, [from, until]) => sum + Math.max(0, Math.min(tick, until ?? Infinity) - from),
+          0,
+        )
+    );
+  }
+  rests(id, row) {
+    return (
+      Math.round(this.counted(row * this.step) / this.mission.dt_s) >= (this.restFrom.get(id) ?? Infinity)
+    );
+  }
+  goesHome(id, row) {
+    return row * this.stride >= (this.homeFrom.get(id) ?? Infinity);
+  }
+  rowAt(t) {
+    return Math.max(0, Math.min(this.rows - 1, Math.round(t / this.step)));
+  }
+  track(id) {
+    let track = this.byId.get(id);
+    if (!track) {
+      track = new Track(id, this.inBox);
+      this.byId.set(id, track);
+      this.tracks.push(track);
+      this.tracks.sort((a, b) => a.id - b.id);
+    }
+    return track;
+  }
+  add(block) {
+    const first = addTracks(this, block);
+    if (first < this.coverage.upto || first < (this.coverage.sums.length - 1) * 128)
+      this.coverage.reset(first);
+  }
+  // cₖ at a row of a layer of the map: of what was achieved, or what is too much of it.
+  coefficients(layer, row) {
+    const { target } = this.mission;
+    if (layer === 'target') return target;
+    const c = this.coverage.at(row);
+    return layer === 'difference' ? c.map((v, k) => v - target[k]) : c;
+  }
+  // The same on a grid, the north-west first.
+  picture(layer, row, width, height) {
+    return picture(this.coefficients(layer, row), this.coverage.M, this.coverage.N, width, height);
+  }
+  metricAt(t) {
+    const i = indexAt(this.metrics.t, t);
+    return i < 0 ? NaN : this.metrics.phi[i];
+  }
+  // What the agents' statuses said last before `t`; null: nothing is known of them.
+  teamAt(t) {
+    const i = indexAt(this.times, t);
+    return i < 0 ? null : this.history[i].team;
+  }
+  // Metres per second over the last second: of one tick, noise is twice the speed.
+  speedAt(track, row) {
+    const n = Math.min(row - track.first, Math.max(1, Math.round(1 / this.step)));
+    if (n < 1 || !track.has(row) || !track.has(row - n)) return null;
+    return track.between(row - n, row) / (n * this.step);
+  }
+  // Agents are members in these ticks: [{id, active_from, active_until, …}], all their incarnations.
+  setRoster(entries) {
+    const intervals = new Map(),
+      row = tick => Math.ceil(tick / this.stride);
+    for (const { id, active_from: from, active_until: until } of entries) {
+      if (typeof id !== 'number' || typeof from !== 'number') continue;
+      if (!intervals.has(id)) intervals.set(id, []);
+      intervals.get(id).push([row(from), typeof until === 'number' ? row(until) : Infinity]);
+    }
+    let changed = Infinity;
+    for (const [id, list] of intervals) {
+      list.sort((a, b) => a[0] - b[0]);
+      const track = this.byId.get(id);
+      if (!track || String(track.member) === String(list)) continue;
+      const parts = [...track.member, ...list].flat().filter(isFinite);
+      // The rows before the first boundary that differs stay as they are.
+      changed = Math.min(
+        changed,
+        ...parts.filter(r => track.isMember(r) !== list.some(([a, b]) => r >= a && r < b)),
+        this.rows,
+      );
+      track.member = list;
+    }
+    if (changed < this.rows) this.coverage.reset(changed);
+  }
+}
+
+// The end of a scale of these values: few are above it.
+export function fullOf(values) {
+  const sorted = Float32Array.from(values).sort();
+  return Math.max(2, sorted[Math.floor(0.998 * (sorted.length - 1))]);
+}
+
+// Without a recorded density the picture is what the modes say of the target.
+export function targetOfModes(target, M, N, [lx, ly]) {
+  const most = 160,
+    scale = most / Math.max(lx, ly);
+  const width = Math.max(16, Math.round(lx * scale)),
+    height = Math.max(16, Math.round(ly * scale));
+  const values = picture(target, M, N, width, height),
+    full = fullOf(values);
+  return {
+    width,
+    height,
+    full,
+    cells: Uint8Array.from(values, v => Math.max(1, Math.min(255, (255 * v) / full))),
+  };
+}
+
+function decodeDensity(coded) {
+  return coded && { width: coded.width, height: coded.height, full: coded.full, cells: bytesOf(coded.data) };
+}
+
+// A record as report/page.h writes it.
+export function recordedRun(record) {
+  const run = new Run(record.mission, record.stride, record.rows);
+  run.add(record.tracks);
+  run.metrics = record.metrics;
+  run.summary =
+    record.summary && typeof record.summary === 'object' && !Array.isArray(record.summary)
+      ? record.summary
+      : null;
+  run.setHolds(run.summary?.holds);
+  run.homeFrom = new Map(Object.entries(record.home_from ?? {}).map(([id, tick]) => [Number(id), tick]));
+  run.slope = record.slope;
+  run.ticks = record.ticks;
+  const agents = Array.isArray(run.summary?.agents)
+    ? run.summary.agents.filter(a => a && typeof a === 'object')
+    : [];
+  run.setRoster(agents);
+  const roster = rosterIncidents(agents, run.mission.dt_s, run.end);
+  const heard = record.team?.incidents ?? [];
+  run.incidents = withMore(
+    [...heard, ...(heard.some(one => one.kind === 'paused') ? [] : pauses(run))],
+    roster,
+  );
+  if (record.team) recordHistory(run, record.team);
+  return run;
+}
+
+// What was heard, and what only the roster tells: of agents of which nothing was heard.
+export function withMore(heard, roster) {
+  const known = new Set(heard.map(incident => incident.agent));
+  return [...heard, ...roster.filter(incident => !known.has(incident.agent))].sort((a, b) => a.t - b.t);
+}
+
+// How the agents were, as cli/team/recorded_team.h writes it, in the shape of live statuses.
+function recordHistory(run, { t, metric, agents, words, phases }) {
+  run.times = t;
+  run.history = t.map((at, i) => {
+    const list = Object.entries(agents)
+      .filter(([, own]) => own.state[i] !== null)
+      .map(([id, own]) => ({
+        id: Number(id),
+        state: words[own.state[i]],
+        phase: phases[own.phase[i]],
+        silent_s: own.silent_s[i],
+        waiting_for: own.waits_for[i],
+        ergodic_metric: own.metric[i],
+        max_staleness_s: own.age_s[i],
+        loop_lag_s: own.lag_s[i],
+        contributions_lost: own.lost[i],
+        kernel_drops: own.drops[i],
+      }));
+    return {
+      t: at,
+      team: { ergodic_metric: metric[i], agents: list, byId: new Map(list.map(agent => [agent.id, agent])) },
+    };
+  });
+}
+
+// The pauses of which no status tells.
+function pauses(run) {
+  const {
+    mission: { dt_s: dt },
+    end,
+  } = run;
+  return run.holds.map(([from, until]) => ({
+    t: from * dt,
+    kind: 'paused',
+    sign: '‖',
+    text: 'paused by an operator',
+    until: Math.min(end, (until ?? Infinity) * dt),
+  }));
+}
+
+// What the roster tells of departures and returns.
+export function rosterIncidents(entries, dt, end) {
+  const incidents = [],
+    byId = new Map();
+  for (const entry of entries) {
+    if (typeof entry.id !== 'number' || typeof entry.active_from !== 'number') continue;
+    if (!byId.has(entry.id)) byId.set(entry.id, []);
+    byId.get(entry.id).push(entry);
+  }
+  for (const [id, list] of byId) {
+    list.sort((a, b) => a.active_from - b.active_from);
+    list.forEach((entry, i) => {
+      const from = entry.active_from * dt,
+        left = list[i - 1]?.active_until;
+      if (i > 0 && typeof left === 'number' && entry.active_from - left <= 1) {
+        incidents.push({ t: from, kind: 'ok', sign: '↻', text: `${id} restarted`, agent: id });
+      } else if (entry.active_from > 0) {
+        incidents.push({
+          t: from,
+          kind: 'ok',
+          sign: '+',
+          text: `${id} ${i > 0 ? 'back' : 'joined'}`,
+          agent: id,
+        });
+      }
+      const until = entry.active_until,
+        next = list[i + 1]?.active_from;
+      if (typeof until === 'number' && !(next - until <= 1)) {
+        incidents.push({
+          t: until * dt,
+          kind: 'gone',
+          sign: '–',
+          text: `${id} left`,
+          agent: id,
+          until: Math.min(end, (next ?? Infinity) * dt),
+        });
+      }
+    });
+  }
+  return incidents.sort((a, b) => a.t - b.t);
+}
+
+// The state of an agent at a time, for marker and table. Rank: 0 worst.
+export function stateOf(run, track, t) {
+  const row = run.rowAt(t),
+    team = run.teamAt(t),
+    said = team?.byId.get(track.id);
+  if (row < track.first) return { kind: 'gone', text: 'not there yet', rank: 5, said };
+  if (!track.isMember(row)) return { kind: 'gone', text: 'left', rank: 4, said };
+  if (!said || said.state === 'ok') return { ...dutyOf(run, track, row, said), rank: 6, said };
+  const kinds = { silent: 'silent', waiting: 'late', late: 'late', 'not heard': 'gone', gone: 'gone' };
+  const kind = kinds[said.state] ?? 'ok';
+  const text =
+    said.state === 'silent'
+      ? `silent ${said.silent_s.toFixed(0)} s`
+      : said.state === 'not heard'
+        ? 'not heard yet'
+        : said.state === 'waiting' && said.waiting_for
+          ? `waits for ${said.waiting_for}`
+          : said.state;
+  return {
+    kind,
+    text,
+    rank: { silent: 0, waiting: 1, late: 2, 'not heard': 3, gone: 4 }[said.state] ?? 6,
+    said,
+  };
+}
+
+// What an agent does with which all is well. It says so itself, or the plan and its track do.
+function dutyOf(run, track, row, said) {
+  if (run.heldAt(row)) return { kind: 'idle', text: 'paused' };
+  const phase =
+    said?.phase ??
+    (run.rests(track.id, row) ? 'resting' : run.goesHome(track.id, row) ? 'returning' : 'running');
+  if (phase === 'resting') return { kind: 'idle', text: 'rests' };
+  if (phase === 'returning') return { kind: 'ok', text: 'goes home' };
+  if (said?.blocked_s >= LONG_BLOCK_S)
+    return {
+      kind: 'ok',
+      text: `blocked by ${typeof said.blocked_by === 'number' ? said.blocked_by : 'an edge'}`,
+    };
+  return { kind: 'ok', text: phase === 'waiting' ? 'ready' : 'ok' };
+}

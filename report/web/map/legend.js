@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shows which shading, trail, axis, quantity and theme are chosen, and what their colours mean.
+import { themeColours } from '../colours.js';
+import { S, ask, inSpace, shown } from '../panels/state.js';
+import { TAILS } from './map.js';
+import { colourTeam } from '../panels/team.js';
+import { redraw } from '../panels/screen.js';
+import { $, put } from '../text.js';
+import { meaningOf } from '../panels/words.js';
+
+export function showLegend() {
+  const difference = S.layer === 'difference',
+    full = S.run ? (inSpace() ? S.run.range.full : shown().density.full) : 2,
+    times = v => `${v.toFixed(v < 10 ? 1 : 0)}×`;
+  put($('scaleLow'), difference ? `too little −${times(full / 2)}` : '0');
+  put($('scaleHigh'), difference ? `+${times(full / 2)} too much` : `≥ ${times(full)} average`);
+  const ramp = $('ramp'),
+    g = ramp.getContext('2d'),
+    image = g.createImageData(ramp.width, 1),
+    pixels = new Uint32Array(image.data.buffer);
+  const table = S.colours[difference ? 'difference' : 'amount'];
+  pixels.forEach((_, i) => {
+    pixels[i] = table[Math.floor((i / (pixels.length - 1)) * 255)];
+  });
+  g.putImageData(image, 0, 0);
+  for (const [id, value] of [
+    ['layer', S.layer],
+    ['axis', S.axis],
+  ]) {
+    for (const button of $(id).children) button.setAttribute('aria-pressed', button.dataset.value === value);
+  }
+  $('guide').setAttribute('aria-pressed', S.guide);
+  $('guide').hidden = S.quantity !== 'phi';
+  $('quantity').value = S.quantity;
+  $('quantity').title = meaningOf(
+    'CHART',
+    {
+      phi: 'Ergodic metric φ²',
+      spread: 'Disagreement on φ²',
+      age: 'Oldest update',
+      rate: 'Messages per second',
+    }[S.quantity],
+  );
+  const seconds = TAILS[S.tail];
+  put($('tailText'), seconds === Infinity ? 'all' : seconds ? `${seconds} s` : 'off');
+  $('tail').value = S.tail;
+}
+
+export function set(key, value) {
+  S[key] = value;
+  showLegend();
+  ask();
+}
+
+export function setTheme(theme) {
+  document.documentElement.dataset.theme = S.theme = theme;
+  S.colours = themeColours(theme);
+  colourTeam();
+  showLegend();
+  redraw();
+}

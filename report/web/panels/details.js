@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shows the key figures under the map, and the dialog with all that a record holds besides.
+import { S } from './state.js';
+import { NOTABLE, lateCommands, lateText } from './notices.js';
+import { $, duration, element, grouped, ofModes, readable } from '../text.js';
+import { meaningOf } from './words.js';
+
+function list(pairs, css) {
+  const dl = element('dl', css);
+  for (const [name, value] of pairs) {
+    const box = element('div');
+    box.append(element('dt', '', name), element('dd', '', value));
+    dl.append(box);
+  }
+  return dl;
+}
+
+// A value of the summary as text; a summary may say anything.
+function said(object, path) {
+  for (const key of path.split('.')) object = object && typeof object === 'object' ? object[key] : undefined;
+  if (typeof object === 'number') return Number.isInteger(object) ? grouped(object) : readable(object);
+  if (typeof object === 'boolean') return object ? 'yes' : 'no';
+  return typeof object === 'string' ? object : undefined;
+}
+const present = pairs => pairs.filter(([, value]) => value !== undefined && value !== '');
+
+function slopeText(run) {
+  return typeof run.slope === 'number' ? run.slope.toFixed(2).replace('-', '−') : '–';
+}
+
+// `live`: {rate, lost, authenticated, …} of a team that flies, or null.
+export function showFacts(live) {
+  const { run } = S,
+    { mission, summary, metrics } = run,
+    { phi } = metrics,
+    late = lateCommands();
+  const pairs = live
+    ? [
+        ['messages per second', readable(live.rate)],
+        ['messages lost', grouped(live.lost)],
+        ['late commands', lateText(late)],
+        ['authenticated', live.authenticated ? 'yes' : 'no'],
+        ['ticks', `${grouped(mission.tick_count)} × ${mission.dt_s} s`],
+        ['modes', mission.modes.join(' × ')],
+        ['seed', mission.seed],
+        ['run', (live.replay ? 'replay of ' : '') + live.run.slice(0, 8)],
+      ]
+    : [
+        ['result', said(summary, 'result') ?? 'no summary'],
+        ...present([['φ² in modes of', mission.free_domain ? 'the free domain' : '']]),
+        ['φ² first', readable(phi[0])],
+        ['φ² last', readable(phi[phi.length - 1])],
+        ['slope, last decade', slopeText(run)],
+        [
+          'ticks',
+          grouped(run.ticks) +
+            (run.ticks < mission.tick_count ? ` of ${grouped(mission.tick_count)}` : '') +
+            ` × ${mission.dt_s} s`,
+        ],
+        ['modes', mission.modes.join(' × ')],
+        ['seed', mission.seed],
+        ['mode', said(summary, 'mode') ?? '–'],
+        ...present([
+          ['blocked share', said(summary, 'separation.blocked_share')],
+          ['longest block [s]', said(summary, 'separation.longest_block_s')],
+        ]),
+        ['messages', said(summary, 'messages.sent') ?? '–'],
+        ['lost', said(summary, 'messages.lost') ?? '–'],
+        ...present([['late commands', late.missed > 0 ? lateText(late) : '']]),
+        ['ticks missing', said(summary, 'gaps') ?? '–'],
+        ['run', (said(summary, 'run_id') ?? '–').slice(0, 8)],
+      ];
+  const boxes = [...list(pairs).children];
+  boxes.forEach((box, i) => {
+    box.title = meaningOf('FIGURES', pairs[i][0]);
+  });
+  if (Math.max(late.share, late.lately) >= NOTABLE)
+    boxes.find((_, i) => pairs[i][0] === 'late commands')?.lastChild.classList.add('late');
+  $('facts').replaceChildren(...boxes);
+}
+
+const AGENT_COLUMNS = [
+  ['agent', 'id', 'Its number'],
+  ['host', 'host', 'The machine that its process ran on'],
+  ['incarnation', 'incarnation', 'Which process it was: a restarted one has another'],
+  ['from tick', 'active_from', 'The first tick at which its coverage counts'],
+  ['until', 'active_until', 'The first tick at which its coverage no longer counts'],
+  ['messages sent', 'messages_sent', 'On all buses'],
+  ['received', 'messages_received', 'On all buses'],
+  ['contributions', 'contributions_received', 'Messages with coverage of teammates that it received'],
+  ['lost', 'contributions_lost', 'Messages that teammates sent and it did not receive'],
+  ['missed ticks', 'missed_ticks', 'Ticks of the world that passed without its command'],
+  [
+    'blocked ticks',
+    'blocked_ticks',
+    'Ticks in which a body or an edge left less than a tenth of its command',
+  ],
+  ['longest block', 'longest_block_ticks', 'The most such ticks without a break'],
+  [
+    'oldest update [s]',
+    'max_staleness_s',
+    'The mission time since it last received coverage of the teammate that it knows least of',
+  ],
+  ['dropped', 'kernel_drops', 'Datagrams that the kernel dropped before it read them'],
+  ['own φ²', 'ergodic_metric', 'φ² of the coverage that it knew at the end'],
+];
+
+function table(columns, objects) {
+  const box = element('div', 'scroll'),
+    made = element('table'),
+    head = element('tr'),
+    body = element('tbody');
+  const used = columns.filter(([, key]) => objects.some(object => said(object, key) !== undefined));
+  head.append(
+    ...used.map(([title, key, means = '']) => {
+      const th = element('th', '', key === 'ergodic_metric' ? title + ofModes(S.run.mission) : title);
+      th.title = means;
+      return th;
+    }),
+  );
+  for (const object of objects) {
+    const tr = element('tr');
+    tr.append(...used.map(([, key]) => element('td', '', said(object, key) ?? '–')));
+    body.append(tr);
+  }
+  const top = element('thead');
+  top.append(head);
+  made.append(top, body);
+  box.append(made);
+  return box;
+}
+
+const objectsOf = value => (Array.isArray(value) ? value.filter(v => v && typeof v === 'object') : []);
+
+function refusals(summary) {
+  const refused = summary?.messages?.refused;
+  if (!refused || typeof refused !== 'object') return undefined;
+  return (
+    Object.entries(refused)
+      .filter(([, n]) => typeof n === 'number' && n > 0)
+      .map(([why, n]) => `${grouped(n)} for ${why}`)
+      .join(', ') || 'none'
+  );
+}
+
+function commands(mode) {
+  const lines = [];
+  if (mode !== 'realtime') lines.push('# simulate it again and compare every position', 'ergocast verify .');
+  lines.push(
+    '# the same mission as a new run',
+    'ergocast simulate scenario.textproto --out ../again',
+    '# make this page again',
+    'ergocast report .',
+    '# this page from a server',
+    'ergocast watch .',
+  );
+  if (mode !== undefined && mode !== 'simulate') {
+    lines.push('# send its messages again, for ergocast status and lcm-spy', 'ergocast replay .');
+  }
+  return lines.join('\n');
+}
+
+const heading = text => element('h2', '', text);
+
+export function showDetails() {
+  const { run } = S,
+    { summary, mission } = run,
+    parts = [];
+  if (summary) {
+    const pace =
+      said(summary, 'mode') === 'realtime'
+        ? `real time × ${said(summary, 'realtime_factor') ?? 1}`
+        : said(summary, 'mode');
+    parts.push(
+      heading('Run'),
+      list(
+        present([
+          ['result', [said(summary, 'result'), said(summary, 'reason')].filter(Boolean).join(': ')],
+          ['mode', pace],
+          ['started', said(summary, 'started')],
+          ['mission time', duration(run.end)],
+          ['wall time [s]', said(summary, 'wall_time_s')],
+          ['ticks per second', said(summary, 'ticks_per_s')],
+          ['restarts', said(summary, 'restarts')],
+          ['late commands', said(summary, 'missed_deadlines')],
+          ['skipped ticks', said(summary, 'skipped_ticks')],
+          ['commands cut to the speed limit', said(summary, 'speed_limit.clamped_commands')],
+          ['dropped by the kernel', said(summary, 'messages.kernel_drops')],
+          ['refused messages', refusals(summary)],
+          ['run', said(summary, 'run_id')],
+          ['scenario hash', said(summary, 'scenario_hash')],
+          ['version', said(summary, 'version')],
+          ['build', said(summary, 'build')],
+          ['processor has FMA', said(summary, 'cpu_fma')],
+        ]),
+        'list',
+      ),
+    );
+    const agents = objectsOf(summary.agents),
+      processes = objectsOf(summary.processes);
+    if (agents.length) parts.push(heading('Messages of each agent'), table(AGENT_COLUMNS, agents));
+    if (processes.length)
+      parts.push(
+        heading('Processes'),
+        table(
+          [
+            ['process', 'name'],
+            ['restarts', 'restarts'],
+            ['end', 'end'],
+          ],
+          processes,
+        ),
+      );
+  } else if (!S.live) {
+    parts.push(
+      element(
+        'p',
+        '',
+        'There is no summary.json: the run has not ended yet or was killed. ' +
+          'What was recorded up to then is shown.',
+      ),
+    );
+  }
+  parts.push(
+    heading('Conventions'),
+    element(
+      'p',
+      'muted',
+      'A φ² can be compared with another only if the weights, the modes and hₖ are the same.',
+    ),
+    list(mission.conventions, 'list'),
+  );
+  if (run.stride > 1)
+    parts.push(
+      element(
+        'p',
+        'muted',
+        `Of this long mission the page has every ${run.stride}th tick; its cₖ are those of these ticks.`,
+      ),
+    );
+  if (!S.live)
+    parts.push(
+      heading('How to reproduce'),
+      element('p', 'muted', 'In the run’s directory:'),
+      element('pre', '', commands(said(summary, 'mode'))),
+    );
+  $('detailsText').replaceChildren(...parts);
+  $('details').showModal();
+}

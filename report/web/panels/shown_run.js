@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chooses which run the page shows: a record, or a running team that later becomes a record.
+import { S, ask, startTail } from './state.js';
+import { buildStrip, seek, showFollowing } from './timeline.js';
+import { buildTeam } from './team.js';
+import { showFacts } from './details.js';
+import { set, showLegend } from '../map/legend.js';
+import { layout } from './screen.js';
+import { QUANTITIES } from './chart.js';
+import { beginSpace } from '../map/space_controls.js';
+import { $, ofModes, put } from '../text.js';
+
+const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';
+
+let runs = 0;
+
+// φ² over time is as it was recorded; the maps are of cosines.
+function nameBasis(run) {
+  const basis = ofModes(run.mission);
+  QUANTITIES.phi.title = basis ? `φ²${basis}` : 'Ergodic metric φ²';
+  QUANTITIES.spread.title = `Disagreement on φ²${basis}`;
+  put($('metricName'), `φ²${basis}`);
+  for (const option of $('quantity').options) option.text = QUANTITIES[option.value].title;
+}
+
+function show(run) {
+  run.id = ++runs;
+  const first = !S.run;
+  S.run = run;
+  put($('name'), run.mission.name);
+  document.title = `${run.mission.name} – Ergocast`;
+  $('slider').max = Math.max(0, run.rows - 1);
+  $('slider').step = 1;
+  nameBasis(run);
+  $('radioLabel').hidden = !(run.mission.radio_range_m > 0);
+  if (first) S.tail = startTail(run);
+  beginSpace(run);
+  buildTeam();
+  showLegend();
+  layout();
+}
+
+// Checkpoints are made in slices, so that the page answers meanwhile.
+function buildCheckpoints(run) {
+  if (S.run === run && !run.coverage.build(6)) setTimeout(() => buildCheckpoints(run), 0);
+  else run.ready = true;
+}
+
+export function showRecord(run, at) {
+  S.live = S.following = false;
+  S.facts = null;
+  show(run);
+  showFollowing();
+  showFacts(null);
+  seek(Math.min(at ?? run.end, run.end));
+  buildCheckpoints(run);
+}
+
+export const livePage = {
+  began(run, facts) {
+    S.facts = facts;
+    S.live = S.following = true;
+    show(run);
+    showFollowing();
+  },
+  changed(facts) {
+    S.facts = facts;
+    const { run } = S;
+    $('slider').max = Math.max(0, run.rows - 1);
+    if (run.newIncidents) {
+      const last = run.incidents[run.incidents.length - 1];
+      if (last) put($('spoken'), `${last.text} at ${last.t.toFixed(0)} s`);
+      run.newIncidents = false;
+      buildStrip();
+    }
+    if (performance.now() - (run.stripAt ?? 0) > 500) {
+      run.stripAt = performance.now();
+      buildStrip();
+      showFacts(facts);
+    }
+    if (run.tracks.length > 12 && !run.tailChosen) {
+      run.tailChosen = true;
+      set('tail', startTail(run));
+    }
+    put($('authentication'), facts.replay ? 'replay' : facts.authenticated ? '' : 'not authenticated');
+    $('authentication').title = facts.replay ? 'ergocast replay sends a record: nobody flies' : NO_KEY;
+    $('authentication').hidden = facts.authenticated && !facts.replay;
+    ask();
+  },
+  ended(run, text) {
+    const at = S.following ? undefined : S.t;
+    if (run) showRecord(run, at);
+    this.lost('');
+    put($('spoken'), `The mission has ended: ${text}`);
+  },
+  lost(text) {
+    put($('banner'), text);
+    $('banner').hidden = !text;
+  },
+};

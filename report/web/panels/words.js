@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Explains the labels of a run's page in plain words, for their tooltips and the list in the help.
+import { S } from './state.js';
+import { $, element } from '../text.js';
+
+const PHI =
+  'How far the time that the team has spent at each place is from the target. ' +
+  '0 is a perfect match; less is better.';
+
+const TOP = {
+  state: 'What the mission does at the chosen time.',
+  time: 'Mission time. Ticks of a pause do not count.',
+  'φ²': `The ergodic metric. ${PHI}`,
+  agents: 'Agents that report, of those that the mission has.',
+};
+const MAP = {
+  Target: 'Where the target wants the team to spend its time.',
+  Achieved: 'Where the team has spent its time up to the chosen time.',
+  Difference: 'Where the team has been too little or too much: this is what φ² adds up.',
+  scale: 'A colour says how many times denser a place is than the average of the domain.',
+  Trail: 'How much of its way is drawn behind each agent.',
+  'Radio range': 'Teammates inside an agent’s circle receive what the agent sends.',
+  pin: 'Its tip is where an agent is, and the arrow there says where it goes. The pin’s size means nothing.',
+  disc: 'An agent’s body, to scale. Its radius is half the distance that bodies keep.',
+  cross: 'Where an agent started.',
+  square: 'A station: where an agent is at the end of the mission.',
+  'hatched area': 'The target is 0 here: it wants no agent.',
+};
+const CHART = {
+  'Ergodic metric φ²': PHI,
+  'Disagreement on φ²':
+    'The largest minus the smallest φ² that agents compute of what each of them knows. 0: all know the same.',
+  'Oldest update': 'The time since the worst informed agent last received coverage of one of its teammates.',
+  'Messages per second': 'Contributions that arrive at all agents, each second of mission time.',
+  '∝ 1/t': 'A line that falls like 1/t, to compare the slope of φ² with.',
+  'log t': 'Equal steps multiply the time, so the beginning has room.',
+  linear: 'Equal steps add the same time.',
+};
+const AGENTS = {
+  '#': 'The number of an agent. A click on its row chooses the agent.',
+  State: 'Whether it runs, rests, goes home, waits for another process, is late, silent or gone.',
+  Speed: 'Over the last second.',
+  Distance: 'The length of its way since the start.',
+  'Oldest update':
+    'The mission time since it last received coverage of the teammate that it knows least of. ' +
+    'It grows when a teammate stops or messages are lost.',
+  'φ² vs team':
+    'How far the φ² that it computes is above (+) or below (−) the team’s median. ' +
+    'Near 0 % it knows what the others know.',
+  Lag:
+    'The longest time in the last half second that its process woke up late. ' +
+    'Above 100 ms the machine is too busy.',
+  'Own φ²': 'φ² of the coverage that it knew at the end',
+  Lost: 'Messages that teammates sent and it did not receive.',
+  Dropped:
+    'Datagrams that the kernel dropped before it read them: ' +
+    'the machine is too slow, or the buffers are too small.',
+};
+const FIGURES = {
+  result:
+    'done: the last tick of the plan is recorded. stopped: it ended before. failed: it could not go on.',
+  'φ² in modes of': 'Which modes the numbers of φ² are of. They compare only with numbers of the same modes.',
+  'φ² first': 'At the first recorded time.',
+  'φ² last': 'At the last recorded time.',
+  'slope, last decade': 'The power of t that fits φ² over the last tenfold of time. −1 falls like 1/t.',
+  ticks: 'Control steps, and the mission time that each of them takes.',
+  modes: 'How many cosine waves along each axis describe coverage and target.',
+  seed: 'The number from which all random numbers of the mission follow.',
+  mode: 'simulate: in one process. lockstep: every tick waits for all processes. realtime: by the clock.',
+  'blocked share':
+    'Share of the agents’ ticks in which a body or an edge left less than a tenth of the command.',
+  'longest block [s]': 'The longest time for which a body or an edge blocked one agent without a break.',
+  messages: 'Sent by all agents together.',
+  lost: 'Messages that others sent and agents did not receive.',
+  'ticks missing': 'Ticks without a recorded position before the last one.',
+  run: 'The first digits of the run’s identifier.',
+  'messages per second': 'Sent by all agents together, each second of wall time.',
+  'messages lost': 'Messages that others sent and agents did not receive, since the start.',
+  'late commands': 'Commands that were missing when their tick ended, since the start.',
+  authenticated:
+    'Whether the team has a key. Without one any host on the network may have sent what is shown.',
+};
+const SECTIONS = [
+  ['Top line', TOP],
+  ['Map', MAP],
+  ['Chart', CHART],
+  ['Agents', AGENTS],
+  ['Key figures', FIGURES],
+];
+
+export const meaningOf = (section, label) => ({ TOP, MAP, CHART, AGENTS, FIGURES })[section][label] ?? '';
+
+// Elements with data-word="SECTION:label" get their tooltips; what follows in `(…)`, the key, stays.
+export function explainLabels() {
+  for (const node of document.querySelectorAll('[data-word]')) {
+    const [section, label] = node.dataset.word.split(':'),
+      key = node.title ? ` (${node.title})` : '';
+    node.title = meaningOf(section, label) + key;
+  }
+}
+
+// What of the map's signs this mission has.
+function isShown(label) {
+  const { mission } = S.run;
+  const needs = {
+    disc: mission.body_radius_m > 0,
+    pin: true,
+    square: mission.stations?.length > 0,
+    'Radio range': mission.radio_range_m > 0,
+    'hatched area': S.run.nowhere?.rectangles.length > 0,
+  };
+  return needs[label] ?? true;
+}
+
+// Fills the list of the help; a screen without a pointer has no tooltips.
+export function listWords() {
+  $('words').replaceChildren(
+    ...SECTIONS.flatMap(([title, words]) => {
+      const dl = element('dl', 'list');
+      for (const [label, text] of Object.entries(words)) {
+        if (!isShown(label)) continue;
+        const row = element('div');
+        row.append(element('dt', '', label), element('dd', '', text));
+        dl.append(row);
+      }
+      return [element('h2', '', title), dl];
+    }),
+  );
+}

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Places the polygons in the plane, then checks each as one that is written in the scenario.
+#include "scenario/compile/polygon_files.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "scenario/compile/drawn_polygons.h"
+#include "scenario/parse/convert.h"
+#include "scenario/rules/polygon_flaw.h"
+#include "scenario/rules/validate_target.h"
+#include "target/geo/geojson.h"
+
+namespace ergocast {
+namespace {
+
+/// Whether the box around the outline has a point in common with the domain.
+bool meets(const Polygon& polygon, const Box& domain) {
+  Eigen::Vector2d low = polygon.outline.front(), high = low;
+  for (const Eigen::Vector2d& corner : polygon.outline) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  const Eigen::Vector2d from = domain.origin_m.head<2>(), to = from + domain.size_m.head<2>();
+  return (high.array() > from.array()).all() && (low.array() < to.array()).all();
+}
+
+template <class Vertices>
+void write_ring(const Ring& ring, Vertices& vertices) {
+  for (const Eigen::Vector2d& corner : ring) {
+    proto::Vertex& vertex = *vertices.Add();
+    vertex.set_x_m(corner.x());
+    vertex.set_y_m(corner.y());
+  }
+}
+
+/// Replaces the file that `written` names by a polygon between the same heights.
+void write_polygon(const Polygon& polygon, proto::Polygon& written) {
+  written.clear_file();
+  written.clear_vertices();
+  written.clear_holes();
+  write_ring(polygon.outline, *written.mutable_vertices());
+  for (const Ring& hole : polygon.holes) write_ring(hole, *written.add_holes()->mutable_vertices());
+}
+
+class PolygonFileReader {
+ public:
+  PolygonFileReader(proto::Scenario& scenario, Checks& checks, Findings& findings)
+      : scenario_(scenario),
+        target_(*scenario.mutable_target()),
+        checks_(checks),
+        findings_(findings) {
+    const proto::Origin& origin = scenario.origin();
+    const GeoPlace place{origin.latitude_deg(), origin.longitude_deg()};
+    const bool is_place = place.latitude_deg >= -90 && place.latitude_deg <= 90 &&
+                          place.longitude_deg >= -180 && place.longitude_deg <= 180;
+    if (scenario.has_origin() && is_place) plane_.emplace(place);
+  }
+
+  void run() {
+    for (int i = 0, listed = target_.regions_size(); i < listed; ++i) region(i);
+    polygons(*target_.mutable_keep_outs(), "target.keep_outs");
+    if (scenario_.world().walls_size() > 0)
+      polygons(*scenario_.mutable_world()->mutable_walls(), "world.walls");
+  }
+
+ private:
+  void region(int index) {
+    const std::string path = indexed("target.regions", index);
+    proto::Region& written = *target_.mutable_regions(index);
+    double area = 0;
+    const auto found = read(written.polygon(), path + ".polygon", area);
+    const double weight = written.weight();
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (i > 0) name(found[i], "target.regions", target_.regions_size());
+      proto::Region& one = i == 0 ? *target_.mutable_regions(index) : *target_.add_regions();
+      if (i > 0) one = target_.regions(index);
+      one.set_weight(weight * area_m2(found[i].polygon) / area);
+      write_polygon(found[i].polygon, *one.mutable_polygon());
+    }
+  }
+
+  /// Reads the files of keep-outs or walls.
+  void polygons(google::protobuf::RepeatedPtrField<proto::Polygon>& list, const std::string& path) {
+    for (int index = 0, listed = list.size(); index < listed; ++index) {
+      double area = 0;
+      const auto found = read(list[index], indexed(path, index), area);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        if (i > 0) name(found[i], path, list.size());
+        proto::Polygon& one = i == 0 ? list[index] : *list.Add();
+        if (i > 0) one = list[index];
+        write_polygon(found[i].polygon, one);
+      }
+    }
+  }
+
+  /// Problems of the block that is added next are those of the file's member.
+  void name(const PlacedPolygon& polygon, const std::string& list, int index) {
+    findings_.blame(indexed(list, index), file_ + ": " + polygon.member);
+  }
+
+  /// The polygons of the file that meet the domain; none if there is no file or a problem.
+  /// @param area  [m²] of all in the file
+  std::vector<PlacedPolygon> read(const proto::Polygon& written, const std::string& path,
+                                  double& area) {
+    if (!written.has_file()) return {};
+    const std::string field = path + ".file";
+    if (written.vertices_size() > 0 || written.holes_size() > 0) {
+      checks_.problem(field, "stands beside vertices or holes", "keep one of them");
+      return {};
+    }
+    file_ = written.file();
+    const bool drawing = file_.ends_with(".svg");
+    if (!drawing && !scenario_.has_origin()) {
+      checks_.problem(field, "needs to know where on the earth the scenario lies",
+                      "add origin { latitude_deg: … longitude_deg: … }, the place of (0, 0)");
+    }
+    const proto::Domain& domain = scenario_.domain();
+    const bool has_place = drawing || plane_.has_value();
+    if (!has_place || !checks_.sound("domain") || !(domain.size_x_m() > 0) ||
+        !(domain.size_y_m() > 0))
+      return {};
+    auto found = drawing ? drawn(field) : on_earth(field);
+    if (!found) return {};
+    return inside(std::move(*found), field, area);
+  }
+
+  /// The polygons that meet the domain, if all are valid.
+  std::vector<PlacedPolygon> inside(std::vector<PlacedPolygon> found, const std::string& field,
+                                    double& area) {
+    const Box domain = domain_of(scenario_.domain());
+    for (const PlacedPolygon& one : found) {
+      area += area_m2(one.polygon);
+      if (!sound(one, field, domain)) return {};
+    }
+    std::erase_if(found, [&](const PlacedPolygon& one) { return !meets(one.polygon, domain); });
+    if (found.empty()) {
+      refuse(field, "", "none of its polygons meets the domain",
+             "move the origin or the domain there");
+    }
+    return found;
+  }
+
+  void refuse(const std::string& field, const std::string& member, const std::string& what,
+              std::string remedy) {
+    checks_.problem(field, file_ + ": " + (member.empty() ? "" : member + ": ") + what,
+                    std::move(remedy));
+  }
+
+  /// @param vertices  of all polygons of the file
+  bool few_enough(std::size_t vertices, const std::string& field, std::string remedy) {
+    if (vertices <= kMaxVertices) return true;
+    refuse(field, "",
+           "has " + std::to_string(vertices) + " vertices, above the limit " +
+               std::to_string(kMaxVertices),
+           std::move(remedy));
+    return false;
+  }
+
+  bool sound(const PlacedPolygon& one, const std::string& field, const Box& domain) {
+    const auto flaw = flaw_of(one.polygon, least_area_m2(domain.size_m.maxCoeff()));
+    if (!flaw) return true;
+    refuse(field, one.member, "ring " + std::to_string(flaw->hole + 1) + ": " + flaw->what,
+           flaw->remedy);
+    return false;
+  }
+
+  std::optional<std::vector<PlacedPolygon>> drawn(const std::string& field) {
+    const auto read = read_svg(file_);
+    if (const auto* problem = std::get_if<PolygonFileProblem>(&read)) {
+      refuse(field, problem->member, problem->what, problem->remedy);
+      return std::nullopt;
+    }
+    const Drawing& drawing = std::get<Drawing>(read);
+    std::size_t vertices = 0;
+    for (const DrawnShape& shape : drawing.shapes)
+      for (const auto& ring : shape.rings) vertices += ring.size();
+    if (!few_enough(vertices, field, "simplify it: in Inkscape, Path > Simplify"))
+      return std::nullopt;
+    auto placed = place_drawing(drawing, domain_of(scenario_.domain()));
+    if (const auto* problem = std::get_if<PolygonFileProblem>(&placed)) {
+      refuse(field, problem->member, problem->what, problem->remedy);
+      return std::nullopt;
+    }
+    return std::get<0>(std::move(placed));
+  }
+
+  std::optional<std::vector<PlacedPolygon>> on_earth(const std::string& field) {
+    const auto read = read_geojson(file_);
+    if (const auto* problem = std::get_if<PolygonFileProblem>(&read)) {
+      refuse(field, problem->member, problem->what, problem->remedy);
+      return std::nullopt;
+    }
+    const auto& polygons = std::get<std::vector<GeoPolygon>>(read);
+    std::size_t vertices = 0;
+    for (const GeoPolygon& polygon : polygons)
+      for (const auto& ring : polygon.rings) vertices += ring.size();
+    if (!few_enough(vertices, field,
+                    "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson"))
+      return std::nullopt;
+    std::vector<PlacedPolygon> placed;
+    for (const GeoPolygon& polygon : polygons) {
+      auto local = local_polygon(polygon, field);
+      if (!local) return std::nullopt;
+      placed.push_back(std::move(*local));
+    }
+    return placed;
+  }
+
+  std::optional<PlacedPolygon> local_polygon(const GeoPolygon& polygon, const std::string& field) {
+    PlacedPolygon local{polygon.member, {}};
+    for (std::size_t i = 0; i < polygon.rings.size(); ++i) {
+      Ring ring;
+      for (const GeoPlace& place : polygon.rings[i]) {
+        ring.push_back(plane_->to_local_m(place));
+        if (ring.back().norm() <= kFarthest_m) continue;
+        refuse(field, polygon.member,
+               "[" + shortest(place.longitude_deg) + ", " + shortest(place.latitude_deg) +
+                   "] is more than 1000 km from the origin",
+               "write longitude before latitude; or move the origin");
+        return std::nullopt;
+      }
+      if (i == 0) {
+        local.polygon.outline = std::move(ring);
+      } else {
+        local.polygon.holes.push_back(std::move(ring));
+      }
+    }
+    return local;
+  }
+
+  proto::Scenario& scenario_;
+  proto::Target& target_;
+  Checks& checks_;
+  Findings& findings_;
+  std::optional<LocalPlane> plane_;  // nothing while the origin is invalid
+  std::string file_;                 // that is being read
+};
+
+}  // namespace
+
+std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario, Checks& checks,
+                                                      Findings& findings) {
+  std::vector<std::filesystem::path> files;
+  const auto add = [&files](const proto::Polygon& polygon) {
+    if (polygon.has_file()) files.emplace_back(polygon.file());
+  };
+  for (const proto::Region& region : scenario.target().regions()) add(region.polygon());
+  for (const proto::Polygon& keep_out : scenario.target().keep_outs()) add(keep_out);
+  for (const proto::Polygon& wall : scenario.world().walls()) add(wall);
+  PolygonFileReader(scenario, checks, findings).run();
+  return files;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copies each Protobuf block into the plain type of the same meaning. Blocks of a mission are
+// copied by the list of its fields.
+#include "scenario/parse/convert.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/require.h"
+#include "plan/mission_fields.h"
+#include "scenario/parse/fields.h"
+
+namespace ergocast {
+namespace {
+
+using google::protobuf::Message;
+
+/// In a plane nothing reads its part along z.
+Eigen::Matrix3d covariance_of(const proto::Gaussian& gaussian) {
+  if (gaussian.has_sigma_m()) {
+    const double sigma_z_m = gaussian.has_sigma_z_m() ? gaussian.sigma_z_m() : 1;
+    const Eigen::Vector3d sigma_m(gaussian.sigma_m(), gaussian.sigma_m(), sigma_z_m);
+    return sigma_m.cwiseProduct(sigma_m).asDiagonal();
+  }
+  const proto::Covariance& c = gaussian.covariance();
+  const double zz_m2 = c.has_zz_m2() ? c.zz_m2() : 1;
+  Eigen::Matrix3d matrix;
+  matrix << c.xx_m2(), c.xy_m2(), c.xz_m2(), c.xy_m2(), c.yy_m2(), c.yz_m2(), c.xz_m2(), c.yz_m2(),
+      zz_m2;
+  return matrix;
+}
+
+Heights heights_of(const proto::Polygon& polygon) {
+  return {polygon.low_z_m(), polygon.high_z_m()};
+}
+
+template <class Vertices>
+Ring ring_of(const Vertices& vertices) {
+  Ring ring;
+  for (const proto::Vertex& vertex : vertices) ring.emplace_back(vertex.x_m(), vertex.y_m());
+  return ring;
+}
+
+void add_rings(const proto::Polygon& polygon, Rings& rings) {
+  rings.push_back(ring_of(polygon.vertices()));
+  for (const proto::Ring& hole : polygon.holes()) rings.push_back(ring_of(hole.vertices()));
+}
+
+/// Fills a part of a mission from the fields of the same names in `block`.
+class BlockReader : public FieldVisitor {
+ public:
+  explicit BlockReader(const Message& block) : block_(block) {}
+
+  template <class Number>
+  void number(int, const char* name, Number& value, const Limits&, bool = true) {
+    const auto [block, field] = find_field(block_, name);
+    value = static_cast<Number>(number_in(block, field));
+  }
+  template <class Number>
+  void number_unless(int, const char* name, Number& value, const Limits&, double usual) {
+    const auto [block, field] = find_field(block_, name);
+    const bool is_set = block.GetReflection()->HasField(block, &field);
+    value = static_cast<Number>(is_set ? number_in(block, field) : usual);
+  }
+  template <class Number>
+  void height(int number, const char* name, Number& value, const Limits& limits, double in_plane) {
+    number_unless(number, name, value, limits, in_plane);
+  }
+  void flag(int, const char* name, bool& value) {
+    const auto [block, field] = find_field(block_, name);
+    value = block.GetReflection()->GetBool(block, &field);
+  }
+  template <class Enum>
+  void choice(int, const char* name, Enum& value, Words words, bool = true) {
+    const auto [block, field] = find_field(block_, name);
+    const auto* word =
+        std::ranges::find(words, block.GetReflection()->GetEnum(block, &field)->name());
+    ERGOCAST_REQUIRE(word != words.end());
+    value = static_cast<Enum>(word - words.begin());
+  }
+  void kinds(int, const char* name, std::vector<AgentKind>& kinds) {
+    const auto [block, field] = find_field(block_, name);
+    const auto* fields = block.GetReflection();
+    for (int i = 0; i < fields->FieldSize(block, &field); ++i) {
+      BlockReader inner(fields->GetRepeatedMessage(block, &field, i));
+      list_fields(inner, kinds.emplace_back());
+    }
+  }
+  void kind_name(int, const char* name, std::string& value) {
+    const auto [block, field] = find_field(block_, name);
+    value = block.GetReflection()->GetString(block, &field);
+  }
+  void own_vehicle(int, const char* name, std::optional<VehicleLimits>& vehicle) {
+    const auto [block, field] = find_field(block_, name);
+    if (block.GetReflection()->HasField(block, &field)) part(0, name, vehicle.emplace());
+  }
+  void stations(int, int, const char* name, std::vector<Eigen::Vector3d>& places_m) {
+    const auto [block, field] = find_field(block_, name);
+    const auto* fields = block.GetReflection();
+    for (int i = 0; i < fields->FieldSize(block, &field); ++i) {
+      const auto& place =
+          static_cast<const proto::Start&>(fields->GetRepeatedMessage(block, &field, i));
+      places_m.emplace_back(place.x_m(), place.y_m(), place.z_m());
+    }
+  }
+  void part(int, const char* name, auto& part) {
+    const auto [block, field] = find_field(block_, name);
+    BlockReader inner(block.GetReflection()->GetMessage(block, &field));
+    list_fields(inner, part);
+  }
+
+ private:
+  const Message& block_;
+};
+
+template <class Part>
+Part part_of(const Message& block) {
+  Part part;
+  BlockReader reader(block);
+  list_fields(reader, part);
+  return part;
+}
+
+}  // namespace
+
+Box domain_of(const proto::Domain& domain) { return part_of<Box>(domain); }
+Basis basis_of(const proto::Basis& basis) { return part_of<Basis>(basis); }
+
+Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain) {
+  switch (law.contraction_center()) {
+    case proto::Law::COORDINATE_ORIGIN:
+      return {0, 0, 0};
+    case proto::Law::POINT:
+      return {law.contraction_x_m(), law.contraction_y_m(), law.contraction_z_m()};
+    default:
+      return domain.center_m();
+  }
+}
+
+Polygon polygon_of(const proto::Polygon& polygon) {
+  Polygon plain{ring_of(polygon.vertices()), {}};
+  for (const proto::Ring& hole : polygon.holes()) plain.holes.push_back(ring_of(hole.vertices()));
+  return plain;
+}
+
+Rectangle extent_of(const proto::Map& map) {
+  return {{map.origin_x_m(), map.origin_y_m()}, {map.size_x_m(), map.size_y_m()}};
+}
+
+TargetDensity target_of(const proto::Scenario& scenario) {
+  const proto::Target& target = scenario.target();
+  TargetDensity density;
+  density.uniform_weight = target.uniform_weight();
+  for (const proto::Gaussian& gaussian : target.gaussians()) {
+    density.gaussians.push_back({gaussian.weight(),
+                                 {gaussian.mean_x_m(), gaussian.mean_y_m(), gaussian.mean_z_m()},
+                                 covariance_of(gaussian)});
+  }
+  for (const proto::Region& region : target.regions()) {
+    density.regions.push_back(
+        {region.weight(), polygon_of(region.polygon()), heights_of(region.polygon())});
+  }
+  for (const proto::Polygon& keep_out : target.keep_outs()) {
+    density.keep_outs.push_back({polygon_of(keep_out), heights_of(keep_out)});
+  }
+  for (const proto::Polygon& wall : scenario.world().walls())
+    density.keep_outs.push_back({polygon_of(wall), heights_of(wall)});
+  return density;
+}
+
+bool has_walls(const proto::Scenario& scenario) {
+  return scenario.world().walls_size() > 0 ||
+         std::ranges::any_of(scenario.target().keep_outs(), &proto::Polygon::solid);
+}
+
+void make_walls(proto::Scenario& scenario) {
+  auto& keep_outs = *scenario.mutable_target()->mutable_keep_outs();
+  for (const proto::Polygon& keep_out : keep_outs) {
+    if (!keep_out.solid()) continue;
+    proto::Polygon& wall = *scenario.mutable_world()->add_walls();
+    wall = keep_out;
+    wall.clear_solid();
+  }
+  keep_outs.erase(std::remove_if(keep_outs.begin(), keep_outs.end(),
+                                 [](const auto& keep_out) { return keep_out.solid(); }),
+                  keep_outs.end());
+}
+
+Mission mission_of(const proto::Scenario& scenario) {
+  auto mission = part_of<Mission>(scenario);
+  mission.name = scenario.name();
+  mission.seed = scenario.seed();
+  mission.law.contraction_center_m = contraction_center_of(scenario.law(), mission.domain);
+  mission.timing.tick_count = std::llround(scenario.time().duration_s() / mission.timing.dt_s);
+  for (const proto::Start& start : scenario.agents().starts())
+    mission.starts_m.emplace_back(start.x_m(), start.y_m(), start.z_m());
+  for (const proto::Polygon& wall : scenario.world().walls()) add_rings(wall, mission.walls);
+  for (const proto::Polygon& keep_out : scenario.target().keep_outs()) {
+    if (keep_out.solid()) add_rings(keep_out, mission.walls);
+  }
+  return mission;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs the mission with an ideal team where that gives the same numbers, and with messages
+// elsewhere.
+#include "studies/study_run.h"
+
+#include <algorithm>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "core/law/block_layout.h"
+#include "core/mission/kinds.h"
+#include "core/mission/station.h"
+#include "lab/ideal_team.h"
+#include "lab/simulation.h"
+#include "logger/null_buffer.h"
+#include "logger/observer.h"
+#include "plan/plan.h"
+#include "studies/study_measure.h"
+
+namespace ergocast::studies {
+namespace {
+
+/// The broadcasts of the whole team: each agent sends its coverage at its first tick, and in its
+/// turns.
+std::int64_t broadcasts_of(const Mission& mission, int block) {
+  std::int64_t count = 0;
+  for (AgentId id = 0; id < static_cast<AgentId>(mission.starts_m.size()); ++id) {
+    for (Tick at = 0; at < mission.timing.tick_count; at = next_broadcast(mission, id, at, block))
+      ++count;
+  }
+  return count;
+}
+
+std::int64_t blocks_sent(const Mission& mission) {
+  std::int64_t count = 0;
+  for (int b = 0; b < block_count_of(mission); ++b) count += broadcasts_of(mission, b);
+  return count;
+}
+
+/// φ² as the logger computes it, by the same additions in the same order.
+class Judge {
+ public:
+  /// @param judged  outlives it
+  explicit Judge(const Mission& judged) : mission_(judged) { observer_.begin(judged); }
+
+  void see(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m) {
+    const auto id = static_cast<AgentId>(agent);
+    if (!rests(mission_, id, tick)) observer_.see(mission_, planned_kind(mission_, id), x_m);
+  }
+  double metric() const { return observer_.metric(mission_); }
+
+ private:
+  const Mission& mission_;
+  ergocast::Observer observer_;
+};
+
+/// Receives what the logger receives.
+class Observer : public lab::SimulationObserver {
+ public:
+  explicit Observer(const Mission& mission)
+      : mission_(mission),
+        logger_(static_cast<lab::NodeId>(mission.starts_m.size()) + 2),
+        measure_(mission),
+        judge_(mission),
+        vehicles_(mission.starts_m.size()) {}
+
+  void received(lab::NodeId node, const Message& message) override {
+    if (node != logger_) return;
+    if (std::holds_alternative<Contribution>(message)) ++contributions_;
+    if (const auto* world = std::get_if<WorldState>(&message)) receive(*world);
+  }
+
+  StudyFigures figures() const {
+    StudyFigures figures = measure_.figures();
+    figures.messages = contributions_;
+    return figures;
+  }
+
+ private:
+  void receive(const WorldState& world) {
+    if (world.header.tick <= tick_) return;  // a repeat
+    if (world.header.tick != gathering_) {
+      gathering_ = world.header.tick;
+      parts_ = 0;
+    }
+    for (int i = 0; i < world.vehicle_count; ++i) {
+      const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+      const auto agent = static_cast<std::size_t>(vehicle.id);
+      if (agent < vehicles_.size()) vehicles_[agent] = vehicle;
+    }
+    if (++parts_ == world.parts) take(world.header.tick);
+  }
+
+  /// Takes in all of one tick, agent by agent.
+  void take(Tick tick) {
+    tick_ = tick;
+    const bool ended = tick >= mission_.timing.tick_count;
+    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+      if (tick > 0) measure_.command(vehicles_[i].velocity_mps);
+      if (ended) continue;
+      const Eigen::Vector3d& x_m = vehicles_[i].position_m;
+      measure_.position(i, tick, x_m);
+      judge_.see(i, tick, x_m);
+    }
+    if (ended || !measure_.wants_metric(tick)) return;
+    measure_.metric(tick, judge_.metric());
+  }
+
+  const Mission& mission_;
+  const lab::NodeId logger_;
+  StudyMeasure measure_;
+  Judge judge_;
+  std::vector<Vehicle> vehicles_;  // at tick gathering_
+  Tick tick_ = -1, gathering_ = -1;
+  int parts_ = 0;
+  std::int64_t contributions_ = 0;
+};
+
+}  // namespace
+
+StudyFigures run_without_messages(const Mission& mission) {
+  const Mission judged = in_cosines(mission);
+  StudyMeasure measure(judged);
+  lab::IdealTeam team(mission);
+  Judge judge(judged);
+  for (Tick tick = 0; tick < mission.timing.tick_count; ++tick) {
+    for (std::size_t i = 0; i < team.size(); ++i) {
+      measure.position(i, tick, team.x_m(i));
+      judge.see(i, tick, team.x_m(i));
+    }
+    team.step();
+    for (std::size_t i = 0; i < team.size(); ++i) measure.command(team.v_mps(i));
+    if (!measure.wants_metric(tick)) continue;
+    measure.metric(tick, judge.metric());
+  }
+  StudyFigures figures = measure.figures();
+  figures.messages = blocks_sent(mission);
+  return figures;
+}
+
+StudyFigures run_with_messages(std::span<const std::byte> plan) {
+  const Mission mission = std::get<Mission>(decode_plan_with_table(plan));
+  const Mission judged = in_cosines(mission);
+  Observer observer(judged);
+  NullBuffer nowhere;
+  lab::Simulation({.plan = {plan.begin(), plan.end()}}, nowhere, nowhere, &observer).run();
+  return observer.figures();
+}
+
+StudyFigures run_study_mission(std::span<const std::byte> plan) {
+  const Mission mission = std::get<Mission>(decode_plan_with_table(plan));
+  if (lab::IdealTeam::stands_for(mission)) return run_without_messages(mission);
+  return run_with_messages(plan);
+}
+
+}  // namespace ergocast::studies

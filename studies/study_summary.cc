@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reduces the runs of each point to medians and means, and to ratios with the first point over
+// common seeds.
+#include "studies/study_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ergocast::studies {
+namespace {
+
+using Runs = std::map<std::uint64_t, const StudyFigures*>;  // by seed
+
+double mean_of(const Runs& runs, double (*value)(const StudyFigures&)) {
+  double sum = 0;
+  for (const auto& [seed, figures] : runs) sum += value(*figures);
+  return sum / static_cast<double>(runs.size());
+}
+
+/// The values that are not nan.
+std::vector<double> values_of(const Runs& runs, const auto& value) {
+  std::vector<double> values;
+  for (const auto& [seed, figures] : runs) {
+    if (!std::isnan(value(*figures))) values.push_back(value(*figures));
+  }
+  return values;
+}
+
+double metric_of(const StudyFigures& figures) { return figures.metric; }
+
+std::optional<Estimate> ratio_to(const Runs& first, const Runs& runs) {
+  std::vector<double> ours, theirs;
+  for (const auto& [seed, figures] : runs) {
+    const auto twin = first.find(seed);
+    if (twin == first.end() || !(figures->metric > 0 && twin->second->metric > 0)) continue;
+    ours.push_back(figures->metric);
+    theirs.push_back(twin->second->metric);
+  }
+  if (ours.empty()) return std::nullopt;
+  return ratio_of(ours, theirs);
+}
+
+std::vector<std::pair<double, Estimate>> over_time(const Runs& runs, double duration_s) {
+  std::vector<std::pair<double, Estimate>> medians;
+  for (std::size_t i = 0; i < kLadder_s.size() && kLadder_s[i] < duration_s; ++i) {
+    const auto values = values_of(runs, [i](const StudyFigures& f) { return f.metric_at[i]; });
+    if (!values.empty()) medians.emplace_back(kLadder_s[i], median_of(values));
+  }
+  medians.emplace_back(duration_s, median_of(values_of(runs, metric_of)));
+  return medians;
+}
+
+std::vector<double> escape_times_of(const Runs& runs) {
+  std::vector<double> times_s;
+  for (const auto& [seed, figures] : runs) {
+    std::copy_if(figures->escape_time_s.begin(), figures->escape_time_s.end(),
+                 std::back_inserter(times_s), [](double t_s) { return !std::isnan(t_s); });
+  }
+  std::sort(times_s.begin(), times_s.end());
+  return times_s;
+}
+
+PointSummary summary_of(const Runs& runs, const Runs& first, double duration_s) {
+  PointSummary summary;
+  summary.runs = runs.size();
+  if (runs.empty()) return summary;
+  summary.metric = median_of(values_of(runs, metric_of));
+  summary.ratio = ratio_to(first, runs);
+  summary.metric_over_time = over_time(runs, duration_s);
+  const auto slopes = values_of(runs, [](const StudyFigures& f) { return f.slope; });
+  if (!slopes.empty()) summary.slope = median_of(slopes).value;
+  summary.escape_times_s = escape_times_of(runs);
+  summary.offset2_mean_m2 = mean_of(runs, [](const StudyFigures& f) { return f.offset2_mean_m2; });
+  for (const auto& [seed, figures] : runs) {
+    summary.offset2_max_m2 = std::max(summary.offset2_max_m2, figures->offset2_max_m2);
+  }
+  summary.edge_share = mean_of(runs, [](const StudyFigures& f) { return f.edge_share; });
+  summary.speed_mean_mps = mean_of(runs, [](const StudyFigures& f) { return f.speed_mean_mps; });
+  summary.messages =
+      mean_of(runs, [](const StudyFigures& f) { return static_cast<double>(f.messages); });
+  return summary;
+}
+
+}  // namespace
+
+double PointSummary::escaped_share(double t_s) const {
+  const auto end = std::upper_bound(escape_times_s.begin(), escape_times_s.end(), t_s);
+  return static_cast<double>(end - escape_times_s.begin()) /
+         static_cast<double>(escape_times_s.size());
+}
+
+std::vector<PointSummary> summarize(const Study& study, const std::vector<StudyRow>& rows) {
+  std::vector<Runs> runs(study.points.size());
+  for (const StudyRow& row : rows) runs[row.point][row.figures.seed] = &row.figures;
+  std::vector<PointSummary> summaries;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    summaries.push_back(summary_of(runs[i], runs[0], study.points[i].duration_s));
+  }
+  return summaries;
+}
+
+}  // namespace ergocast::studies

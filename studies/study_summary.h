@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Summarises the runs of each point of a study.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "report/statistics.h"
+#include "studies/study_table.h"
+
+namespace ergocast::studies {
+
+struct PointSummary {
+  std::size_t runs = 0;
+  Estimate metric;  ///< φ² at the end: the median
+  /// φ² at the end against the study's first point: the geometric mean of the ratios of equal
+  /// seeds. Nothing if they share none.
+  std::optional<Estimate> ratio;
+  /// t [s] and the median of φ², at the times that all runs have; the end is last.
+  std::vector<std::pair<double, Estimate>> metric_over_time;
+  std::optional<double> slope;  ///< median
+  /// One for each agent of each run that starts on a manifold, ascending; infinite at the end.
+  std::vector<double> escape_times_s;
+  double offset2_mean_m2 = 0;                               ///< mean over the runs
+  double offset2_max_m2 = 0;                                ///< greatest of all runs
+  double edge_share = 0, speed_mean_mps = 0, messages = 0;  ///< means over the runs
+
+  /// The share of escape_times_s up to `t_s`. @pre there are some
+  double escaped_share(double t_s) const;
+};
+
+/// One a point; a point without runs has runs == 0 and nothing else.
+std::vector<PointSummary> summarize(const Study& study, const std::vector<StudyRow>& rows);
+
+}  // namespace ergocast::studies

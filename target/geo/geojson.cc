@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Walks the members of a parsed file with their names; the first problem ends the walk.
+#include "target/geo/geojson.h"
+
+#include <nlohmann/json.hpp>
+
+#include "text/json_bounds.h"
+#include "text/shortest.h"
+
+namespace ergocast {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A position has three values: a list of two numbers. Files of 16 MiB as programs write them have
+/// fewer.
+/// Limit (Files of a scenario): values in a GeoJSON file. Beyond it: the scenario is refused.
+constexpr std::size_t kMostValues = 4'000'000;
+constexpr const char* kSimplify = "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson";
+
+struct Failure {
+  PolygonFileProblem problem;
+};
+
+[[noreturn]] void fail(const std::string& member, std::string what, std::string remedy) {
+  throw Failure{{member, std::move(what), std::move(remedy)}};
+}
+
+std::string indexed(const std::string& member, std::size_t index) {
+  return member + "[" + std::to_string(index) + "]";
+}
+std::string below(const std::string& member, const char* name) {
+  return member.empty() ? name : member + "." + name;
+}
+
+class Walk {
+ public:
+  std::vector<GeoPolygon> polygons;
+
+  void file(const Json& root) {
+    if (root.is_object() && root.contains("crs")) reference_system(root["crs"]);
+    if (type_of(root) == "FeatureCollection") {
+      const Json& features = list(root, "features", "");
+      for (std::size_t i = 0; i < features.size(); ++i) object(features[i], indexed("features", i));
+    } else {
+      object(root, "");
+    }
+    if (polygons.empty()) fail("", "has no polygon", "draw one, or name another file");
+  }
+
+ private:
+  static std::string type_of(const Json& json) {
+    const bool has_type = json.is_object() && json.contains("type") && json["type"].is_string();
+    return has_type ? json["type"].get<std::string>() : "";
+  }
+
+  /// RFC 7946 knows WGS 84 alone; older files may name others.
+  static void reference_system(const Json& crs) {
+    if (crs.is_null()) return;
+    const Json name =
+        crs.is_object() ? crs.value(Json::json_pointer("/properties/name"), Json()) : Json();
+    const std::string text = name.is_string() ? name.get<std::string>() : "";
+    if (text.find("CRS84") != text.npos || text.find("4326") != text.npos) return;
+    fail("crs", "is another reference system than WGS 84",
+         "convert it: ogr2ogr -t_srs EPSG:4326 out.geojson in.geojson");
+  }
+
+  static const Json& list(const Json& object, const char* name, const std::string& member) {
+    const auto at = object.find(name);
+    if (at == object.end() || !at->is_array()) {
+      fail(member, std::string("has no list \"") + name + '"', "write GeoJSON as RFC 7946 has it");
+    }
+    return *at;
+  }
+
+  /// A Feature or a geometry.
+  void object(const Json& json, const std::string& member) {
+    if (type_of(json) != "Feature") return geometry(json, member);
+    const auto at = json.find("geometry");
+    geometry(at == json.end() ? Json() : *at, below(member, "geometry"));
+  }
+
+  void geometry(const Json& json, const std::string& member) {
+    const std::string type = type_of(json);
+    if (type == "Polygon") {
+      polygon(list(json, "coordinates", member), member, below(member, "coordinates"));
+    } else if (type == "MultiPolygon") {
+      const Json& parts = list(json, "coordinates", member);
+      const std::string name = below(member, "coordinates");
+      for (std::size_t i = 0; i < parts.size(); ++i)
+        polygon(parts[i], indexed(name, i), indexed(name, i));
+    } else {
+      fail(member,
+           type.empty() ? "is no GeoJSON object with a type" : "is a " + type + ", not a polygon",
+           "keep Polygon and MultiPolygon features only");
+    }
+  }
+
+  void polygon(const Json& rings, const std::string& member, const std::string& coordinates) {
+    if (!rings.is_array() || rings.empty()) {
+      fail(coordinates, "is no list of rings", "write the outline, then the holes");
+    }
+    GeoPolygon& polygon = polygons.emplace_back();
+    polygon.member = member;
+    for (std::size_t i = 0; i < rings.size(); ++i)
+      polygon.rings.push_back(ring(rings[i], indexed(coordinates, i)));
+  }
+
+  static std::vector<GeoPlace> ring(const Json& positions, const std::string& member) {
+    constexpr std::size_t kFewest = 4;
+    if (!positions.is_array() || positions.size() < kFewest) {
+      fail(member, "has fewer than four positions",
+           "a ring has three or more, and its first again");
+    }
+    std::vector<GeoPlace> ring;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      ring.push_back(place_of(positions[i], indexed(member, i)));
+    const GeoPlace &first = ring.front(), &last = ring.back();
+    if (first.latitude_deg != last.latitude_deg || first.longitude_deg != last.longitude_deg) {
+      fail(member, "is not closed", "repeat its first position as the last");
+    }
+    ring.pop_back();
+    return ring;
+  }
+
+  static GeoPlace place_of(const Json& position, const std::string& member) {
+    const bool is_position = position.is_array() && position.size() >= 2 &&
+                             position[0].is_number() && position[1].is_number();
+    if (!is_position) fail(member, "is no position", "write [longitude, latitude]");
+    const GeoPlace place{position[1].get<double>(), position[0].get<double>()};
+    const auto check = [&](const char* name, double value, double limit) {
+      if (value >= -limit && value <= limit) return;
+      fail(member,
+           std::string(name) + " " + shortest(value) + " is outside " + shortest(-limit) + " to " +
+               shortest(limit),
+           "write [longitude, latitude] in degrees of WGS 84, in this order");
+    };
+    check("longitude", place.longitude_deg, 180);
+    check("latitude", place.latitude_deg, 90);
+    return place;
+  }
+};
+
+}  // namespace
+
+std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
+  try {
+    Walk walk;
+    walk.file(parse_bounded<Json>(text, kMostValues));
+    return std::move(walk.polygons);
+  } catch (const JsonTooLarge& problem) {
+    return PolygonFileProblem{"", problem.what(), kSimplify};
+  } catch (const Failure& failure) {
+    return failure.problem;
+  } catch (const Json::exception& error) {
+    return PolygonFileProblem{"", "is no JSON: " + std::string(error.what()), "repair it there"};
+  }
+}
+
+std::variant<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
+    const std::filesystem::path& file) {
+  const auto text = text_of_polygon_file(file, ".geojson", kSimplify);
+  if (const auto* problem = std::get_if<PolygonFileProblem>(&text)) return *problem;
+  return parse_geojson(std::get<std::string>(text));
+}
+
+}  // namespace ergocast

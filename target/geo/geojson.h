@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads the polygons of a GeoJSON file (RFC 7946).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "target/geo/local_plane.h"
+#include "target/geo/polygon_file.h"
+
+namespace ergocast {
+
+/// The outline, then the holes; without the repeated last position.
+struct GeoPolygon {
+  std::string member;  ///< "features[2].geometry"
+  std::vector<std::vector<GeoPlace>> rings;
+};
+
+/// All Polygons and MultiPolygons of a FeatureCollection, a Feature or a geometry, at least one.
+/// Heights are not used. Anything else is a problem: other geometries, another reference system,
+/// rings that are not closed or have fewer than four positions, impossible coordinates.
+std::variant<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
+    const std::filesystem::path& file);
+std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text);
+
+}  // namespace ergocast

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Finds the axes of the variable, and reads it by rows along x.
+#include "target/maps/netcdf_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "target/maps/map_text.h"
+#include "target/maps/netcdf_axis.h"
+
+namespace ergocast {
+namespace {
+
+/// The value that libnetcdf stores where a program wrote nothing: NC_FILL_FLOAT, NC_FILL_DOUBLE.
+constexpr double kUnwritten = 9.9692099683868690e+36;
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 12;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i)
+    list += (i == 0 ? "" : ", ") + names[i];
+  return list + (names.size() > kMost ? ", …" : "");
+}
+
+class Grid : public NetcdfGrid {
+ public:
+  explicit Grid(std::shared_ptr<NetcdfFile> file) : file_(std::move(file)) {}
+
+  std::optional<MapProblem> prepare(const NetcdfChoice& choice) {
+    const std::string& name = choice.variable;
+    place_ = file_->name().string() + ": " + name;
+    const auto found = file_->variable(name);
+    if (!found) {
+      return MapProblem{place_ + " is none of its variables",
+                        "write one of " + listed(file_->variables())};
+    }
+    variable_ = *found;
+    if (!file_->holds_numbers(variable_))
+      return MapProblem{place_ + " holds no numbers", "write one of its other variables"};
+    if (auto problem = check_names(choice.dimensions)) return problem;
+    if (auto problem = find_axes(choice)) return problem;
+    if (auto problem = check_size()) return problem;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (auto problem = lay_out(axis)) return problem;
+    }
+    scale_ = file_->numeric_attribute(variable_, "scale_factor").value_or(1);
+    offset_ = file_->numeric_attribute(variable_, "add_offset").value_or(0);
+    for (const char* attribute : {"_FillValue", "missing_value"}) {
+      if (const auto fill = file_->numeric_attribute(variable_, attribute)) fills_.push_back(*fill);
+    }
+    return std::nullopt;
+  }
+
+  const RasterGrid& raster() const override { return raster_; }
+  const std::vector<Heights>& layers() const override { return axes_[2].cells; }
+
+  std::optional<MapProblem> row(int layer, int row, std::span<double> values) override {
+    start_[dimension_[2]] = axes_[2].index(static_cast<std::size_t>(layer));
+    start_[dimension_[1]] = axes_[1].index(static_cast<std::size_t>(row));
+    if (auto problem = file_->read(variable_, start_, count_, values)) return problem;
+    if (axes_[0].reversed) std::reverse(values.begin(), values.end());
+    for (std::size_t column = 0; column < values.size(); ++column) {
+      double& value = values[column];
+      if (is_fill(value)) {
+        value = 0;
+        continue;
+      }
+      value = value * scale_ + offset_;
+      if (value >= 0 && value <= kMaxMapValue) continue;
+      return check_density(value, place_ + ", layer " + std::to_string(layer) + ", row " +
+                                      std::to_string(row) + ", column " + std::to_string(column));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// Whether each named dimension exists, and is named once.
+  std::optional<MapProblem> check_names(const std::array<std::string, 4>& names) const {
+    std::vector<std::string> there;
+    for (const auto& dimension : file_->dimensions(variable_)) there.push_back(dimension.name);
+    for (const std::string& name : names) {
+      if (name.empty()) continue;
+      if (std::find(there.begin(), there.end(), name) == there.end())
+        return MapProblem{place_ + " has no axis " + name, "write one of " + listed(there)};
+      if (std::count(names.begin(), names.end(), name) > 1)
+        return MapProblem{place_ + ": its axis " + name + " was named twice",
+                          "name each axis for one of x, y, z and time"};
+    }
+    return std::nullopt;
+  }
+
+  /// The kind of a dimension: from the scenario if it names this dimension or another one of that
+  /// kind, else from the file.
+  AxisKind kind_by(const NetcdfChoice& choice, const std::string& dimension) const {
+    constexpr std::array kKinds = {AxisKind::kX, AxisKind::kY, AxisKind::kZ, AxisKind::kTime};
+    const auto& names = choice.dimensions;
+    const auto named = std::find(names.begin(), names.end(), dimension);
+    if (named != names.end()) return kKinds[static_cast<std::size_t>(named - names.begin())];
+    const AxisKind kind = kind_of(*file_, dimension);
+    const auto by_file = std::find(kKinds.begin(), kKinds.end(), kind);
+    const bool taken = by_file != kKinds.end() &&
+                       !names[static_cast<std::size_t>(by_file - kKinds.begin())].empty();
+    return taken ? AxisKind::kOther : kind;
+  }
+
+  /// Finds the dimensions of x, y and z. A dimension of time stays at the index of the choice.
+  std::optional<MapProblem> find_axes(const NetcdfChoice& choice) {
+    const auto dimensions = file_->dimensions(variable_);
+    start_.assign(dimensions.size(), 0);
+    count_.assign(dimensions.size(), 1);
+    std::array<bool, 3> known{};
+    for (std::size_t i = 0; i < dimensions.size(); ++i) {
+      const AxisKind kind = kind_by(choice, dimensions[i].name);
+      if (kind == AxisKind::kTime) {
+        if (auto problem = choose_time(i, dimensions[i], choice.time_index)) return problem;
+        continue;
+      }
+      const auto axis = static_cast<std::size_t>(kind);
+      if (kind == AxisKind::kOther || known[axis]) {
+        if (dimensions[i].length == 1) continue;
+        return MapProblem{
+            place_ + " has the axis " + dimensions[i].name + ", which is none of x, y, z and time",
+            "write its name as x_axis, y_axis, z_axis or time_axis, or give its coordinate "
+            "variable an attribute axis: X, Y, Z or T"};
+      }
+      if (dimensions[i].length > static_cast<std::size_t>(kMaxMapSide)) {
+        return too_many(dimensions[i].length, std::string(" cells along ") + "xyz"[axis],
+                        static_cast<std::size_t>(kMaxMapSide));
+      }
+      auto read = read_axis(*file_, dimensions[i]);
+      if (auto* problem = std::get_if<MapProblem>(&read)) return std::move(*problem);
+      axes_[axis] = std::get<NetcdfAxis>(std::move(read));
+      dimension_[axis] = i;
+      known[axis] = true;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (known[axis]) continue;
+      return MapProblem{place_ + " has no axis " + "xyz"[axis],
+                        std::string("write the name of its dimension as ") + "xyz"[axis] +
+                            "_axis, or give its coordinate variable an attribute axis"};
+    }
+    count_[dimension_[0]] = axes_[0].cells.size();
+    return std::nullopt;
+  }
+
+  std::optional<MapProblem> choose_time(std::size_t at, const NetcdfFile::Dimension& time,
+                                        std::optional<int> index) {
+    const std::string last = std::to_string(time.length - 1);
+    if (!index && time.length > 1) {
+      return MapProblem{place_ + " has " + std::to_string(time.length) + " times",
+                        "choose one: time_index: 0 to " + last};
+    }
+    start_[at] = static_cast<std::size_t>(index.value_or(0));
+    if (start_[at] < time.length) return std::nullopt;
+    return MapProblem{place_ + " has no time of index " + std::to_string(start_[at]),
+                      "write 0 to " + last};
+  }
+
+  MapProblem too_many(std::size_t count, const std::string& what, std::size_t limit) const {
+    return {place_ + " has " + std::to_string(count) + what + ", above the limit " +
+                std::to_string(limit),
+            "cut the grid to the domain, or average its cells"};
+  }
+
+  std::optional<MapProblem> check_size() const {
+    std::size_t cells = 1;
+    for (const NetcdfAxis& axis : axes_) cells *= axis.cells.size();
+    if (cells > kMostVoxels) {
+      return too_many(cells, " cells", kMostVoxels);
+    }
+    return file_->objection(variable_);
+  }
+
+  /// x or y: equal cells.
+  std::optional<MapProblem> lay_out(int axis) {
+    const std::vector<Heights>& cells = axes_[static_cast<std::size_t>(axis)].cells;
+    const auto count = static_cast<double>(cells.size());
+    const double low_m = cells.front().low_m, size_m = cells.back().high_m - low_m;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const double expected_m = low_m + size_m * static_cast<double>(i) / count;
+      if (std::abs(cells[i].low_m - expected_m) > 1e-3 * size_m / count) {
+        return MapProblem{place_ + ": the cells along " + "xy"[axis] + " are not of one size",
+                          "resample the grid, only z may be uneven"};
+      }
+    }
+    raster_.extent.origin_m[axis] = low_m;
+    raster_.extent.size_m[axis] = size_m;
+    (axis == 0 ? raster_.columns : raster_.rows) = static_cast<int>(cells.size());
+    return std::nullopt;
+  }
+
+  /// A fill value may be nan.
+  bool is_fill(double stored) const {
+    return std::any_of(fills_.begin(), fills_.end(), [stored](double fill) {
+      return stored == fill || (std::isnan(stored) && std::isnan(fill));
+    });
+  }
+
+  std::shared_ptr<NetcdfFile> file_;
+  std::string place_;
+  NetcdfFile::Variable variable_ = 0;
+  std::array<NetcdfAxis, 3> axes_;          // x, y, z
+  std::array<std::size_t, 3> dimension_{};  // of the variable
+  std::vector<std::size_t> start_, count_;  // of a row, along each dimension
+  RasterGrid raster_;
+  double scale_ = 1, offset_ = 0;
+  std::vector<double> fills_{kUnwritten};
+};
+
+}  // namespace
+
+std::variant<std::unique_ptr<NetcdfGrid>, MapProblem> NetcdfGrid::open(
+    const std::filesystem::path& file, const NetcdfChoice& choice) {
+  auto opened = NetcdfFile::open(file);
+  if (auto* problem = std::get_if<MapProblem>(&opened)) return std::move(*problem);
+  auto grid = std::make_unique<Grid>(std::get<0>(std::move(opened)));
+  if (auto problem = grid->prepare(choice)) return std::move(*problem);
+  return grid;
+}
+
+}  // namespace ergocast

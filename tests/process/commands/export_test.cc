@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast export --to geojson`: a record on a map.
+#include "tests/process/support/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+class ExportedMap : public OwnHost {
+ protected:
+  /// The features of a simulated mission's map.
+  nlohmann::json map_of(const std::string& scenario, const std::vector<std::string>& more = {}) {
+    EXPECT_EQ(ergocast({"simulate", scenario_file(scenario), "--duration", "20", "--out", out()}),
+              0)
+        << output();
+    std::vector<std::string> words{"export", out(), "--to", "geojson"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(ergocast(words), 0) << output();
+    return nlohmann::json::parse(text_of(out() / "export.geojson"))["features"];
+  }
+  static std::vector<nlohmann::json> of_kind(const nlohmann::json& features,
+                                             const std::string& kind) {
+    std::vector<nlohmann::json> found;
+    for (const auto& feature : features) {
+      if (feature["properties"]["kind"] == kind) found.push_back(feature);
+    }
+    return found;
+  }
+};
+
+TEST_F(ExportedMap, OfAScenarioWithoutAnOriginLiesAtZeroAndSaysSo) {
+  const auto features = map_of("quadrimodal_corners");
+  EXPECT_NE(output().find("note: the scenario has no origin"), std::string::npos) << output();
+  EXPECT_NE(output().find("--origin LATITUDE,LONGITUDE"), std::string::npos) << output();
+  EXPECT_EQ(of_kind(features, "track").size(), 4U);
+  const auto corner = of_kind(features, "domain").at(0)["geometry"]["coordinates"][0][2];
+  EXPECT_NEAR(corner[0], 2000 / 111319.5, 1e-5);
+  EXPECT_NEAR(corner[1], 2000 / 110574.4, 1e-5);
+}
+
+TEST_F(ExportedMap, HasTheWalls) {
+  const auto walls = of_kind(map_of("two_rooms", {"--origin", "0,0"}), "wall");
+  EXPECT_EQ(output().find("note"), std::string::npos) << output();
+  ASSERT_EQ(walls.size(), 2U);
+  const auto rings = walls[0]["geometry"]["coordinates"];
+  ASSERT_EQ(rings.size(), 1U) << "no room is in it";
+  ASSERT_EQ(rings[0].size(), 5U);
+  EXPECT_EQ(rings[0].front(), rings[0].back());
+  EXPECT_NEAR(rings[0][0][0], 980 / 111319.5, 1e-5);
+}
+
+TEST_F(ExportedMap, HasTheStations) {
+  const auto stations = of_kind(map_of("home_by_dusk"), "station");
+  ASSERT_EQ(stations.size(), 4U);
+  EXPECT_EQ(stations[1]["properties"]["agent"], 1);
+  EXPECT_EQ(stations[1]["properties"]["rests_from_s"], 8) << "twelve seconds before the end";
+  EXPECT_NEAR(stations[1]["geometry"]["coordinates"][0], 14 / 111319.5, 1e-7);
+}
+
+}  // namespace
+}  // namespace ergocast::test
