@@ -121,26 +121,27 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
     if (table.author(row) != author) continue;
     const bool will_speak = roster[member].active_until < 0;
     const bool lacks = lacks_something(table, row, will_speak, steps, state_hash);
-    consider(requester, author, lacks, theirs.header.sequence, now, tick);
+    consider(theirs.header, author, lacks, now, tick);
   }
 }
 
-void AntiEntropy::consider(const Author& requester, const Author& author, bool lacks,
-                           std::int64_t sequence, Instant now, Tick tick) {
+/// @param digest  by which its sender asks for the row of `author`, or does not
+void AntiEntropy::consider(const Header& digest, const Author& author, bool lacks, Instant now,
+                           Tick tick) {
   if (!lacks && requests_.empty()) return;
-  const auto key = std::pair(requester, author);
+  const auto key = std::pair(Author{digest.sender, digest.incarnation}, author);
   if (!lacks) {
     requests_.erase(key);
     return;
   }
   const auto former = requests_.find(key);
   if (former == requests_.end()) {
-    if (requests_.size() < kMaxRequests) requests_.emplace(key, RowRequest{sequence, now});
+    if (requests_.size() < kMaxRequests) requests_.emplace(key, RowRequest{digest.sequence, now});
     return;
   }
-  if (sequence <= former->second.sequence) return;
+  if (digest.sequence <= former->second.sequence) return;
   const bool in_a_row = now - former->second.at <= request_lifetime();
-  former->second = {sequence, now};
+  former->second = {digest.sequence, now};
   if (!in_a_row || answers_.count(author) != 0 || !may_answer(now, tick)) return;
   const double delay_s =
       kLongestDelay_s *

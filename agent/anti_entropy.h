@@ -71,8 +71,7 @@ class AntiEntropy {
   bool seems_lacking(const CoverageTable& table, const RosterEntry& entry, Tick tick) const;
   std::vector<Author> to_be_named(const CoverageTable& table,
                                   const std::vector<RosterEntry>& roster, Tick tick);
-  void consider(const Author& requester, const Author& author, bool lacks, std::int64_t sequence,
-                Instant now, Tick tick);
+  void consider(const Header& digest, const Author& author, bool lacks, Instant now, Tick tick);
   PacingClock::duration request_lifetime() const;
   bool may_answer(Instant now, Tick tick);
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent does at a tick of the world: it samples, broadcasts, answers and helps its
-// teammates.
+// Takes in the messages of teammates and of the world, and acts once a tick has come.
+#include "agent/mission_run.h"
+
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <span>
 #include <utility>
 
-#include "agent/agent.h"
+#include "core/mission/hold.h"
 #include "core/mission/station.h"
 
 namespace ergocast {
@@ -15,275 +14,288 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kDigestPeriod = 1s;
-constexpr double kDigestMissionPeriod_s = 1.0;
+/// A status is also due after this mission time, so that a fast lockstep run has statuses too.
+constexpr double kStatusMissionPeriod_s = 1.0;
+/// How far ahead of us a teammate's coverage may be before it counts as forged.
+/// Limit (Time): lead of a contribution over the receiver, in mission time [s]. Beyond it: a
+/// contribution that is beyond both limits is refused with `range`.
+constexpr double kLead_s = 60;
+/// Limit (Time): lead of a contribution over the receiver [steps]. Beyond it: a contribution that
+/// is beyond both limits is refused with `range`.
+constexpr Tick kLeadTicks = 64;
 /// An agent that gets no new tick broadcasts what it has, this often.
 constexpr auto kStallPeriod = 1s;
 
-/// Writes into `block` what it has gained since the broadcast `before`. A block that is sent again
-/// within a tick keeps its gains.
-void note_gains(const Contribution& before, Contribution& block) {
-  if (before.steps == block.steps) {
-    block.gains = before.gains;
-    block.gained_steps = before.gained_steps;
-    return;
+/// How many messages of members were lost on the swarm bus.
+std::int64_t lost(const Participant& me) {
+  std::int64_t lost = 0;
+  for (const RosterEntry& entry : me.follower().roster()) {
+    lost += me.liveness().lost(entry.author, Bus::kSwarm);
   }
-  block.gained_steps = block.steps - before.steps;
-  const std::span<double> gains = block.gains.set_all(block.sums.size());
-  const double *now = block.sums.data(), *then = before.sums.data();
-  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = now[k] - then[k];
+  return lost;
 }
 
 }  // namespace
 
-void Agent::advance_mission(InMission& mission_run, Instant now, Outbox& out) {
-  if (may_begin(mission_run) && !begin_tick(mission_run, now, out)) return;
-  const Step& step = mission_run.step;
-  if (step.repeat_wanted) repeat(mission_run, out);
-  if (step.answered < step.tick && may_answer(mission_run)) answer(mission_run, out);
-  if (stalled(mission_run, now)) {
-    mission_run.stall_announced = now;
-    broadcast(mission_run, true, out);
-  }
-  if (!me_.cut_off(step.tick, now)) return;
-  finish(true,
-         "neither the world nor the coordinator can be heard, and the mission must be over by "
-         "now: check this host's network");
+MissionRun::MissionRun(const Participant& me, const RosterEntry& self)
+    : active_from_(self.active_from),
+      radio_(me.mission().radio_range_m),
+      exchange_(me.mission(), self, me.counted(self.active_from)),
+      guidance_(me.mission(), self),
+      motion_(me.mission(), self.author, me.follower().revision()) {
+  last_command_.header.tick = command_before_.header.tick = -1;
+  note_roster(me);
 }
 
-/// Gives the forecast the positions of vehicles in range. In real time a vehicle stands still once
-/// its last answer is older than the world holds a command. In lockstep the world waits for
-/// answers.
-void Agent::note_places(InMission& mission_run, const WorldState& world) {
-  const Timing& timing = mission().timing;
-  mission_run.state_parts.see(world);
-  // Nothing is covered at a held tick, and no vehicle moves on before the mission continues.
-  if (me_.is_held(world.header.tick)) return;
+std::optional<std::string> MissionRun::evicted(const Participant& me, Tick tick) {
+  const RosterEntry* own = me.follower().entry_of(me.incarnation());
+  if (own == nullptr || own->active_until < 0 || own->active_until > tick) return std::nullopt;
+  return "evicted from the roster at tick " + std::to_string(own->active_until);
+}
+
+// ---- what the agent learns ----
+
+/// Prepares here what depends on the roster, because a control step must not allocate.
+void MissionRun::note_roster(const Participant& me) {
+  const MissionFollower& known = me.follower();
+  motion_.bodies().note_roster(known.roster());
+  if (!known.holds().empty()) held_roster_ = in_counted_ticks(known.roster(), known.holds());
+}
+
+void MissionRun::start(Instant now) {
+  if (!running_since_) running_since_ = now;
+}
+
+const std::vector<RosterEntry>& MissionRun::counted_roster(const Participant& me) const {
+  return me.follower().holds().empty() ? me.follower().roster() : held_roster_;
+}
+
+std::int64_t MissionRun::max_steps(const RosterEntry& author, const Participant& me,
+                                   Instant now) const {
+  const Timing& timing = me.timing();
+  Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
+  if (timing.pace == Pace::kRealtime && step_.tick >= 0) {
+    // Teammates have continued while we received nothing from the world. Twice that time allows for
+    // clocks that differ.
+    const Instant heard = std::max(running_since_.value_or(Instant{}),
+                                   me.liveness().last_sign_of_kind(kWorld).value_or(Instant{}));
+    const double unheard_s = std::chrono::duration<double>(now - heard).count();
+    lead += static_cast<Tick>(2 * unheard_s * timing.realtime_factor / timing.dt_s);
+  }
+  const Tick current = me.counted(step_.tick) + 1;
+  return lead + (author.active_until < 0 ? current
+                                         : std::min(current, me.counted(author.active_until) + 1));
+}
+
+void MissionRun::on(const Contribution& theirs, const Arrival& arrival, Participant& me) {
+  const RosterEntry* const entry = me.member(theirs.header);
+  if (entry == nullptr) return;  // not a member as far as we know
+  exchange_.note_received(theirs, arrival.transmitter);
+  const std::int64_t limit = max_steps(*entry, me, arrival.now);
+  // Before our first tick we do not know the mission's time. The count may be right, so it is
+  // ignored and not counted as refused.
+  if (step_.tick < 0 && theirs.steps > limit) return;
+  const auto refusal = exchange_.merge(theirs, entry->kind, limit, step_.counted);
+  if (refusal) me.count_refused(*refusal);
+}
+
+void MissionRun::on(const Digest& theirs, const Arrival& arrival, Participant& me) {
+  if (!arrival.fresh || me.member(theirs.header) == nullptr) return;
+  exchange_.on(theirs, step_, me, arrival.now);
+}
+
+void MissionRun::on(const Beacon& beacon, const Arrival& arrival, Participant&) {
+  motion_.bodies().on(beacon, arrival.fresh, {step_.tick, arrival.now});
+}
+
+void MissionRun::on(const WorldState& world, const Arrival& arrival, Participant& me) {
   const Tick tick = world.header.tick;
-  const auto hold =
-      static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
+  radio_.on(world);
+  guidance_.on(world, radio_, me);
+  motion_.on(world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    if (!radio_.receives(me_.id(), vehicle.id)) continue;
-    if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
-    mission_run.forecast->see(vehicle.id, me_.counted(tick), vehicle.position_m);
+    if (vehicle.id != me.id()) continue;
+    // The world repeats for the logger a state from before our admission. Our predecessor drove
+    // then.
+    if (tick < active_from_ && vehicle.answered_tick > answered_) return;
+    if (!motion_.filters() && !me.mission().domain.contains(vehicle.position_m)) {
+      return me.count_refused(Refusal::kRange);
+    }
+    if (tick < (pending_ ? pending_->tick : step_.tick)) return;
+    if (tick == step_.tick) {
+      repeat_wanted_ = repeat_wanted_ || arrival.fresh;
+      return;
+    }
+    pending_ = OwnState{tick, world.roster_revision, vehicle.answered_tick, vehicle.position_m,
+                        vehicle.velocity_mps};
   }
+}
+
+// ---- a tick ----
+
+std::optional<MissionOver> MissionRun::advance(Participant& me, Instant now, Outbox& out) {
+  if (may_begin(me)) {
+    if (auto over = begin_tick(me, now, out)) return over;
+  }
+  if (repeat_wanted_) repeat(me, out);
+  if (answered_ < step_.tick) {
+    waiting_for_ = awaited(me);
+    if (waiting_for_ == kUnassigned) answer(me, out);
+  }
+  if (stalled(me, now)) {
+    stall_announced_ = now;
+    exchange_.broadcast(true, step_.counted, me, out);
+  }
+  if (!me.cut_off(step_.tick, now)) return std::nullopt;
+  return MissionOver{true,
+                     "neither the world nor the coordinator can be heard, and the mission must be "
+                     "over by now: check this host's network"};
 }
 
 /// Lockstep: an agent needs the revision that the world names, which decides whether the tick
 /// counts and which agents take part. A restarted world may have continued before all agents knew
 /// it.
-bool Agent::may_begin(const InMission& mission_run) const {
-  if (!mission_run.pending) return false;
-  return mission().timing.pace == Pace::kRealtime ||
-         follower().revision() >= mission_run.pending->roster_revision;
+bool MissionRun::may_begin(const Participant& me) const {
+  if (!pending_) return false;
+  return me.timing().pace == Pace::kRealtime ||
+         me.follower().revision() >= pending_->roster_revision;
 }
 
-/// False if the mission is over for us; `mission_run` is then no longer valid.
-bool Agent::begin_tick(InMission& mission_run, Instant now, Outbox& out) {
-  const Mission& mission = me_.mission();
-  const WorldView view = *mission_run.pending;
-  Step& step = mission_run.step;
-  mission_run.pending.reset();
-  step.repeat_wanted = false;
-  if (me_.is_over(view.tick)) {
-    step.tick = view.tick;
-    finish(false, "mission complete");
-    return false;
+std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, Outbox& out) {
+  const Mission& mission = me.mission();
+  const OwnState own = *std::exchange(pending_, std::nullopt);
+  repeat_wanted_ = false;
+  if (me.is_over(own.tick)) {
+    step_.tick = own.tick;
+    return MissionOver{false, "mission complete"};
   }
-  if (const auto why = evicted(view.tick)) {
-    finish(true, *why);
-    return false;
-  }
-  if (step.tick >= 0) status_.missed_ticks += view.tick - step.tick - 1;
-  step.tick = view.tick;
-  step.counted = me_.counted(view.tick);
-  step.held = me_.is_held(view.tick);
-  step.begun = now;
-  step.roster_revision = view.roster_revision;
-  step.body_m = view.position_m;
-  step.body_mps = view.velocity_mps;
-  step.x_m = mission.domain.nearest(view.position_m);
-  step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
-  if (mission_run.beacons) publish_place(mission_run, view, out);
+  if (auto why = evicted(me, own.tick)) return MissionOver{true, *std::move(why)};
+  if (step_.tick >= 0) missed_ticks_ += own.tick - step_.tick - 1;
+  step_.tick = own.tick;
+  step_.counted = me.counted(own.tick);
+  step_.held = me.is_held(own.tick);
+  step_.begun = now;
+  step_.roster_revision = own.roster_revision;
+  step_.body_m = own.position_m;
+  step_.body_mps = own.velocity_mps;
+  step_.x_m = mission.domain.nearest(own.position_m);
+  step_.basis_at.emplace(step_.x_m, mission.domain, mission.basis);
+  motion_.bodies().begin(own, step_, me, out);
   // A restarted world may be a tick behind the roster. Our predecessor has covered that tick.
-  if (step.tick < mission_run.active_from || step.held) return true;
-  if (!rests(mission, me_.id(), step.counted))
-    mission_run.table.add_sample(me_.author(), *step.basis_at,
-                                 mission_run.sensors.of(mission_run.kind).footprint());
-  broadcast(mission_run, false, out);
-  return true;
+  if (step_.tick < active_from_ || step_.held) return std::nullopt;
+  if (!rests(mission, me.id(), step_.counted)) exchange_.add_sample(step_);
+  exchange_.broadcast(false, step_.counted, me, out);
+  return std::nullopt;
 }
 
-void Agent::publish_place(InMission& mission_run, const WorldView& view, Outbox& out) {
-  mission_run.beacons->measured(view.answered_tick, view.roster_revision, view.position_m,
-                                view.velocity_mps);
-  const auto beacon = mission_run.beacons->next(follower().revision(),
-                                                {mission_run.step.tick, mission_run.step.begun});
-  if (beacon) me_.publish(Bus::kSwarm, *beacon, mission_run.step.tick, out);
+/// What the tick waits for before it can be answered: a teammate's block, or the world's state.
+/// kUnassigned: nothing.
+AgentId MissionRun::awaited(const Participant& me) const {
+  if (!motion_.knows_bodies(step_.tick)) return kWorld;
+  if (me.timing().pace == Pace::kRealtime || step_.held) return kUnassigned;
+  if (!guidance_.has_state_of(step_.tick)) return kWorld;
+  return exchange_.awaited(step_, radio_, me);
+}
+
+/// A command of 0 is wanted in a pause: the vehicle brakes, then stands or loiters.
+void MissionRun::answer(Participant& me, Outbox& out) {
+  command_before_ = last_command_;
+  exchange_.forget_silent(step_, me);
+  Eigen::Vector3d wanted_mps{0, 0, 0};
+  if (!step_.held) wanted_mps = guidance_.wanted_mps(exchange_.table(), counted_roster(me), step_);
+  last_command_.header.tick = answered_ = step_.tick;
+  last_command_.position_m = step_.x_m;
+  last_command_.velocity_mps = motion_.command_mps(wanted_mps, step_, me);
+  motion_.bodies().answered(step_);
+  me.publish(Bus::kCommand, last_command_, step_.tick, out);
+}
+
+void MissionRun::repeat(Participant& me, Outbox& out) {
+  repeat_wanted_ = false;
+  exchange_.repeat(me, out);
+  if (answered_ == step_.tick) me.publish(Bus::kCommand, last_command_, step_.tick, out);
 }
 
 /// Whether ticks have stopped in real time, so that the agent broadcasts what it has. In lockstep
 /// no broadcast may come before the one that was announced. In a pause there is nothing new to
 /// send, and an agent that joined during it has no coverage at all.
-bool Agent::stalled(const InMission& mission_run, Instant now) const {
-  return mission().timing.pace == Pace::kRealtime && !mission_run.step.held &&
-         mission_run.step.tick >= mission_run.active_from &&
-         now - std::max(mission_run.step.begun, mission_run.stall_announced) >= kStallPeriod;
+bool MissionRun::stalled(const Participant& me, Instant now) const {
+  return me.timing().pace == Pace::kRealtime && !step_.held && step_.tick >= active_from_ &&
+         now - std::max(step_.begun, stall_announced_) >= kStallPeriod;
 }
 
-/// Broadcasts the blocks that are due, or all. An agent that learns late of a pause has counted too
-/// many ticks. The tick that it announced is then too late, so it broadcasts at once.
-void Agent::broadcast(InMission& mission_run, bool all, Outbox& out) {
-  const Tick tick = mission_run.step.counted;
-  for (int b = 0; b < mission_run.table.block_count(); ++b) {
-    Contribution& published = mission_run.published[static_cast<std::size_t>(b)];
-    const bool counted_less = tick < published.header.tick;
-    if (!all && !counted_less && tick < published.next_broadcast_tick) continue;
-    Contribution block = mission_run.table.block(me_.author(), b);
-    if (block.encoding == ContributionEncoding::kFixed16) note_gains(published, block);
-    block.header.tick = tick;  // repeats keep it: forecasts count a block's age from it
-    block.next_broadcast_tick = next_broadcast(mission(), me_.id(), tick, b);
-    me_.publish(Bus::kSwarm, block, tick, out);
-    published = std::move(block);
-  }
+void MissionRun::stop_vehicle(Participant& me, Outbox& out) {
+  last_command_.position_m = step_.x_m;
+  last_command_.velocity_mps.setZero();
+  me.publish(Bus::kCommand, last_command_, step_.tick, out);
 }
 
-void Agent::repeat(InMission& mission_run, Outbox& out) {
-  Step& step = mission_run.step;
-  step.repeat_wanted = false;
-  // Repeats the blocks as they were broadcast: newer sums would make a tick depend on losses.
-  for (const Contribution& block : mission_run.published) {
-    if (block.steps > 0) me_.publish(Bus::kSwarm, block, block.header.tick, out);
-  }
-  if (step.answered == step.tick)
-    me_.publish(Bus::kCommand, mission_run.last_command, step.tick, out);
+// ---- help ----
+
+void MissionRun::help(Participant& me, Instant now, Outbox& out) {
+  if (asking_world_) report_position(me, out);
+  exchange_.repair(counted_roster(me), step_, me, now, out);
 }
 
-bool Agent::may_answer(InMission& mission_run) const {
-  Step& step = mission_run.step;
-  step.waiting_for = kUnassigned;
-  // An agent answers only once it knows the position of every body.
-  if (mission_run.separation && !mission_run.beacons && !mission_run.bodies.complete(step.tick)) {
-    step.waiting_for = kWorld;
-    return false;
-  }
-  if (mission().timing.pace == Pace::kRealtime) return true;
-  // A command must not depend on the order in which the parts of the state arrive.
-  const bool dead_reckons = mission_run.forecast && mission().dead_reckoning &&
-                            step.tick >= mission_run.active_from && !step.held;
-  if (dead_reckons && !mission_run.state_parts.complete(step.tick)) {
-    step.waiting_for = kWorld;
-    return false;
-  }
-  if (step.held) return true;  // no agent broadcasts in a pause
-  for (const RosterEntry& entry : follower().roster()) {
-    if (entry.author == me_.author() || !entry.active_at(step.tick)) continue;
-    if (!radio_.receives(me_.id(), entry.author.agent)) continue;
-    // An agent that rests since its admission never broadcasts.
-    if (rests(mission(), entry.author.agent, me_.counted(entry.active_from))) continue;
-    if (!mission_run.table.holds_due(entry.author, step.counted)) {
-      step.waiting_for = entry.author.agent;
-      return false;
-    }
-  }
-  return true;
-}
-
-void Agent::answer(InMission& mission_run, Outbox& out) {
-  Step& step = mission_run.step;
-  mission_run.command_before = mission_run.last_command;
-  mission_run.last_command.header.tick = step.tick;
-  mission_run.last_command.position_m = step.x_m;
-  forget_silent(mission_run);
-  mission_run.last_command.velocity_mps = kept_apart(mission_run, wanted(mission_run));
-  step.answered = step.tick;
-  if (mission_run.beacons) mission_run.beacons->commands({step.tick, step.begun});
-  me_.publish(Bus::kCommand, mission_run.last_command, step.tick, out);
-}
-
-/// Forgets by the roster that the tick may have waited for, never by an older one. The admission of
-/// a forgotten agent may have been lost with its coordinator. This also runs in a pause, because
-/// forgetting goes by the world's ticks, and the agent then reports the c_k that counts.
-void Agent::forget_silent(InMission& mission_run) const {
-  const Step& step = mission_run.step;
-  mission_run.table.remember_all();
-  for (const RosterEntry& entry : follower().roster()) {
-    // Our own coverage always counts: we run, even if the coordinator receives nothing from us.
-    if (entry.author == me_.author()) continue;
-    if (entry.forgotten_at(step.tick, step.roster_revision)) mission_run.table.forget(entry.author);
-  }
-}
-
-/// The velocity of the law, or of the way home. It is zero in a pause, so that the vehicle brakes,
-/// then stands or loiters.
-Eigen::Vector3d Agent::wanted(InMission& mission_run) {
-  const Step& step = mission_run.step;
-  if (step.held) return {0, 0, 0};
-  const CoverageTable& table = mission_run.table;
-  if (mission_run.forecast) {
-    mission_run.forecast->look_ahead(table, counted_roster(), step.counted, mission_run.foreseen);
-  } else {
-    table.average(mission_run.foreseen);
-  }
-  mission_run.controller.set_coverage(mission_run.foreseen);
-  if (mission_run.way_home && mission_run.way_home->begun(step.counted, step.x_m))
-    return mission_run.way_home->velocity_mps(step.body_m, step.body_mps);
-  return mission_run.controller.command(me_.id(), step.counted, step.x_m, *step.basis_at);
-}
-
-/// The last step of a command: makes the wanted velocity safe, and counts blocked ticks.
-Eigen::Vector3d Agent::kept_apart(InMission& mission_run, const Eigen::Vector3d& wanted_mps) {
-  if (!mission_run.separation) return wanted_mps;
-  const bool goes_home = mission_run.way_home && mission_run.way_home->begun();
-  const Eigen::Vector3d aim_mps =
-      mission_run.follower && !goes_home
-          ? mission_run.follower->aim(mission_run.step.tick, mission_run.step.body_m, wanted_mps)
-          : wanted_mps;
-  const SafeVelocity safe = safe_velocity(mission_run, aim_mps);
-  if (mission_run.follower) mission_run.follower->note(safe.wall);
-  status_.blocked_by = safe.blocked ? safe.by : kUnassigned;
-  status_.blocked_now_ticks = safe.blocked ? status_.blocked_now_ticks + 1 : 0;
-  status_.blocked_ticks += safe.blocked ? 1 : 0;
-  status_.longest_block_ticks = std::max(status_.longest_block_ticks, status_.blocked_now_ticks);
-  return safe.velocity_mps;
-}
-
-SafeVelocity Agent::safe_velocity(InMission& mission_run, const Eigen::Vector3d& aim_mps) {
-  const Step& step = mission_run.step;
-  // A newer roster may have a body that we do not know of.
-  if (mission_run.beacons && follower().revision() < step.roster_revision)
-    return {.blocked = true, .blind = true};
-  const auto others = mission_run.beacons
-                          ? mission_run.beacons->bodies(step.body_m, {step.tick, step.begun})
-                          : mission_run.bodies.neighbours(mission());
-  const double limit_mps = motion_of(mission(), me_.id()).speed_limit_mps;
-  const Mover self{me_.id(), step.tick, step.body_m, limit_mps, step.body_mps};
-  return mission_run.separation->safe(self, aim_mps, others);
-}
-
-void Agent::answer_digests(InMission& mission_run, Instant now, Outbox& out) {
-  const Tick tick = mission_run.step.counted;
-  if (mission_run.asking_world) report_position(mission_run, out);
-  for (const Contribution& block :
-       mission_run.anti_entropy.answers_due(mission_run.table, now, tick)) {
-    me_.relay(Bus::kSwarm, block, out);
-  }
-  if (!mission_run.next_digest.due(now, tick)) return;
-  mission_run.next_digest =
-      Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, mission().timing.dt_s, tick);
-  const Digest digest = mission_run.anti_entropy.digest(mission_run.table, counted_roster(), tick);
-  me_.publish(Bus::kSwarm, digest, std::max<Tick>(mission_run.step.tick, 0), out);
-}
-
-void Agent::report_position(InMission& mission_run, Outbox& out) {
+void MissionRun::report_position(Participant& me, Outbox& out) {
   // Only agents still know where the vehicles of departed agents stand.
-  for (const WorldState& state : mission_run.bodies.states()) out.push_back({Bus::kCommand, state});
-  for (Command command : {mission_run.command_before, mission_run.last_command}) {
-    command.asked_by = *mission_run.asking_world;
-    me_.publish(Bus::kCommand, command, command.header.tick, out);
+  for (const WorldState& state : motion_.bodies().states()) out.push_back({Bus::kCommand, state});
+  for (Command command : {command_before_, last_command_}) {
+    command.asked_by = *asking_world_;
+    me.publish(Bus::kCommand, command, command.header.tick, out);
   }
-  mission_run.asking_world.reset();
+  asking_world_.reset();
+}
+
+Instant MissionRun::next_wakeup() const {
+  return std::min(next_status_.at, exchange_.next_repair());
+}
+
+// ---- status ----
+
+AgentPhase MissionRun::phase(const Participant& me) const {
+  if (!started()) return AgentPhase::kWaiting;
+  if (!motion_.has_station()) return AgentPhase::kRunning;
+  if (rests(me.mission(), me.id(), step_.counted)) return AgentPhase::kResting;
+  return motion_.returns() ? AgentPhase::kReturning : AgentPhase::kRunning;
+}
+
+void MissionRun::fill_in(AgentStatus& status, const Participant& me) const {
+  if (step_.tick >= 0) {
+    status.ergodic_metric = guidance_.metric(team_coverage());
+    status.max_staleness_s =
+        static_cast<double>(exchange_.oldest_update_age(step_, me)) * me.timing().dt_s;
+  }
+  status.waiting_for = waiting_for_;
+  status.answered_tick = answered_;
+  status.missed_ticks = missed_ticks_;
+  status.contributions_received = exchange_.received();
+  status.contributions_relayed = exchange_.relayed();
+  status.contributions_lost = lost(me);
+  status.messages_sent = me.sent();
+  status.messages_received = me.received();
+  status.refused = me.refused();
+  const BlockedTicks& blocked = motion_.blocked();
+  status.blocked_by = blocked.by;
+  status.blocked_now_ticks = blocked.now;
+  status.blocked_ticks = blocked.all;
+  status.longest_block_ticks = blocked.longest;
+}
+
+void MissionRun::publish_status(AgentStatus status, Participant& me, Instant now, Outbox& out) {
+  status.phase = phase(me);
+  fill_in(status, me);
+  if (running_since_ && me.silent(kWorld, now, *running_since_)) status.waiting_for = kWorld;
+  me.publish(Bus::kSwarm, status, std::max<Tick>(step_.tick, 0), out);
+  next_status_ =
+      Deadline::in(kAgentStatusPeriod, now, kStatusMissionPeriod_s, me.timing().dt_s, step_.tick);
+}
+
+void MissionRun::publish_last_status(AgentStatus status, Participant& me, Outbox& out) const {
+  status.phase = AgentPhase::kFinished;
+  fill_in(status, me);
+  me.publish(Bus::kSwarm, status, std::max<Tick>(step_.tick, 0), out);
 }
 
 }  // namespace ergocast

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps the own blocks as they were last broadcast: repeats and gains refer to them.
+#include "agent/coverage_exchange.h"
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <utility>
+
+#include "agent/guidance.h"
+#include "core/mission/station.h"
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kDigestPeriod = 1s;
+constexpr double kDigestMissionPeriod_s = 1.0;
+
+/// Writes into `block` what it has gained since the broadcast `before`. A block that is sent again
+/// within a tick keeps its gains.
+void note_gains(const Contribution& before, Contribution& block) {
+  if (before.steps == block.steps) {
+    block.gains = before.gains;
+    block.gained_steps = before.gained_steps;
+    return;
+  }
+  block.gained_steps = block.steps - before.steps;
+  const std::span<double> gains = block.gains.set_all(block.sums.size());
+  const double *now = block.sums.data(), *then = before.sums.data();
+  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = now[k] - then[k];
+}
+
+}  // namespace
+
+CoverageExchange::CoverageExchange(const Mission& mission, const RosterEntry& self, Tick joined)
+    : self_(self.author),
+      kind_(self.kind),
+      sensors_(mission),
+      table_(mission.basis, mission.timing.dt_s, joined),
+      anti_entropy_(self.author, mission.seed, mission.timing.dt_s),
+      team_coverage_(Coefficients::Zero(mission.basis.mode_count())) {
+  table_.set_layout(BlockLayout(mission));
+  if (!looks_ahead(mission)) table_.forgo_gains();
+  table_.add_row(self_);  // before any other incarnation could take its place
+  table_.set_quality(self_, sensors_.of(kind_).quality);
+  published_.resize(static_cast<std::size_t>(table_.block_count()));
+}
+
+const Coefficients& CoverageExchange::team_coverage() const {
+  table_.average(team_coverage_);
+  return team_coverage_;
+}
+
+// ---- the own coverage ----
+
+void CoverageExchange::add_sample(const AgentStep& step) {
+  table_.add_sample(self_, *step.basis_at, sensors_.of(kind_).footprint());
+}
+
+/// An agent that learns late of a pause has counted too many ticks. The tick that it announced is
+/// then too late, so it broadcasts at once.
+void CoverageExchange::broadcast(bool all, Tick counted, Participant& me, Outbox& out) {
+  for (int b = 0; b < table_.block_count(); ++b) {
+    Contribution& published = published_[static_cast<std::size_t>(b)];
+    const bool counted_less = counted < published.header.tick;
+    if (!all && !counted_less && counted < published.next_broadcast_tick) continue;
+    Contribution block = table_.block(self_, b);
+    if (block.encoding == ContributionEncoding::kFixed16) note_gains(published, block);
+    block.header.tick = counted;  // repeats keep it: forecasts count a block's age from it
+    block.next_broadcast_tick = next_broadcast(me.mission(), self_.agent, counted, b);
+    me.publish(Bus::kSwarm, block, counted, out);
+    published = std::move(block);
+  }
+}
+
+/// Newer sums would make a tick depend on losses.
+void CoverageExchange::repeat(Participant& me, Outbox& out) const {
+  for (const Contribution& block : published_) {
+    if (block.steps > 0) me.publish(Bus::kSwarm, block, block.header.tick, out);
+  }
+}
+
+// ---- the coverage of teammates ----
+
+void CoverageExchange::note_received(const Contribution& theirs, AgentId transmitter) {
+  if (transmitter != theirs.header.sender) anti_entropy_.on_relayed(theirs, table_);
+  ++received_;
+}
+
+std::optional<Refusal> CoverageExchange::merge(const Contribution& theirs, int kind,
+                                               std::int64_t max_steps, Tick counted) {
+  switch (table_.merge(theirs, max_steps)) {
+    case Merge::kRefusedRange:
+      return Refusal::kRange;
+    case Merge::kRefusedLimit:
+      return Refusal::kLimit;
+    case Merge::kRefusedEncoding:
+      return Refusal::kEncoding;
+    case Merge::kNewer:
+      table_.set_quality(theirs.author(), sensors_.of(kind).quality);
+      last_update_[theirs.author()] = counted;
+      break;
+    case Merge::kStale:
+      break;
+  }
+  return std::nullopt;
+}
+
+/// The admission of a forgotten agent may have been lost with its coordinator. This also runs in a
+/// pause, because forgetting goes by the world's ticks, and the agent then reports the c_k that
+/// counts.
+void CoverageExchange::forget_silent(const AgentStep& step, const Participant& me) {
+  table_.remember_all();
+  for (const RosterEntry& entry : me.follower().roster()) {
+    // Our own coverage always counts: we run, even if the coordinator receives nothing from us.
+    if (entry.author == self_) continue;
+    if (entry.forgotten_at(step.tick, step.roster_revision)) table_.forget(entry.author);
+  }
+}
+
+AgentId CoverageExchange::awaited(const AgentStep& step, const RadioRange& radio,
+                                  const Participant& me) const {
+  for (const RosterEntry& entry : me.follower().roster()) {
+    if (entry.author == self_ || !entry.active_at(step.tick)) continue;
+    if (!radio.receives(self_.agent, entry.author.agent)) continue;
+    // An agent that rests since its admission never broadcasts.
+    if (rests(me.mission(), entry.author.agent, me.counted(entry.active_from))) continue;
+    if (!table_.holds_due(entry.author, step.counted)) return entry.author.agent;
+  }
+  return kUnassigned;
+}
+
+// ---- repair ----
+
+void CoverageExchange::on(const Digest& theirs, const AgentStep& step, const Participant& me,
+                          Instant now) {
+  anti_entropy_.on(theirs, table_, me.follower().roster(), now, step.counted);
+}
+
+void CoverageExchange::repair(const std::vector<RosterEntry>& roster, const AgentStep& step,
+                              Participant& me, Instant now, Outbox& out) {
+  for (const Contribution& block : anti_entropy_.answers_due(table_, now, step.counted)) {
+    me.relay(Bus::kSwarm, block, out);
+  }
+  if (!next_digest_.due(now, step.counted)) return;
+  next_digest_ =
+      Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, me.timing().dt_s, step.counted);
+  const Digest digest = anti_entropy_.digest(table_, roster, step.counted);
+  me.publish(Bus::kSwarm, digest, std::max<Tick>(step.tick, 0), out);
+}
+
+Instant CoverageExchange::next_repair() const {
+  return std::min(next_digest_.at, anti_entropy_.next_answer());
+}
+
+// ---- for the status ----
+
+Tick CoverageExchange::oldest_update_age(const AgentStep& step, const Participant& me) const {
+  Tick oldest = 0;
+  for (const RosterEntry& entry : me.follower().roster()) {
+    if (entry.author == self_ || !entry.active_at(step.tick)) continue;
+    if (rests(me.mission(), entry.author.agent, step.counted)) continue;
+    const Tick* const last_update = last_update_.find(entry.author);
+    const Tick last = last_update == nullptr ? -1 : *last_update;
+    const Tick joined = me.counted(entry.active_from);
+    oldest = std::max(oldest, step.counted - std::max(last, joined - 1));
+  }
+  return oldest;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Notes where vehicles have been, forecasts the coverage from it, and asks the controller.
+#include "agent/guidance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ergocast {
+
+Guidance::Guidance(const Mission& mission, const RosterEntry& self)
+    : id_(self.author.agent),
+      active_from_(self.active_from),
+      dead_reckons_(looks_ahead(mission) && mission.dead_reckoning),
+      controller_(mission, self.kind),
+      foreseen_(Coefficients::Zero(mission.basis.mode_count())) {
+  if (looks_ahead(mission)) forecast_.emplace(mission, self.author);
+}
+
+void Guidance::on(const WorldState& world, const RadioRange& radio, const Participant& me) {
+  const Tick tick = world.header.tick;
+  if (!forecast_ || tick < active_from_) return;
+  state_parts_.see(world);
+  // Nothing is covered at a held tick, and no vehicle moves on before the mission continues.
+  if (me.is_held(tick)) return;
+  const Timing& timing = me.timing();
+  const auto hold =
+      static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    if (!radio.receives(id_, vehicle.id)) continue;
+    if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
+    forecast_->see(vehicle.id, me.counted(tick), vehicle.position_m);
+  }
+}
+
+bool Guidance::has_state_of(Tick tick) const {
+  return !dead_reckons_ || tick < active_from_ || state_parts_.complete(tick);
+}
+
+Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,
+                                     const std::vector<RosterEntry>& roster,
+                                     const AgentStep& step) {
+  if (forecast_) {
+    forecast_->look_ahead(table, roster, step.counted, foreseen_);
+  } else {
+    table.average(foreseen_);
+  }
+  controller_.set_coverage(foreseen_);
+  return controller_.command(id_, step.counted, step.x_m, *step.basis_at);
+}
+
+}  // namespace ergocast

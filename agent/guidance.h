@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The law, as one agent follows it: the coverage that it answers to, and the velocity that it wants
+// there. The coverage is the forecast ĉ_k if the law looks ahead, else the known c_k.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "agent/agent_step.h"
+#include "agent/state_parts.h"
+#include "core/base/ids.h"
+#include "core/law/control.h"
+#include "core/law/coverage_table.h"
+#include "core/law/forecast.h"
+#include "core/mission/mission.h"
+#include "core/mission/roster.h"
+#include "team/messages.h"
+#include "team/participant.h"
+#include "team/radio_range.h"
+
+namespace ergocast {
+
+/// Whether agents of a mission forecast the team's coverage.
+inline bool looks_ahead(const Mission& mission) { return mission.law.anticipation > 0; }
+
+class Guidance {
+ public:
+  /// @param self  the agent's entry in the roster
+  Guidance(const Mission& mission, const RosterEntry& self);
+
+  /// Gives the forecast the positions of vehicles in range. In real time a vehicle stands still
+  /// once its last answer is older than the world holds a command. In lockstep the world waits for
+  /// answers.
+  void on(const WorldState& world, const RadioRange& radio, const Participant& me);
+
+  /// Whether a tick that counts can be computed: in lockstep, a command must not depend on the
+  /// order in which the parts of the state arrive.
+  bool has_state_of(Tick tick) const;
+
+  /// The velocity that the law wants at a tick that counts.
+  /// @param roster  in ticks that count
+  Eigen::Vector3d wanted_mps(const CoverageTable& table, const std::vector<RosterEntry>& roster,
+                             const AgentStep& step);
+  /// The coverage that wanted_mps() answered to.
+  const Coefficients& foreseen() const { return foreseen_; }
+
+  /// φ² of a coverage.
+  double metric(const Coefficients& coverage) const { return controller_.metric(coverage); }
+
+ private:
+  AgentId id_;
+  Tick active_from_;
+  bool dead_reckons_;
+  Controller controller_;
+  std::optional<Forecast> forecast_;
+  StateParts state_parts_;
+  Coefficients foreseen_;
+};
+
+}  // namespace ergocast

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Passes the velocity of the law, the way home or the wall follower on to the filter.
+#include "agent/safe_motion.h"
+
+#include <algorithm>
+
+#include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
+
+namespace ergocast {
+
+void BlockedTicks::note(const SafeVelocity& safe) {
+  by = safe.blocked ? safe.by : kUnassigned;
+  now = safe.blocked ? now + 1 : 0;
+  all += safe.blocked ? 1 : 0;
+  longest = std::max(longest, now);
+}
+
+SafeMotion::SafeMotion(const Mission& mission, const Author& self, std::int64_t revision)
+    : id_(self.agent), bodies_(mission, self, revision) {
+  if (filters_commands(mission, id_)) separation_.emplace(mission, unguarded_hold_ticks(mission));
+  if (follows_walls(mission)) wall_follower_.emplace(mission, id_);
+  if (station_of(mission, id_)) way_home_.emplace(mission, id_);
+}
+
+void SafeMotion::on(const WorldState& world) {
+  if (separation_) bodies_.on(world);
+}
+
+Eigen::Vector3d SafeMotion::command_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
+                                        const Participant& me) {
+  const Eigen::Vector3d aim = aim_mps(wanted_mps, step);
+  if (!separation_) return aim;
+  const SafeVelocity command = safe(aim, step, me);
+  if (wall_follower_) wall_follower_->note(command.wall);
+  blocked_.note(command);
+  return command.velocity_mps;
+}
+
+/// The velocity to ask the filter for: that of the way home, or `wanted_mps`, or along a wall.
+Eigen::Vector3d SafeMotion::aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step) {
+  if (way_home_ && !step.held && way_home_->begun(step.counted, step.x_m))
+    return way_home_->velocity_mps(step.body_m, step.body_mps);
+  if (!wall_follower_ || returns()) return wanted_mps;
+  return wall_follower_->aim(step.tick, step.body_m, wanted_mps);
+}
+
+SafeVelocity SafeMotion::safe(const Eigen::Vector3d& aim_mps, const AgentStep& step,
+                              const Participant& me) {
+  const auto others = bodies_.neighbours(step, me);
+  if (!others) return {.blocked = true, .blind = true};
+  const double limit_mps = motion_of(me.mission(), id_).speed_limit_mps;
+  const Mover self{id_, step.tick, step.body_m, limit_mps, step.body_mps};
+  return separation_->safe(self, aim_mps, *others);
+}
+
+}  // namespace ergocast

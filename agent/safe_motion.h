@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the velocity that the law wants to the command of the vehicle, in four steps:
+//
+// 1. the way home takes the law's place, once it has begun (core/motion/way_home.h);
+// 2. an agent that walls hold up goes along the wall, but not on its way home
+//    (core/motion/wall_following.h);
+// 3. the filter keeps the vehicle apart from bodies, walls and edges (core/motion/separation.h),
+// with the
+//    other bodies where TeamBodies has them;
+// 4. ticks at which it leaves almost nothing are counted for the status.
+//
+// A mission without a station, walls or bodies leaves the velocity as it is, bit for bit.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "agent/agent_step.h"
+#include "agent/team_bodies.h"
+#include "core/base/ids.h"
+#include "core/mission/mission.h"
+#include "core/motion/separation.h"
+#include "core/motion/wall_following.h"
+#include "core/motion/way_home.h"
+#include "team/messages.h"
+#include "team/participant.h"
+
+namespace ergocast {
+
+/// The ticks at which something was in the way, as AgentStatus has them.
+struct BlockedTicks {
+  AgentId by = kUnassigned;
+  std::int64_t now = 0, all = 0, longest = 0;
+
+  void note(const SafeVelocity& safe);
+};
+
+class SafeMotion {
+ public:
+  /// @param self  the agent whose vehicle it is
+  /// @param revision  of the roster in which it found itself
+  SafeMotion(const Mission& mission, const Author& self, std::int64_t revision);
+
+  void on(const WorldState& world);
+  TeamBodies& bodies() { return bodies_; }
+  const TeamBodies& bodies() const { return bodies_; }
+
+  /// Whether commands are filtered. The vehicle may then be outside of the domain.
+  bool filters() const { return separation_.has_value(); }
+  /// Whether a tick can be answered: only once the position of every body is known.
+  bool knows_bodies(Tick tick) const { return !separation_ || bodies_.complete(tick); }
+
+  bool has_station() const { return way_home_.has_value(); }
+  /// Whether it has begun its way home.
+  bool returns() const { return way_home_ && way_home_->begun(); }
+
+  /// The velocity to command where the law wants `wanted_mps`. In a pause the way home does not
+  /// begin or go on.
+  Eigen::Vector3d command_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
+                              const Participant& me);
+  const BlockedTicks& blocked() const { return blocked_; }
+
+ private:
+  Eigen::Vector3d aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step);
+  SafeVelocity safe(const Eigen::Vector3d& aim_mps, const AgentStep& step, const Participant& me);
+
+  AgentId id_;
+  TeamBodies bodies_;
+  std::optional<SeparationFilter> separation_;
+  std::optional<WallFollower> wall_follower_;  // where there are walls
+  std::optional<WayHome> way_home_;            // if it has a station
+  BlockedTicks blocked_;
+};
+
+}  // namespace ergocast
