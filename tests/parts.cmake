@@ -101,6 +101,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     coordinator/mission_pages_test.cc
     coordinator/pausing_test.cc
     coordinator/takeover_test.cc
+    sim/command_history_test.cc
     sim/world_resume_test.cc
     sim/record_window_test.cc
     sim/world_bodies_test.cc
