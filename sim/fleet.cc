@@ -154,8 +154,7 @@ std::vector<WorldState> Fleet::snapshot() const {
   }
   std::size_t i = 0;
   for (const auto& [id, slot] : vehicles_) {
-    WorldState& state = states[i++ / kMaxVehiclesPerState];
-    Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(state.vehicle_count++)];
+    Vehicle& vehicle = states[i++ / kMaxVehiclesPerState].add_vehicle();
     vehicle.id = id;
     vehicle.answered_tick = slot.commands.answered();
     vehicle.position_m = slot.x_m;

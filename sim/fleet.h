@@ -23,8 +23,8 @@
 #include "core/separation.h"
 #include "sim/command_history.h"
 #include "sim/physics.h"
-#include "team/bodies.h"
 #include "team/messages.h"
+#include "team/state_assembler.h"
 
 namespace ergocast {
 
@@ -76,7 +76,8 @@ class Fleet {
   /// Puts every vehicle where it is at `tick`, by `before` if begins_by_state(), else by its
   /// agent's last two commands.
   /// @param before  a state with all bodies, from a world before this one
-  void begin(const Mission& mission, Tick tick, const Bodies& before, Surroundings surroundings);
+  void begin(const Mission& mission, Tick tick, const StateAssembler& before,
+             Surroundings surroundings);
 
   // ---- moving ----
 
@@ -108,7 +109,8 @@ class Fleet {
   };
 
   Eigen::Vector3d place_for(const Mission& mission, AgentId id, Surroundings surroundings) const;
-  void settle(const Mission& mission, Tick tick, const Bodies& before, Surroundings surroundings);
+  void settle(const Mission& mission, Tick tick, const StateAssembler& before,
+              Surroundings surroundings);
   static void recall(const Mission& mission, AgentId id, Slot& slot, Tick now);
   void keep_from_walls(const Mission& mission, AgentId id, Slot& slot, Tick tick);
   void filter_commands(const Mission& mission, Tick tick);

@@ -16,7 +16,7 @@ std::optional<std::string> Fleet::make_physics(const Mission& mission) {
   return {};
 }
 
-void Fleet::begin(const Mission& mission, Tick tick, const Bodies& before,
+void Fleet::begin(const Mission& mission, Tick tick, const StateAssembler& before,
                   Surroundings surroundings) {
   if (filters_again(mission) || any_but_points(mission)) filter_.emplace(mission, 0);
   if (begins_by_state(mission)) {
@@ -32,7 +32,7 @@ void Fleet::begin(const Mission& mission, Tick tick, const Bodies& before,
 /// and from walls. Vehicles whose agents have left are in no other message. In lockstep the
 /// vehicles continue with the answers to that tick. In real time all stand: old commands were for
 /// other positions.
-void Fleet::settle(const Mission& mission, Tick tick, const Bodies& before,
+void Fleet::settle(const Mission& mission, Tick tick, const StateAssembler& before,
                    Surroundings surroundings) {
   const bool realtime = mission.timing.pace == Pace::kRealtime;
   for (auto& [id, slot] : vehicles_) {
@@ -40,8 +40,7 @@ void Fleet::settle(const Mission& mission, Tick tick, const Bodies& before,
     if (realtime) slot.commands.stand();
   }
   for (const WorldState& state : before.states()) {
-    for (int i = 0; i < state.vehicle_count; ++i) {
-      const Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
+    for (const Vehicle& vehicle : state.vehicles_in_part()) {
       Slot& slot = vehicles_[vehicle.id];
       slot.x_m = vehicle.position_m;
       slot.applied_mps = vehicle.velocity_mps;

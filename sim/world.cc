@@ -130,7 +130,7 @@ void World::take_roster() { fleet_.take_roster(mission(), follower().roster(), s
 
 void World::on(const WorldState& before, const Arrival&) {
   if (!question_.since || !begins_by_state(mission())) return;
-  if (before.header.tick <= me_.end_tick()) question_.before.see(before);
+  if (before.header.tick <= me_.end_tick()) question_.before.take(before);
 }
 
 // ---- commands ----
@@ -286,8 +286,7 @@ void World::repeat(Instant now, Outbox& out) {
   } else if (!record_.empty()) {
     // The vehicles have moved on already.
     for (WorldState& part : record_.newest()) {
-      for (int i = 0; i < part.vehicle_count; ++i) {
-        Vehicle& vehicle = part.vehicles[static_cast<std::size_t>(i)];
+      for (Vehicle& vehicle : part.vehicles_in_part()) {
         vehicle.answered_tick = fleet_.answered(vehicle.id);
       }
     }

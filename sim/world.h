@@ -15,9 +15,9 @@
 #include "sim/physics.h"
 #include "sim/record_window.h"
 #include "sim/tick_schedule.h"
-#include "team/bodies.h"
 #include "team/messages.h"
 #include "team/participant.h"
+#include "team/state_assembler.h"
 
 namespace ergocast {
 
@@ -77,7 +77,7 @@ class World {
     std::optional<Instant> since;  // while it asks
     Instant next{};
     Instant earliest_end{};  // it asks at least until then
-    Bodies before;           // of the last state of a world before us
+    StateAssembler before;   // of the last state of a world before us
   };
 
   template <class M>

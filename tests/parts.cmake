@@ -58,6 +58,7 @@ ergocast_test(NAME team_tests LABELS unit
     team/participant_test.cc
     team/plan_test.cc
     team/radio_range_test.cc
+    team/state_assembler_test.cc
     text/input_file_test.cc
     text/printable_test.cc
   LIBS ergocast::team ergocast::text)
