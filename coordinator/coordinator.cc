@@ -113,8 +113,7 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   // The world goes on once it knows the named tick. No agent answers the next tick before that.
   if (stands) name_tick(world_.tick + 2);
   world_.missed_deadlines = std::max(world_.missed_deadlines, world.missed_deadlines);
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     Tick& answered = world_.answered.try_emplace(vehicle.id, -1).first->second;
     answered = std::max(answered, vehicle.answered_tick);
   }

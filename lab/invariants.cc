@@ -89,8 +89,7 @@ void Invariants::check(double t_s, const WorldState& world) {
   if (mission_.separation.distance_m > 0) check_distances(t_s, world);
   check_paused(t_s, world);
   check_home(t_s, world);
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     if (!mission_.walls.empty()) check_wall(t_s, vehicle);
     if (mission_.domain.contains(vehicle.position_m)) continue;
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
@@ -101,9 +100,9 @@ void Invariants::check(double t_s, const WorldState& world) {
 /// Uses the true places, once all places of a tick are known. Starts may be exactly at the least
 /// distance.
 void Invariants::check_distances(double t_s, const WorldState& world) {
-  bodies_.see(world);
-  if (!bodies_.complete(world.header.tick)) return;
-  const auto bodies = bodies_.neighbours(mission_);
+  state_.take(world);
+  if (!state_.complete(world.header.tick)) return;
+  const auto bodies = state_.neighbours(mission_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double apart_m = (bodies[i].position_m - bodies[j].position_m).norm();
@@ -116,8 +115,7 @@ void Invariants::check_distances(double t_s, const WorldState& world) {
 }
 
 void Invariants::note_positions(double t_s, const WorldState& world) {
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     positions_m_[vehicle.id] = vehicle.position_m;
   }
   for (auto a = positions_m_.begin(); a != positions_m_.end(); ++a) {

@@ -25,8 +25,8 @@
 #include "lab/table_view.h"
 #include "lab/wire_modes.h"
 #include "logger/recorder.h"
-#include "team/bodies.h"
 #include "team/mission_follower.h"
+#include "team/state_assembler.h"
 
 namespace ergocast::lab {
 
@@ -259,7 +259,7 @@ class Invariants {
       shadows_;  // of each incarnation of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
   std::map<AgentId, Tick> home_from_;  // where agents have stations
-  Bodies bodies_;                      // where a distance is kept
+  StateAssembler state_;               // where a distance is kept
   std::map<AgentId, Eigen::Vector3d>
       positions_m_;  // only with a radio range, like the next members
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first

@@ -46,8 +46,7 @@ void Invariants::check_home(double t_s, const WorldState& world) {
       timing.on_timeout == OnTimeout::kEvict)
     return;
   const Tick counted = counted_ticks(truth_.holds(), world.header.tick);
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     const auto from = home_from_.find(vehicle.id);
     if (from == home_from_.end() || counted < from->second) continue;
     const bool from_the_start = std::ranges::any_of(truth_.roster(), [&](const RosterEntry& entry) {

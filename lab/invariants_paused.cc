@@ -47,8 +47,7 @@ void Invariants::check_paused(double t_s, const WorldState& world) {
   const Tick tick = world.header.tick;
   if (mission_.timing.pace == Pace::kRealtime || may_give_way(mission_.separation)) return;
   for (const Hold& hold : truth_.holds()) {
-    for (int i = 0; i < world.vehicle_count; ++i) {
-      const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    for (const Vehicle& vehicle : world.vehicles_in_part()) {
       const Motion motion = motion_of(mission_, vehicle.id);
       // The velocity is that of the step that led here.
       const Tick stands_from = hold.from + braking_ticks(motion, mission_.timing.dt_s);

@@ -228,9 +228,8 @@ void Shadow::take(const TableView& agent, const Contribution& theirs) {
 
 void Shadow::note_places(const Mission& mission, const TableView& agent, const WorldState& world) {
   const Tick state_tick = world.header.tick;
-  for (int i = 0; i < world.vehicle_count && state_tick >= positions_tick_; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    positions_m_[vehicle.id] = vehicle.position_m;
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
+    if (state_tick >= positions_tick_) positions_m_[vehicle.id] = vehicle.position_m;
   }
   positions_tick_ = std::max(positions_tick_, state_tick);
   const Tick tick = counted_ticks(agent.holds, state_tick);
@@ -241,8 +240,7 @@ void Shadow::note_places(const Mission& mission, const TableView& agent, const W
   const auto most =
       static_cast<std::size_t>(timing.broadcast_period_ticks * timing.high_mode_period_factor +
                                Forecast::kPlacesBeyondPeriod);
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     const bool driven =
         timing.pace == Pace::kLockstep || vehicle.answered_tick >= state_tick - hold;
     if (!driven || vehicle.id == agent.self.agent) continue;

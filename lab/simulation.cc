@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "core/base/noise.h"
-#include "lcmtypes/codec.h"
 #include "plan/plan.h"
 
 namespace ergocast::lab {
@@ -33,17 +32,13 @@ Simulation::Simulation(SimulationOptions options, std::ostream& trajectory, std:
       run_(identity(mission_, ~0U, 0)),
       agent_count_(static_cast<int>(mission_.starts_m.size())),
       network_(mission_.seed, options_.faults, node_count(), options_.latency),
+      wire_(run_, mission_.seed),
+      faults_(options_.faults, mission_),
       nodes_(static_cast<std::size_t>(node_count())) {
-  set_up_faults();
+  skew_clocks();
   for (NodeId node = 0; node < node_count(); ++node) start(node);
   for (NodeId node = 0; node < node_count(); ++node) {
-    const Subscriptions& subscriptions = subscriptions_of(role_of(node), options_.subscriptions);
-    for (std::size_t bus = 0; bus < kBusCount; ++bus) {
-      on_bus_[bus].set(static_cast<std::size_t>(node), subscriptions[bus] != 0);
-      for (std::size_t type = 0; type < kMessageTypeCount; ++type) {
-        if ((subscriptions[bus] >> type & 1) != 0) listeners_[bus][type].push_back(node);
-      }
-    }
+    routes_.add(node, subscriptions_of(role_of(node), options_.subscriptions));
   }
 }
 
@@ -81,10 +76,6 @@ std::string Simulation::name_of(NodeId node) const {
   if (node < agent_count_) return "agent " + std::to_string(node);
   if (node == coordinator_node()) return "the coordinator";
   return node == world_node() ? "the world" : "the logger";
-}
-
-bool Simulation::finished(NodeId node) const {
-  return std::visit([](const auto& core) { return core->finished(); }, at(node).core);
 }
 
 bool Simulation::everybody_finished() const {
@@ -128,7 +119,7 @@ bool Simulation::step(Instant until) {
 }
 
 Instant Simulation::next_event() const {
-  Instant next = std::min(network_.next(), next_fault());
+  Instant next = std::min({network_.next(), faults_.next(), operator_.next()});
   for (const Node& node : nodes_) next = std::min(next, node.up ? node.wakeup : node.restart);
   return next;
 }
@@ -161,32 +152,21 @@ void Simulation::publish(NodeId from) {
   if (outbox_.empty()) return;
   if (observer_ != nullptr) observer_->sends(from, outbox_);
   for (const Outgoing& sent : outbox_) {
-    encode(sent.message, bytes_);
-    auto decoded = read(bytes_);
+    auto decoded = wire_.pass(sent.message);
     if (observer_ != nullptr) observer_->decoded(*decoded, false);
     if (std::holds_alternative<Refusal>(*decoded)) continue;
     note(from, sent);
     const AgentId sender = header_of(sent.message).sender;
     const int corrupted =
-        network_.send(now_, from, on_bus_[static_cast<std::size_t>(sent.bus)], sent.bus,
+        network_.send(now_, from, routes_.on(sent.bus), sent.bus,
                       sent.relayer != kUnassigned ? sent.relayer : sender, std::move(decoded));
     for (int i = 0; i < corrupted; ++i) {
-      damaged_ = bytes_;
-      damage(damaged_, mission_.seed, static_cast<std::uint64_t>(network_.counted().corrupted - i));
-      if (observer_ != nullptr) observer_->decoded(decode(damaged_, run_), true);
+      if (observer_ == nullptr) break;  // only an observer sees them
+      const auto copy = static_cast<std::uint64_t>(network_.counted().corrupted - i);
+      observer_->decoded(wire_.pass_damaged(copy), true);
     }
   }
   outbox_.clear();
-}
-
-/// A message takes a kilobyte, so it is decoded in place, and the memory is used again.
-std::shared_ptr<Decoded> Simulation::read(std::span<const std::byte> bytes) {
-  if (spare_.empty()) return std::make_shared<Decoded>(decode(bytes, run_));
-  auto decoded = std::move(spare_.back());
-  spare_.pop_back();
-  std::destroy_at(decoded.get());
-  ::new (decoded.get()) Decoded(decode(bytes, run_));
-  return decoded;
 }
 
 /// Updates what the faults and the counts depend on.
@@ -217,10 +197,10 @@ void Simulation::deliver_due() {
       if (reaches(node)) observer_->arrives(node, message);
     }
     // Everything on a bus arrives; what no subscription names goes no further.
-    for (NodeId node : listeners_[static_cast<std::size_t>(delivery.bus)][message.index()]) {
+    for (NodeId node : routes_.listeners(delivery.bus, message)) {
       if (reaches(node)) deliver(node, message, delivery);
     }
-    if (delivery.read.use_count() == 1) spare_.push_back(std::move(delivery.read));
+    if (delivery.read.use_count() == 1) wire_.reuse(std::move(delivery.read));
   }
 }
 

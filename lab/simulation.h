@@ -13,16 +13,18 @@
 #include <memory>
 #include <optional>
 #include <ostream>
-#include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "agent/agent.h"
 #include "coordinator/coordinator.h"
-#include "lab/clock.h"
+#include "lab/fault_schedule.h"
 #include "lab/faults.h"
 #include "lab/network.h"
+#include "lab/node.h"
+#include "lab/routes.h"
+#include "lab/simulated_operator.h"
+#include "lab/simulated_wire.h"
 #include "logger/recorder.h"
 #include "sim/world.h"
 #include "team/subscriptions.h"
@@ -105,7 +107,7 @@ class Simulation {
   const World& world() const { return core<World>(world_node()); }
   const Recorder& recorder() const { return core<Recorder>(logger_node()); }
   bool up(NodeId node) const { return at(node).up; }
-  bool finished(NodeId node) const;
+  bool finished(NodeId node) const { return at(node).finished(); }
 
   // ---- progress ----
 
@@ -116,7 +118,7 @@ class Simulation {
   /// healed as well.
   double progress_s() const;
   /// Virtual time that the whole mission takes.
-  double planned_s() const;
+  double planned_s() const { return lab::planned_s(mission_); }
   /// The world's last tick; −1 before its first.
   Tick last_tick() const { return last_tick_; }
   /// The last tick was published, or a coordinator has announced the end.
@@ -127,21 +129,6 @@ class Simulation {
   SimulationCounts counts() const;
 
  private:
-  struct Node {
-    std::variant<std::unique_ptr<Agent>, std::unique_ptr<Coordinator>, std::unique_ptr<World>,
-                 std::unique_ptr<Recorder>>
-        core;
-    SkewedClock clock;
-    Instant wakeup{}, restart{};  // the latter while it is down
-    std::uint32_t starts = 0;
-    bool up = false, received = false;
-    bool answered = false;  // a running agent has answered a tick
-  };
-  struct FaultEnd {
-    Instant at;
-    FaultEvent event;
-  };
-
   Node& at(NodeId node) { return nodes_[static_cast<std::size_t>(node)]; }
   const Node& at(NodeId node) const { return nodes_[static_cast<std::size_t>(node)]; }
   template <class Core>
@@ -158,16 +145,11 @@ class Simulation {
   void advance_due();
   void advance(NodeId node);
   void publish(NodeId from);
-  std::shared_ptr<Decoded> read(std::span<const std::byte> bytes);
   void note(NodeId from, const Outgoing& sent);
 
   // Faults of processes and links.
-  void set_up_faults();
-  Instant next_fault() const;
-  bool comes(double at_s) const;
+  void skew_clocks();
   void do_faults();
-  void begin_events();
-  void end_events();
   void begin(const FaultEvent& event);
   void cut(const FaultEvent& event, bool join);
   bool anybody_else_knows_the_mission(NodeId but) const;
@@ -184,27 +166,17 @@ class Simulation {
   RunId run_;
   int agent_count_;
   Network network_;
+  Routes routes_;
+  SimulatedWire wire_;
+  FaultSchedule faults_;
+  SimulatedOperator operator_;
   std::vector<Node> nodes_;
-  NodeSet on_bus_[kBusCount];  // the nodes that subscribe to any type there
-  std::vector<NodeId> listeners_[kBusCount][kMessageTypeCount];
 
   Instant now_{};
   Tick last_tick_ = -1, counted_ = -1;  // counted_: the ticks before last_tick_ that count
   bool end_announced_ = false;          // by a coordinator
   Outbox outbox_;
-  std::vector<std::byte> bytes_, damaged_;
-  std::vector<std::shared_ptr<Decoded>> spare_;  // for reuse
   SimulationCounts counts_;
-
-  std::vector<FaultEvent> events_;
-  std::size_t next_fault_ = 0;
-  std::vector<FaultEnd> fault_ends_;
-  std::optional<Instant> paused_until_;  // an operator wants the mission to be paused
-  Instant next_operator_message_;        // until its wish is obeyed
-  std::int64_t operator_messages_ = 0;   // messages of that operator
-  double faulty_s_;                      // progress_s() at which all is healed
-  bool healed_ = false;
-  bool hinders_;  // even if only messages have faults
   std::optional<Instant> hindered_;
 };
 

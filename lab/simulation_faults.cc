@@ -12,15 +12,7 @@ namespace {
 /// A random stream beside those of lab/faults.cc.
 constexpr std::uint32_t kClocks = 16;
 
-/// As `ergocast pause` repeats it.
-constexpr auto kOperatorPeriod = std::chrono::milliseconds(100);
-
 }  // namespace
-
-double Simulation::planned_s() const {
-  const Timing& timing = mission_.timing;
-  return static_cast<double>(timing.tick_count) * timing.dt_s / timing.realtime_factor;
-}
 
 double Simulation::progress_s() const {
   const double virtual_s = in_seconds(now_);
@@ -30,14 +22,8 @@ double Simulation::progress_s() const {
                   static_cast<double>(last_tick_) * timing.dt_s / timing.realtime_factor);
 }
 
-void Simulation::set_up_faults() {
+void Simulation::skew_clocks() {
   const Faults& faults = options_.faults;
-  const Timing& timing = mission_.timing;
-  hinders_ = hinders(faults, timing.lockstep_timeout_s);
-  faulty_s_ = faults.lasting_share * planned_s();
-  // A share of 1 lasts to the end, also of a mission that began late.
-  if (faults.lasting_share >= 1) faulty_s_ += timing.admission_timeout_s;
-  events_ = fault_events(faults, mission_.seed, agent_count_, faulty_s_);
   if (faults.clock_rate_error <= 0 && faults.clock_offset_max_s <= 0) return;
   RandomStream random(mission_.seed, kClocks);
   for (Node& node : nodes_) {
@@ -47,39 +33,20 @@ void Simulation::set_up_faults() {
   }
 }
 
-/// The last event is healing, which ends all faults.
-Instant Simulation::next_fault() const {
-  if (healed_) return Instant::max();
-  const bool any = next_fault_ < events_.size();
-  Instant next(seconds(any ? std::min(events_[next_fault_].at_s, faulty_s_) : faulty_s_));
-  for (const FaultEnd& end : fault_ends_) next = std::min(next, end.at);
-  return std::min(next, paused_until_.value_or(next));
-}
-
-/// Time passes in whole nanoseconds: a moment may have come although progress_s() is a rounding
-/// error short.
-bool Simulation::comes(double at_s) const { return Instant(seconds(at_s)) <= now_; }
-
 void Simulation::do_faults() {
-  if (!healed_) {
-    end_events();
-    begin_events();
-    if (comes(faulty_s_) || progress_s() >= faulty_s_ || mission_over()) heal();
+  if (!faults_.healed()) {
+    operator_.end_pause(now_);
+    faults_.end_due(now_, [this](const FaultEvent& event) { cut(event, true); });
+    const double progress_s = this->progress_s();
+    while (const FaultEvent* event = faults_.take_begin(now_, progress_s)) begin(*event);
+    if (faults_.healing_due(now_, progress_s) || mission_over()) heal();
   }
   bool away = false;
   for (NodeId node = 0; node < node_count(); ++node) {
     if (!up(node) && at(node).restart <= now_) start(node);
     away |= !up(node);
   }
-  if (away || (hinders_ && !healed_) || !fault_ends_.empty()) hindered_ = now_;
-}
-
-void Simulation::begin_events() {
-  const double progress = progress_s();
-  const auto due = [&](double at_s) { return comes(at_s) || at_s <= progress + 1e-9; };
-  while (next_fault_ < events_.size() && due(events_[next_fault_].at_s)) {
-    begin(events_[next_fault_++]);
-  }
+  if (away || faults_.hinders()) hindered_ = now_;
 }
 
 void Simulation::begin(const FaultEvent& event) {
@@ -89,7 +56,7 @@ void Simulation::begin(const FaultEvent& event) {
     case kOneWayCut:
       ++(event.kind == kSplit ? counts_.splits : counts_.one_way_cuts);
       cut(event, false);
-      fault_ends_.push_back({now_ + seconds(event.lasts_s), event});
+      faults_.end_at(now_ + seconds(event.lasts_s), event);
       return;
     case kAgentCrash:
       counts_.agent_crashes += crash(static_cast<NodeId>(event.who), event.lasts_s);
@@ -102,7 +69,7 @@ void Simulation::begin(const FaultEvent& event) {
       return;
     case kPause:
       ++counts_.pauses;
-      paused_until_ = std::max(paused_until_.value_or(now_), now_ + seconds(event.lasts_s));
+      operator_.want_pause(now_, event.lasts_s);
       return;
   }
 }
@@ -119,31 +86,12 @@ void Simulation::cut(const FaultEvent& event, bool join) {
   }
 }
 
-/// An operator who wants the mission to be paused, or to go on, sends this until a tick is named,
-/// ten times a second.
 void Simulation::send_to_coordinator() {
   const NodeId node = coordinator_node();
-  if (operator_messages_ == 0 && !paused_until_) return;
+  if (operator_.idle()) return;
   if (!up(node) || finished(node) || coordinator().looking() || mission_over()) return;
-  const auto& holds = coordinator().holds();
-  if (is_open(holds) == paused_until_.has_value()) {
-    next_operator_message_ = now_;
-    return;
-  }
-  if (now_ < next_operator_message_) return;
-  next_operator_message_ = now_ + kOperatorPeriod;
-  const Pause pause{
-      {run_, kOperator, 1, ++operator_messages_, coordinator().tick()}, named_changes(holds), {}};
-  deliver(node, pause, Delivery{Bus::kSwarm, kOperator, {}, nullptr});
-}
-
-void Simulation::end_events() {
-  if (paused_until_ && *paused_until_ <= now_) paused_until_.reset();
-  std::erase_if(fault_ends_, [this](const FaultEnd& end) {
-    if (end.at > now_) return false;
-    cut(end.event, true);
-    return true;
-  });
+  const auto pause = operator_.message(now_, run_, coordinator());
+  if (pause) deliver(node, *pause, Delivery{Bus::kSwarm, kOperator, {}, nullptr});
 }
 
 /// An evicted agent has ended, and sends nothing any more.
@@ -182,7 +130,7 @@ bool Simulation::crash(NodeId node, double lasts_s) {
 /// Acts like an init system: restarts a coordinator that found no mission to take over.
 void Simulation::supervise_coordinator() {
   Node& node = at(coordinator_node());
-  if (healed_ || !node.up || !coordinator().finished() || mission_over()) return;
+  if (faults_.healed() || !node.up || !coordinator().finished() || mission_over()) return;
   if (coordinator().mission() != nullptr) return;
   ++counts_.coordinator_crashes;
   node.up = false;
@@ -190,9 +138,8 @@ void Simulation::supervise_coordinator() {
 }
 
 void Simulation::heal() {
-  healed_ = true;
-  fault_ends_.clear();
-  paused_until_.reset();
+  faults_.heal();
+  operator_.want_no_pause();
   network_.heal(now_);
   for (Node& node : nodes_) {
     if (!node.up) node.restart = now_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
@@ -147,17 +148,6 @@ Json stations(const Recorder& recorder, const Mission& mission) {
           {"farthest_m", from_home_m.empty() ? Json(nullptr) : number(farthest_m)}};
 }
 
-void add_mission(const Mission& mission, const RunContext& context, Json& summary) {
-  const bool lockstep = mission.timing.pace == Pace::kLockstep;
-  summary["scenario"] = mission.name;
-  summary["scenario_hash"] = context.scenario_hash;
-  summary["seed"] = mission.seed;
-  summary["mode"] = context.simulated ? "simulate" : lockstep ? "lockstep" : "realtime";
-  if (!lockstep) summary["realtime_factor"] = mission.timing.realtime_factor;
-  summary["dt_s"] = mission.timing.dt_s;
-  summary["tick_count"] = mission.timing.tick_count;
-}
-
 /// The recorder's reason, with important remarks on the result.
 std::string reason_of(const Recorder& recorder) {
   const RunFacts& facts = recorder.facts();
@@ -174,6 +164,84 @@ std::string reason_of(const Recorder& recorder) {
                 std::min(100.0, 100 * share));
   return recorder.reason() + text;
 }
+
+// ---- the sections of the summary, in their order ----
+
+/// Which run it was, how it ended, and what recorded it.
+Json run_section(const Recorder& recorder, const RunContext& context) {
+  return {{"run_id", to_hex(context.run)}, {"result", recorder.result()},
+          {"reason", reason_of(recorder)}, {"started", context.started},
+          {"version", context.version},    {"build", context.build},
+          {"cpu_fma", context.cpu_has_fma}};
+}
+
+void add_mission(const Mission& mission, const RunContext& context, Json& summary) {
+  const bool lockstep = mission.timing.pace == Pace::kLockstep;
+  summary["scenario"] = mission.name;
+  summary["scenario_hash"] = context.scenario_hash;
+  summary["seed"] = mission.seed;
+  summary["mode"] = context.simulated ? "simulate" : lockstep ? "lockstep" : "realtime";
+  if (!lockstep) summary["realtime_factor"] = mission.timing.realtime_factor;
+  summary["dt_s"] = mission.timing.dt_s;
+  summary["tick_count"] = mission.timing.tick_count;
+}
+
+void add_ticks(const Recorder& recorder, Json& summary) {
+  const RunFacts& facts = recorder.facts();
+  summary["ticks"] = facts.ticks - facts.held_ticks;
+  const auto holds = recorder.follower().holds();
+  if (holds.empty()) return;
+  summary["held_ticks"] = facts.held_ticks;
+  summary["holds"] = holds_json(holds);
+}
+
+/// φ², the goal that it had, and its slope.
+void add_metric(const RunFacts& facts, const std::optional<Mission>& mission, Json& summary) {
+  const bool observed = !facts.t_s.empty();
+  const auto if_observed = [&](double value) { return observed ? number(value) : Json(nullptr); };
+  summary["ergodic_metric"] = {{"first", if_observed(facts.ergodic_metric_first)},
+                               {"last", if_observed(facts.ergodic_metric_last)}};
+  if (mission && mission->basis.free_domain) {
+    summary["ergodic_metric"]["basis"] = name_of_basis(mission->basis);
+    summary["ergodic_metric_in_cosines"] = {{"last", if_observed(facts.cosine_metric_last)}};
+  }
+  if (mission && mission->goal_ergodic_metric > 0) {
+    summary["goal"] = {
+        {"ergodic_metric", mission->goal_ergodic_metric},
+        {"reached", observed && facts.ergodic_metric_last <= mission->goal_ergodic_metric}};
+    if (mission->basis.free_domain) summary["goal"]["basis"] = name_of_basis(mission->basis);
+  }
+  const auto slope = log_log_slope(facts.t_s, facts.ergodic_metric);
+  summary["log_log_slope"] = slope ? number(*slope) : Json(nullptr);
+}
+
+void add_wall_time(const RunFacts& facts, const RunContext& context, Json& summary) {
+  const auto ticks = static_cast<double>(facts.ticks - facts.former_ticks);
+  summary["wall_time_s"] = context.wall_time_s;
+  summary["ticks_per_s"] =
+      context.wall_time_s > 0 ? number(ticks / context.wall_time_s) : Json(nullptr);
+}
+
+/// What the record lacks, and what the world could not do in time.
+void add_losses(const RunFacts& facts, const RunContext& context, Json& summary) {
+  summary["gaps"] = facts.gaps;
+  if (facts.halted) summary["emergency_stop"] = true;
+  summary["segments"] = context.segments;
+  summary["interruptions"] = context.interruptions;
+  summary["events_removed"] = context.events_removed;
+  summary["missed_deadlines"] = facts.missed_deadlines;
+  summary["skipped_ticks"] = facts.skipped_ticks;
+}
+
+/// What bounded the motion of the vehicles.
+void add_motion(const Recorder& recorder, const Mission& mission, Json& summary) {
+  if (fastest_mps(mission) > 0)
+    summary["speed_limit"] = speed_limit(mission, recorder.facts().clamped_commands);
+  if (mission.separation.distance_m > 0) summary["separation"] = separation(recorder, mission);
+  if (any_station(mission)) summary["stations"] = stations(recorder, mission);
+}
+
+// ---- reading ----
 
 /// Null if there is no such file.
 std::variant<Json, std::string> read_json(const std::filesystem::path& file) {
@@ -208,54 +276,17 @@ std::vector<Hold> holds_in(const Json& list) {
 
 Json summarize(const Recorder& recorder, const RunContext& context) {
   const RunFacts& facts = recorder.facts();
-  Json summary{{"run_id", to_hex(context.run)}, {"result", recorder.result()},
-               {"reason", reason_of(recorder)}, {"started", context.started},
-               {"version", context.version},    {"build", context.build},
-               {"cpu_fma", context.cpu_has_fma}};
   const auto& mission = recorder.follower().mission();
+  Json summary = run_section(recorder, context);
   if (mission) add_mission(*mission, context, summary);
-  summary["ticks"] = facts.ticks - facts.held_ticks;
-  if (const auto holds = recorder.follower().holds(); !holds.empty()) {
-    summary["held_ticks"] = facts.held_ticks;
-    summary["holds"] = holds_json(holds);
-  }
-  const bool observed = !facts.t_s.empty();
-  summary["ergodic_metric"] = {
-      {"first", observed ? number(facts.ergodic_metric_first) : Json(nullptr)},
-      {"last", observed ? number(facts.ergodic_metric_last) : Json(nullptr)}};
-  if (mission && mission->basis.free_domain) {
-    summary["ergodic_metric"]["basis"] = name_of_basis(mission->basis);
-    summary["ergodic_metric_in_cosines"] = {
-        {"last", observed ? number(facts.cosine_metric_last) : Json(nullptr)}};
-  }
-  if (mission && mission->goal_ergodic_metric > 0) {
-    summary["goal"] = {
-        {"ergodic_metric", mission->goal_ergodic_metric},
-        {"reached", observed && facts.ergodic_metric_last <= mission->goal_ergodic_metric}};
-    if (mission->basis.free_domain) summary["goal"]["basis"] = name_of_basis(mission->basis);
-  }
-  const auto slope = log_log_slope(facts.t_s, facts.ergodic_metric);
-  summary["log_log_slope"] = slope ? number(*slope) : Json(nullptr);
+  add_ticks(recorder, summary);
+  add_metric(facts, mission, summary);
   if (mission) summary["conventions"] = conventions(mission->basis);
-  summary["wall_time_s"] = context.wall_time_s;
-  summary["ticks_per_s"] =
-      context.wall_time_s > 0
-          ? number(static_cast<double>(facts.ticks - facts.former_ticks) / context.wall_time_s)
-          : Json(nullptr);
+  add_wall_time(facts, context, summary);
   summary["agents"] = agents(recorder);
   summary["messages"] = messages(recorder, context);
-  summary["gaps"] = facts.gaps;
-  if (facts.halted) summary["emergency_stop"] = true;
-  summary["segments"] = context.segments;
-  summary["interruptions"] = context.interruptions;
-  summary["events_removed"] = context.events_removed;
-  summary["missed_deadlines"] = facts.missed_deadlines;
-  summary["skipped_ticks"] = facts.skipped_ticks;
-  if (mission && fastest_mps(*mission) > 0)
-    summary["speed_limit"] = speed_limit(*mission, facts.clamped_commands);
-  if (mission && mission->separation.distance_m > 0)
-    summary["separation"] = separation(recorder, *mission);
-  if (mission && any_station(*mission)) summary["stations"] = stations(recorder, *mission);
+  add_losses(facts, context, summary);
+  if (mission) add_motion(recorder, *mission, summary);
   return summary;
 }
 

@@ -17,6 +17,7 @@
 #include "logger/observer.h"
 #include "plan/plan.h"
 #include "studies/study_measure.h"
+#include "team/state_assembler.h"
 
 namespace ergocast::studies {
 namespace {
@@ -80,16 +81,15 @@ class Observer : public lab::SimulationObserver {
  private:
   void receive(const WorldState& world) {
     if (world.header.tick <= tick_) return;  // a repeat
-    if (world.header.tick != gathering_) {
-      gathering_ = world.header.tick;
-      parts_ = 0;
+    state_.take(world);
+    if (!state_.complete(world.header.tick)) return;
+    for (const WorldState& part : state_.states()) {
+      for (const Vehicle& vehicle : part.vehicles_in_part()) {
+        const auto agent = static_cast<std::size_t>(vehicle.id);
+        if (agent < vehicles_.size()) vehicles_[agent] = vehicle;
+      }
     }
-    for (int i = 0; i < world.vehicle_count; ++i) {
-      const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-      const auto agent = static_cast<std::size_t>(vehicle.id);
-      if (agent < vehicles_.size()) vehicles_[agent] = vehicle;
-    }
-    if (++parts_ == world.parts) take(world.header.tick);
+    take(world.header.tick);
   }
 
   /// Takes in all of one tick, agent by agent.
@@ -111,9 +111,9 @@ class Observer : public lab::SimulationObserver {
   const lab::NodeId logger_;
   StudyMeasure measure_;
   Judge judge_;
-  std::vector<Vehicle> vehicles_;  // at tick gathering_
-  Tick tick_ = -1, gathering_ = -1;
-  int parts_ = 0;
+  StateAssembler state_;
+  std::vector<Vehicle> vehicles_;  // at tick_
+  Tick tick_ = -1;
   std::int64_t contributions_ = 0;
 };
 

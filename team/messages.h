@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -191,7 +192,17 @@ struct WorldState {
   std::int32_t part = 0, parts = 1;
   bool last = false;  ///< the mission is over, and the world leaves: this is its last message
   std::int32_t vehicle_count = 0;
-  std::array<Vehicle, kMaxVehiclesPerState> vehicles;
+  std::array<Vehicle, kMaxVehiclesPerState> vehicles;  ///< the first vehicle_count of them count
+
+  /// The vehicles of this part.
+  std::span<const Vehicle> vehicles_in_part() const {
+    return std::span(vehicles).first(static_cast<std::size_t>(vehicle_count));
+  }
+  std::span<Vehicle> vehicles_in_part() {
+    return std::span(vehicles).first(static_cast<std::size_t>(vehicle_count));
+  }
+  /// One more vehicle. @pre there is room
+  Vehicle& add_vehicle() { return vehicles[static_cast<std::size_t>(vehicle_count++)]; }
 };
 
 /// An agent's velocity for a tick. A restarted world learns tick and position from it.

@@ -7,8 +7,7 @@ namespace ergocast {
 void RadioRange::on(const WorldState& world) {
   if (!limited() || world.header.tick < tick_) return;
   tick_ = world.header.tick;
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     positions_m_[vehicle.id] = vehicle.position_m;
   }
 }

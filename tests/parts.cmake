@@ -58,6 +58,7 @@ ergocast_test(NAME team_tests LABELS unit
     team/participant_test.cc
     team/plan_test.cc
     team/radio_range_test.cc
+    team/state_assembler_test.cc
     text/input_file_test.cc
     text/printable_test.cc
   LIBS ergocast::team ergocast::text)
@@ -101,6 +102,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     coordinator/mission_pages_test.cc
     coordinator/pausing_test.cc
     coordinator/takeover_test.cc
+    sim/command_history_test.cc
     sim/world_resume_test.cc
     sim/record_window_test.cc
     sim/world_bodies_test.cc

@@ -47,8 +47,7 @@ void LiveTeam::receive(const Message& message, Bus bus, AgentId transmitter, Ins
 
 void LiveTeam::on(const WorldState& world) {
   if (!grid_) return;
-  for (std::int32_t i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     grid_->put(vehicle.id, world.header.tick, vehicle.position_m);
   }
 }

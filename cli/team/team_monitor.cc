@@ -63,8 +63,7 @@ void MonitoredRun::on(const AgentStatus& status, const Arrival& arrival) {
 void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
   if (!arrival.fresh) return;
   note_end(arrival, world.last);
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     VehicleSeen& seen = vehicles_[vehicle.id];
     if (world.header.tick >= seen.tick) seen = {world.header.tick, vehicle.velocity_mps};
   }

@@ -86,11 +86,10 @@ void Driver::on(const WorldState& other, const Arrival& arrival) {
   const bool begins = !running_ || arrival.now < begun_ + kListening;
   if (!arrival.fresh || !begins) return;
   if (published_ && other.header.incarnation > me_.incarnation()) return;
-  for (int i = 0; i < other.vehicle_count; ++i) {
-    const AgentId id = other.vehicles[static_cast<std::size_t>(i)].id;
-    if (only_ && id != *only_) continue;
+  for (const Vehicle& vehicle : other.vehicles_in_part()) {
+    if (only_ && vehicle.id != *only_) continue;
     failed_ = true;
-    return stop("robot " + std::to_string(id) +
+    return stop("robot " + std::to_string(vehicle.id) +
                 " is driven by another driver already: end that one first, or choose " +
                 (only_ ? "another --id" : "one robot by --id"));
   }
@@ -218,7 +217,7 @@ void Driver::publish_position(Outbox& out) {
     state.parts = only_ ? robots : static_cast<std::int32_t>(parts);
     state.skipped_ticks = skipped_ticks_;
     for (; drive != drives_.end() && state.vehicle_count < kMaxVehiclesPerState; ++drive) {
-      Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(state.vehicle_count++)];
+      Vehicle& vehicle = state.add_vehicle();
       const auto& [id, one] = *drive;
       vehicle.id = id;
       vehicle.answered_tick = one.answered;

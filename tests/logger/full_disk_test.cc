@@ -118,8 +118,8 @@ TEST(FullDisk, NoStreamIsFullFromTheBeginning) {
   record_to(nowhere, nowhere);
   EXPECT_TRUE(nowhere << 'x' << "a line\n" << std::flush);
   std::ostream no_buffer(nullptr);
-  EXPECT_DEATH(record_to(no_buffer, nowhere), "broken precondition: writing");
-  EXPECT_DEATH(record_to(nowhere, no_buffer), "broken precondition: writing");
+  EXPECT_DEATH(record_to(no_buffer, nowhere), "broken precondition: good");
+  EXPECT_DEATH(record_to(nowhere, no_buffer), "broken precondition: good");
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "plan/mission_fields.h"
 #include "plan/plan.h"
-#include "team/plan.pb.h"
+#include "plan/plan.pb.h"
 #include "tests/team/rich_mission.h"
 
 namespace ergocast {

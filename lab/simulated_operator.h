@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A simulated operator: it pauses a mission and resumes it.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "coordinator/coordinator.h"
+#include "core/base/ids.h"
+#include "core/mission/hold.h"
+#include "team/messages.h"
+
+namespace ergocast::lab {
+
+class SimulatedOperator {
+ public:
+  /// From now on it wants the mission to be paused, for this long at least.
+  void want_pause(Instant now, double lasts_s) {
+    paused_until_ = std::max(paused_until_.value_or(now), now + seconds(lasts_s));
+  }
+  /// Wants the mission to go on, if its pause has been long enough.
+  void end_pause(Instant now) {
+    if (paused_until_ && *paused_until_ <= now) paused_until_.reset();
+  }
+  /// Wants the mission to go on.
+  void want_no_pause() { paused_until_.reset(); }
+  /// When its pause ends; Instant::max(): it wants none.
+  Instant next() const { return paused_until_.value_or(Instant::max()); }
+  /// Whether it has wanted nothing yet, and wants nothing now.
+  bool idle() const { return messages_ == 0 && !paused_until_; }
+
+  /// The message that it sends now. It repeats its wish until a tick is named.
+  std::optional<Pause> message(Instant now, RunId run, const Coordinator& coordinator) {
+    const auto& holds = coordinator.holds();
+    if (is_open(holds) == paused_until_.has_value()) {
+      next_message_ = now;
+      return {};
+    }
+    if (now < next_message_) return {};
+    next_message_ = now + kPeriod;
+    return Pause{{run, kOperator, 1, ++messages_, coordinator.tick()}, named_changes(holds), {}};
+  }
+
+ private:
+  /// As `ergocast pause` repeats it.
+  static constexpr auto kPeriod = std::chrono::milliseconds(100);
+
+  std::optional<Instant> paused_until_;
+  Instant next_message_;  // until its wish is obeyed
+  std::int64_t messages_ = 0;
+};
+
+}  // namespace ergocast::lab

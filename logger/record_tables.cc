@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes what a tick adds to the two tables, and adds it to the facts.
+#include "logger/record_tables.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/base/require.h"
+#include "core/mission/station.h"
+#include "core/motion/starts.h"
+
+namespace ergocast {
+namespace {
+
+constexpr double kMetricsPeriod_s = 1.0;
+
+/// 17 significant digits: reading them back gives the same double.
+void append_number(std::string& line, double value) {
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17);
+  line.append(text, end.ptr);
+}
+
+/// The member that drives this vehicle at `tick`; null if none does. Other vehicles stand still and
+/// cover nothing.
+const RosterEntry* member(const MissionFollower& follower, AgentId id, Tick tick) {
+  const auto& roster = follower.roster();
+  const auto at = std::find_if(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
+    return entry.author.agent == id && entry.active_at(tick);
+  });
+  return at == roster.end() ? nullptr : &*at;
+}
+
+/// What a row of the metrics has from the agents' reports.
+struct TeamFigures {
+  double low = 0, high = 0;  // of the agents' own φ²
+  double staleness_s = 0;
+  std::int64_t received = 0, lost = 0;
+};
+
+TeamFigures figures_of(const AgentReports& reports, const MissionFollower& follower, Tick tick) {
+  TeamFigures team;
+  bool first = true;
+  for (const auto& [author, status] : reports.statuses()) {
+    team.received += status.contributions_received;
+    team.lost += status.contributions_lost;
+    const RosterEntry* entry = follower.entry_of(author.incarnation);
+    if (entry == nullptr || !entry->active_at(tick)) continue;
+    team.staleness_s = std::max(team.staleness_s, status.max_staleness_s);
+    if (status.answered_tick < 0) continue;  // it has no coverage yet
+    team.low = first ? status.ergodic_metric : std::min(team.low, status.ergodic_metric);
+    team.high = first ? status.ergodic_metric : std::max(team.high, status.ergodic_metric);
+    first = false;
+  }
+  return team;
+}
+
+}  // namespace
+
+RecordTables::RecordTables(std::ostream& trajectory, std::ostream& metrics)
+    : trajectory_(trajectory), metrics_(metrics) {
+  ERGOCAST_REQUIRE(good());
+  metrics_ << kMetricsHeader << '\n';
+}
+
+void RecordTables::flush() {
+  trajectory_.flush();
+  metrics_.flush();
+}
+
+void RecordTables::begin(const Mission& mission) {
+  observer_.begin(mission);
+  if (mission.basis.free_domain) {
+    in_cosines_ = in_cosines(mission);
+    cosines_.begin(*in_cosines_);
+  }
+  trajectory_ << (mission.domain.planar() ? kTrajectoryHeader : kTrajectoryHeaderInSpace) << '\n';
+}
+
+void RecordTables::begin_without_mission() {
+  if (!begun()) trajectory_ << kTrajectoryHeader << '\n';
+}
+
+RowTick RecordTables::replay(const RunData& past, const MissionFollower& follower,
+                             const AgentReports& reports) {
+  const Mission& mission = *follower.mission();
+  const auto counted = [&](Tick tick) { return counted_ticks(follower.holds(), tick); };
+  for (const MetricsRow& metrics : past.metrics) {
+    facts_.t_s.push_back(static_cast<double>(counted(metrics.tick)) * mission.timing.dt_s);
+    facts_.ergodic_metric.push_back(metrics.ergodic_metric);
+  }
+  if (!past.metrics.empty()) {
+    former_metrics_ = past.metrics.back();
+    facts_.ergodic_metric_first = facts_.ergodic_metric.front();
+    facts_.ergodic_metric_last = facts_.ergodic_metric.back();
+  }
+  RowTick row;
+  const Context context{row, follower, reports};
+  std::size_t vehicles = 0, expected = mission.starts_m.size();
+  for_each_row(past, [&](AgentId id, const TrackPoint& point) {
+    if (point.tick > former_end_.first) {
+      if (vehicles > 0) end_row(context);
+      expected = std::max(expected, vehicles);
+      row = {point.tick, point.tick - counted(point.tick), !is_held(follower.holds(), point.tick)};
+      vehicles = 0;
+      ++facts_.ticks;
+      facts_.held_ticks += row.counts ? 0 : 1;
+    }
+    observe(context, id, point.x_m);
+    ++vehicles;
+    former_end_ = {point.tick, id};
+  });
+  facts_.former_ticks = facts_.ticks;
+  facts_.gaps = former_end_.first + 1 - facts_.ticks;
+  // With fewer rows, the last tick may be incomplete, and is recorded to its end.
+  if (vehicles == 0 || vehicles < expected) return row;
+  end_row(context);
+  row.pass();
+  return row;
+}
+
+void RecordTables::write(const RowTick& row, const TickState& now, const TickState& next,
+                         const MissionFollower& follower, const AgentReports& reports) {
+  // A pause that only the world received is lost if its coordinator stops: its ticks then count.
+  facts_.held_ticks = std::min(facts_.held_ticks, now.uncounted_ticks);
+  const Context context{row, follower, reports};
+  write_trajectory(context, now, next);
+  end_row(context);
+  if (row.tick <= former_end_.first) return;
+  ++facts_.ticks;
+  facts_.held_ticks += row.counts ? 0 : 1;
+}
+
+void RecordTables::skip(const RowTick& row, Tick tick) {
+  facts_.gaps += tick - std::max(row.tick, former_end_.first + 1);
+}
+
+void RecordTables::write_trajectory(const Context& context, const TickState& now,
+                                    const TickState& next) {
+  const Mission& mission = context.mission();
+  const Tick tick = context.row.tick;
+  const double t_s = static_cast<double>(tick) * mission.timing.dt_s;
+  const int axes = mission.domain.planar() ? 2 : 3;
+  std::string line;
+  for (const auto& [id, vehicle] : now.vehicles) {
+    const auto after = next.vehicles.find(id);
+    if (after == next.vehicles.end() || std::pair(tick, id) <= former_end_) continue;
+    observe(context, id, vehicle.position_m);
+    if (context.row.is_last(mission)) note_home(mission, id, after->second.position_m);
+    line += std::to_string(tick) + ',';
+    append_number(line, t_s);
+    line += ',' + std::to_string(id);
+    for (const Eigen::Vector3d& vector : {vehicle.position_m, after->second.velocity_mps}) {
+      for (int axis = 0; axis < axes; ++axis) {
+        line += ',';
+        append_number(line, vector[axis]);
+      }
+    }
+    line += '\n';
+  }
+  trajectory_ << line;
+}
+
+/// Notes how far an agent that must be at home is from its station.
+void RecordTables::note_home(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m) {
+  const auto home_m = station_of(mission, id);
+  if (!home_m) return;
+  double& farthest_m = facts_.from_home_m[id];
+  farthest_m = std::max(farthest_m, (x_m - *home_m).norm());
+}
+
+void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m) {
+  const Mission& mission = context.mission();
+  const RosterEntry* entry = member(context.follower, id, context.row.tick);
+  if (rests(mission, id, context.row.counted())) {
+    note_home(mission, id, x_m);
+  } else if (entry != nullptr && context.row.counts) {
+    observer_.see(mission, entry->kind, x_m);
+    if (in_cosines_) cosines_.see(*in_cosines_, entry->kind, x_m);
+  }
+  if (mission.separation.distance_m > 0) row_places_m_.push_back(x_m);
+}
+
+void RecordTables::end_row(const Context& context) {
+  facts_.nearest_m = std::min(facts_.nearest_m, least_distance_m(row_places_m_));
+  row_places_m_.clear();
+  write_due_metrics(context);
+}
+
+void RecordTables::write_due_metrics(const Context& context) {
+  const Mission& mission = context.mission();
+  const auto period = std::max<Tick>(1, std::llround(kMetricsPeriod_s / mission.timing.dt_s));
+  if (!observer_.has_seen_any() || !context.row.counts) return;
+  if (context.row.counted() % period != 0 && !context.row.is_last(mission)) return;
+  // No table has this metric, so a resumed record computes it from the rows.
+  if (in_cosines_) facts_.cosine_metric_last = cosines_.metric(*in_cosines_);
+  if (context.row.tick <= former_metrics_.tick) return;
+  const double metric = observer_.metric(mission);
+  write_metrics(context, metric);
+  note_metric(context, metric);
+}
+
+void RecordTables::write_metrics(const Context& context, double metric) {
+  const Tick tick = context.row.tick;
+  const double t_s = static_cast<double>(tick) * context.mission().timing.dt_s;
+  TeamFigures team = figures_of(context.reports, context.follower, tick);
+  // A former process's counts are better until all agents have sent a status.
+  team.received = std::max(team.received, static_cast<std::int64_t>(former_metrics_.received));
+  team.lost = std::max(team.lost, static_cast<std::int64_t>(former_metrics_.lost));
+  std::string line = std::to_string(tick);
+  for (const double value : {t_s, metric, team.high - team.low, team.staleness_s}) {
+    line += ',';
+    append_number(line, value);
+  }
+  line += ',' + std::to_string(team.received) + ',' + std::to_string(team.lost) + ',';
+  append_number(line, context.reports.blocks(context.follower).share);
+  metrics_ << line << '\n';
+}
+
+void RecordTables::note_metric(const Context& context, double metric) {
+  if (facts_.t_s.empty()) facts_.ergodic_metric_first = metric;
+  facts_.ergodic_metric_last = metric;
+  if (!std::isfinite(metric) && !facts_.no_metric_from) facts_.no_metric_from = context.row.tick;
+  facts_.t_s.push_back(static_cast<double>(context.row.counted()) * context.mission().timing.dt_s);
+  facts_.ergodic_metric.push_back(metric);
+}
+
+}  // namespace ergocast

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The two tables of a run record, and what they amount to: a tick's rows in trajectory.csv, the due
+// rows of metrics.csv, and the facts of the summary.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <ostream>
+#include <utility>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "logger/agent_reports.h"
+#include "logger/observer.h"
+#include "logger/run_data.h"
+#include "logger/waiting_states.h"
+#include "team/mission_follower.h"
+
+namespace ergocast {
+
+/// The results of the whole run.
+struct RunFacts {
+  Tick ticks = 0;         ///< recorded
+  Tick held_ticks = 0;    ///< of these, ticks that do not count because of a pause
+  Tick former_ticks = 0;  ///< of these, recorded before this recorder resumed
+  double ergodic_metric_first = 0, ergodic_metric_last = 0;
+  std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
+  /// With basis.free_domain: φ² in cosines at the last row of the metrics; NaN: there is none.
+  double cosine_metric_last = std::numeric_limits<double>::quiet_NaN();
+  /// The tick of the first row whose φ² is not a number: from there on the record has no coverage.
+  std::optional<Tick> no_metric_from;
+  Tick gaps = 0;        ///< ticks without rows before the last row
+  bool halted = false;  ///< by an emergency stop: the last row stands still
+  /// Real time, as the world counts them; with several drivers, the largest count.
+  std::int64_t missed_deadlines = 0, skipped_ticks = 0;
+  std::int64_t clamped_commands = 0;  ///< by the speed limit, likewise
+  /// Where a distance is kept: the least distance of any two bodies at any recorded tick [m]. The
+  /// greatest number if there is none.
+  double nearest_m = std::numeric_limits<double>::max();
+  /// For each agent with a station (core/mission/station.h): the greatest distance of its vehicle
+  /// from there [m]. Recorded ticks of its rest and the end of the mission count.
+  std::map<AgentId, double> from_home_m;
+};
+
+/// Which tick a row is of.
+struct RowTick {
+  Tick tick = 0;
+  Tick uncounted = 0;  ///< ticks before it that do not count, …
+  bool counts = true;  ///< … and whether it counts itself, both from the world
+
+  /// Its number among the ticks that count.
+  Tick counted() const { return tick - uncounted; }
+  /// Whether it is the mission's last.
+  bool is_last(const Mission& mission) const {
+    return counts && counted() + 1 == mission.timing.tick_count;
+  }
+  /// Goes on to the next tick.
+  void pass() {
+    ++tick;
+    uncounted += counts ? 0 : 1;
+  }
+};
+
+/// The header lines of the two files.
+inline constexpr const char* kTrajectoryHeader = "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps";
+inline constexpr const char* kTrajectoryHeaderInSpace =
+    "tick,t_s,agent,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps";
+inline constexpr const char* kMetricsHeader =
+    "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
+    "contributions_lost,blocked_share";
+
+class RecordTables {
+ public:
+  /// Writes to streams that outlive it, and begins the metrics. @pre both are good
+  RecordTables(std::ostream& trajectory, std::ostream& metrics);
+
+  bool good() const { return trajectory_.good() && metrics_.good(); }
+  void flush();
+
+  /// Begins the trajectory of a mission.
+  void begin(const Mission& mission);
+  /// The same without a mission, if none has begun.
+  void begin_without_mission();
+  bool begun() const { return observer_.begun(); }
+  /// Adds a former process's rows to the sums again. Returns which row is next: the last one of
+  /// those again if it may lack agents. @pre begun(), and no row has been written
+  RowTick replay(const RunData& past, const MissionFollower& follower, const AgentReports& reports);
+
+  /// Writes the row of a tick that has come to `now` and has led to `next`.
+  void write(const RowTick& row, const TickState& now, const TickState& next,
+             const MissionFollower& follower, const AgentReports& reports);
+  /// The rows before `tick`, from `row` on, will be missing.
+  void skip(const RowTick& row, Tick tick);
+
+  const RunFacts& facts() const { return facts_; }
+  RunFacts& facts() { return facts_; }
+
+ private:
+  /// What a row is computed from, besides the states.
+  struct Context {
+    const RowTick& row;
+    const MissionFollower& follower;
+    const AgentReports& reports;
+    const Mission& mission() const { return *follower.mission(); }
+  };
+
+  void write_trajectory(const Context& context, const TickState& now, const TickState& next);
+  void note_home(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m);
+  void observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m);
+  void end_row(const Context& context);
+  void write_due_metrics(const Context& context);
+  void write_metrics(const Context& context, double metric);
+  void note_metric(const Context& context, double metric);
+
+  std::ostream& trajectory_;
+  std::ostream& metrics_;
+  Observer observer_;
+  std::optional<Mission> in_cosines_;            // with basis.free_domain
+  Observer cosines_;                             // observes in_cosines_, if there is one
+  std::vector<Eigen::Vector3d> row_places_m_;    // of all bodies, where a distance is kept
+  std::pair<Tick, AgentId> former_end_{-1, -1};  // a former process's last row, …
+  MetricsRow former_metrics_{.tick = -1};        // … also of the metrics
+  RunFacts facts_;
+};
+
+}  // namespace ergocast

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The vehicles of the simulated world: which agent drives each, where it is, and how it moves.
+//
+//   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
+//   v_n is the command, cut to the vehicle's speed limit. Where bodies keep a distance, a world in
+//   real time then filters all commands together (core/motion/separation.h). Old and late commands
+//   do not account for where the others have gone. Where there are walls, a world always filters,
+//   and the walls stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
+//   result.
+//
+// Each method gets the mission, which is the same one at every call. fleet.cc has members, commands
+// and steps, placing.cc has where vehicles begin.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/mission/roster.h"
+#include "core/motion/separation.h"
+#include "sim/command_history.h"
+#include "sim/physics.h"
+#include "team/messages.h"
+#include "team/state_assembler.h"
+
+namespace ergocast {
+
+/// Whether bodies keep a distance.
+inline bool keeps_distance(const Mission& mission) { return mission.separation.distance_m > 0; }
+/// Whether a restarted world begins from a state of all bodies, because their commands alone do not
+/// determine their motion.
+inline bool begins_by_state(const Mission& mission) {
+  return keeps_distance(mission) || !mission.walls.empty();
+}
+
+/// What a new vehicle finds where it is placed.
+enum class Surroundings {
+  kPlanned,   ///< the world does not know yet where the vehicles are
+  kStanding,  ///< no vehicle moves yet, so less distance is enough
+  kMoving,
+};
+
+class Fleet {
+ public:
+  /// @param physics  what moves the bodies; without it core/motion/vehicle.h does
+  explicit Fleet(PhysicsMaker physics) : physics_maker_(std::move(physics)) {}
+
+  // ---- members ----
+
+  /// Takes in which incarnations drive. A vehicle whose agent has left keeps its place, and a new
+  /// member's vehicle gets one.
+  void take_roster(const Mission& mission, const std::vector<RosterEntry>& roster,
+                   Surroundings surroundings);
+  /// The commands of the incarnation that drives a vehicle; null if `sender` drives none.
+  CommandHistory* commands_of(const Header& sender);
+  /// The tick that the newest command for this vehicle answers; −1: none. @pre it exists
+  Tick answered(AgentId id) const { return vehicles_.at(id).commands.answered(); }
+  /// The newest of all vehicles. −1 if agents have answered none; nothing without any command.
+  std::optional<Tick> newest_answer() const;
+  /// The newest of the vehicles that an agent drives; −1: none.
+  Tick newest_answer_of_members() const;
+  /// Whether all members have answered `tick`, and there is a member.
+  bool everyone_answered(Tick tick) const;
+  /// The members that have not answered `tick`.
+  int late_members(Tick tick) const;
+  /// The first member of which the last two commands are not known; kUnassigned: none.
+  AgentId first_unheard() const;
+
+  // ---- beginning ----
+
+  /// Makes the physics once a mission is known. Otherwise returns why that fails.
+  std::optional<std::string> make_physics(const Mission& mission);
+  /// Puts every vehicle where it is at `tick`, by `before` if begins_by_state(), else by its
+  /// agent's last two commands.
+  /// @param before  a state with all bodies, from a world before this one
+  void begin(const Mission& mission, Tick tick, const StateAssembler& before,
+             Surroundings surroundings);
+
+  // ---- moving ----
+
+  /// Moves all vehicles from `tick` to the next tick.
+  void step(const Mission& mission, Tick tick);
+  /// Lets a tick pass in which no vehicle moves, but for bodies with mass, which roll on.
+  void stop(const Mission& mission);
+
+  /// The parts of a state with all vehicles. Only part numbers and vehicles are filled in.
+  std::vector<WorldState> snapshot() const;
+  /// Steps of a vehicle that the speed limit made slower than its command.
+  std::int64_t clamped_commands() const { return clamped_commands_; }
+  /// The summary of the physics; empty without one.
+  std::string physics_summary() const { return physics_ ? physics_->summary() : ""; }
+
+ private:
+  struct Slot {
+    Author author;  // incarnation 0: no agent drives it
+    Eigen::Vector3d x_m{0, 0, 0};
+    Eigen::Vector3d applied_mps{0, 0, 0};  // in the step that led here; with inertia, at its end
+    Eigen::Vector3d next_mps{0, 0, 0};     // in the step that follows
+    CommandHistory commands;
+    bool placed = true;  // false: x_m is not known yet
+
+    bool has_driver() const { return author.incarnation != 0; }
+    bool driven(Tick tick, const Timing& timing) const {
+      return has_driver() && commands.in_force(tick, timing);
+    }
+  };
+
+  Eigen::Vector3d place_for(const Mission& mission, AgentId id, Surroundings surroundings) const;
+  void settle(const Mission& mission, Tick tick, const StateAssembler& before,
+              Surroundings surroundings);
+  static void recall(const Mission& mission, AgentId id, Slot& slot, Tick now);
+  void keep_from_walls(const Mission& mission, AgentId id, Slot& slot, Tick tick);
+  void filter_commands(const Mission& mission, Tick tick);
+  void move_bodies(const Mission& mission);
+  static void place(const Mission& mission, AgentId id, Slot& slot, const Eigen::Vector3d& x_m);
+  static void drive(const Mission& mission, AgentId id, Slot& slot, Tick tick);
+  static void move(const Mission& mission, AgentId id, Slot& slot, Tick tick);
+
+  std::map<AgentId, Slot> vehicles_;
+  std::optional<SeparationFilter> filter_;  // if it guards, has walls, or a body is no point
+  std::vector<Neighbour> bodies_;           // of the tick, for the guard
+  PhysicsMaker physics_maker_;
+  std::unique_ptr<Physics> physics_;  // null: core/motion/vehicle.h
+  std::vector<PhysicalBody> moved_;
+  std::int64_t clamped_commands_ = 0;
+};
+
+}  // namespace ergocast
