@@ -19,14 +19,17 @@ Guidance::Guidance(const Mission& mission, const RosterEntry& self)
 void Guidance::on(const WorldState& world, const RadioRange& radio, const Participant& me) {
   const Tick tick = world.header.tick;
   if (!forecast_ || tick < active_from_) return;
-  state_parts_.see(world);
+  if (tick > parts_.tick()) {
+    parts_.begin(world);
+  } else if (tick == parts_.tick()) {
+    parts_.add(world);
+  }
   // Nothing is covered at a held tick, and no vehicle moves on before the mission continues.
   if (me.is_held(tick)) return;
   const Timing& timing = me.timing();
   const auto hold =
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     if (!radio.receives(id_, vehicle.id)) continue;
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
     forecast_->see(vehicle.id, me.counted(tick), vehicle.position_m);
@@ -34,7 +37,7 @@ void Guidance::on(const WorldState& world, const RadioRange& radio, const Partic
 }
 
 bool Guidance::has_state_of(Tick tick) const {
-  return !dead_reckons_ || tick < active_from_ || state_parts_.complete(tick);
+  return !dead_reckons_ || tick < active_from_ || parts_.tick() > tick || parts_.complete();
 }
 
 Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "agent/agent_step.h"
-#include "agent/state_parts.h"
 #include "core/base/ids.h"
 #include "core/law/control.h"
 #include "core/law/coverage_table.h"
@@ -18,6 +17,7 @@
 #include "team/messages.h"
 #include "team/participant.h"
 #include "team/radio_range.h"
+#include "team/state_assembler.h"
 
 namespace ergocast {
 
@@ -54,7 +54,7 @@ class Guidance {
   bool dead_reckons_;
   Controller controller_;
   std::optional<Forecast> forecast_;
-  StateParts state_parts_;
+  ArrivedParts parts_;  // of the newest state of the world
   Coefficients foreseen_;
 };
 

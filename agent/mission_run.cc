@@ -113,8 +113,7 @@ void MissionRun::on(const WorldState& world, const Arrival& arrival, Participant
   radio_.on(world);
   guidance_.on(world, radio_, me);
   motion_.on(world);
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
     if (vehicle.id != me.id()) continue;
     // The world repeats for the logger a state from before our admission. Our predecessor drove
     // then.

@@ -14,9 +14,9 @@
 #include "core/mission/roster.h"
 #include "core/motion/separation.h"
 #include "team/beacon_book.h"
-#include "team/bodies.h"
 #include "team/messages.h"
 #include "team/participant.h"
+#include "team/state_assembler.h"
 
 namespace ergocast {
 
@@ -28,7 +28,7 @@ class TeamBodies {
 
   /// Takes in which agents take part. No other call allocates memory for beacons.
   void note_roster(const std::vector<RosterEntry>& roster);
-  void on(const WorldState& world) { states_.see(world); }
+  void on(const WorldState& world) { states_.take(world); }
   /// @param fresh  no later message of its sender arrived before
   void on(const Beacon& beacon, bool fresh, const Moment& now);
 
@@ -50,7 +50,7 @@ class TeamBodies {
   const BeaconBook* beacons() const { return beacons_ ? &*beacons_ : nullptr; }
 
  private:
-  Bodies states_;
+  StateAssembler states_;
   std::optional<BeaconBook> beacons_;
 };
 

@@ -20,6 +20,7 @@ void ArrivedParts::add(const WorldState& part) {
   missing_ += count - arrived_.size();
   arrived_.resize(count);
   const auto at = static_cast<std::size_t>(part.part);
+  if (at >= arrived_.size()) return;
   if (!arrived_[at]) --missing_;
   arrived_[at] = true;
 }
