@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/require.h"
+#include "team/median_metric.h"
 #include "team/plan.h"
 
 namespace ergocast {
@@ -396,17 +397,12 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
   });
   team.agents_expected = static_cast<std::int32_t>(
       std::max(members, static_cast<std::ptrdiff_t>(led_.mission->starts_m.size())));
-  std::vector<double> metrics;
+  std::vector<const AgentStatus*> statuses;
   for (const RosterEntry& entry : roster_) {
     const auto& status = members_[entry.author].status;
-    const bool knows = entry.active_until < 0 && status && status->answered_tick >= 0;
-    if (knows) metrics.push_back(status->ergodic_metric);
+    if (entry.active_until < 0 && status) statuses.push_back(&*status);
   }
-  if (!metrics.empty()) {
-    const auto middle = metrics.begin() + static_cast<std::ptrdiff_t>(metrics.size() / 2);
-    std::nth_element(metrics.begin(), middle, metrics.end());
-    team.ergodic_metric = *middle;
-  }
+  team.ergodic_metric = median_metric(statuses).value_or(0);
   const auto silent = std::find_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
     return entry.active_until < 0 && !alive(entry, now);
   });
