@@ -96,6 +96,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     agent/reckoning_test.cc
     agent/repair_test.cc
     coordinator/admission_test.cc
+    coordinator/announcement_test.cc
     coordinator/coordinator_test.cc
     coordinator/departure_test.cc
     coordinator/farewell_test.cc
