@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decides which agents may join the team, and assigns their numbers.
-#include <algorithm>
-#include <utility>
+// Refuses recordings, other versions and unknown kinds, and finds the lowest free number.
+#include "coordinator/admission.h"
 
-#include "coordinator/coordinator.h"
+#include <algorithm>
+
 #include "core/mission/kinds.h"
 #include "core/motion/vehicle.h"
 
@@ -15,124 +15,108 @@ namespace {
 constexpr std::size_t kMaxVersionMismatches = 64;
 constexpr std::size_t kMaxUnknownKinds = 64;
 
-}  // namespace
-
-RosterEntry* Coordinator::active_entry(AgentId id) {
-  const auto at = std::find_if(roster_.begin(), roster_.end(), [id](const RosterEntry& entry) {
-    return entry.author.agent == id && entry.active_until < 0;
-  });
-  return at == roster_.end() ? nullptr : &*at;
-}
-
 /// Whether a member that counts as alive has sent nothing since `since`. It may have stopped, and
 /// its number may soon be free.
-bool Coordinator::may_have_stopped(Instant since, Instant now) const {
-  return std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
-    return alive(entry, now) && last_sign(entry.author) < since;
+bool may_have_stopped(const Members& members, Instant since, const SignsOfLife& signs) {
+  const auto& roster = members.roster();
+  return std::any_of(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
+    return signs.alive(entry) && signs.last(entry.author) < since;
   });
 }
 
-std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, const std::string& kind,
-                                            Instant now) {
-  // A restarted process may succeed a member that still counts as alive. So it waits while
-  // may_have_stopped() is true.
-  if (newcomers_.asked.size() >= kMaxRosterEntries) {
-    auto& asked = newcomers_.asked;
-    asked.erase(std::min_element(asked.begin(), asked.end(),
-                                 [](const auto& a, const auto& b) { return a.second < b.second; }));
-  }
-  const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
-  if (may_have_stopped(since, now)) return std::nullopt;
-  const Mission& mission = *led_.mission;
+/// Whether an agent of kind `brought` may have a number. A place that is planned for another kind
+/// stays free for that. Beyond the plan all bodies are vehicles of the first kind.
+bool suits_number(const Mission& mission, const std::optional<int>& brought, AgentId id) {
+  if (!brought) return true;
   const auto planned = static_cast<AgentId>(mission.starts_m.size());
-  const std::optional<int> brought = kind_named(mission, kind);
-  // A place that is planned for another kind stays free for that. Beyond the plan all bodies are
-  // vehicles of the first kind.
-  const auto suits = [&](AgentId id) {
-    if (!brought) return true;
-    return id < planned ? planned_kind(mission, id) == *brought : can_drive(mission, *brought, id);
-  };
-  for (AgentId id = 0; id < kMaxAgents; ++id) {
-    const RosterEntry* holder = active_entry(id);
-    if ((holder == nullptr || !alive(*holder, now)) && suits(id)) return id;
-  }
-  return std::nullopt;
+  return id < planned ? planned_kind(mission, id) == *brought : can_drive(mission, *brought, id);
 }
 
-/// Notes a process that is no member: it must receive the end of the mission, too.
-void Coordinator::note_stranger(Incarnation incarnation, Instant now) {
-  const bool known = std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
-    return entry.author.incarnation == incarnation;
-  });
-  if (known) return;
-  auto& heard = newcomers_.heard;
-  if (heard.size() >= kMaxRosterEntries) {
-    std::erase_if(heard, [now](const auto& old) { return now - old.second >= silence_of(0); });
+}  // namespace
+
+void Admission::note_stranger(Incarnation incarnation, const Members& members, Instant now) {
+  if (members.contains(incarnation)) return;
+  if (heard_.size() >= kMaxRosterEntries) {
+    std::erase_if(heard_, [now](const auto& old) { return now - old.second >= silence_of(0); });
   }
-  if (heard.size() < kMaxRosterEntries) heard[incarnation] = now;
+  if (heard_.size() < kMaxRosterEntries) heard_[incarnation] = now;
 }
 
-void Coordinator::on(const Hello& hello, const Arrival& arrival) {
-  const Instant now = arrival.now;
-  if (looking()) return;
-  if (hello.header.sender >= kUnassigned) note_stranger(hello.header.incarnation, now);
-  if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
-  const Incarnation nonce = hello.header.incarnation;
-  if (hello.header.sender == kWorld) return on_question(hello, arrival);
-  if (nonce == 0 || hello.header.sender < kUnassigned) return;  // no incarnation, or no agent
-  if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
-  if (hello.version != name_.version) {
-    auto& version_mismatches = newcomers_.version_mismatches;
-    if (version_mismatches.size() < kMaxVersionMismatches)
-      version_mismatches.emplace(hello.host, hello.version);
-    return;
+bool Admission::is_asked(PacingClock::duration span, Instant now) const {
+  if (heard_.size() >= kMaxRosterEntries) return true;
+  return std::any_of(heard_.begin(), heard_.end(),
+                     [span, now](const auto& stranger) { return now - stranger.second < span; });
+}
+
+bool Admission::suits(const Hello& hello, const Mission& mission) {
+  // It names no incarnation, or is of no agent.
+  if (hello.header.incarnation == 0 || hello.header.sender < kUnassigned) return false;
+  if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return false;
+  if (hello.version != version_) {
+    if (version_mismatches_.size() < kMaxVersionMismatches)
+      version_mismatches_.emplace(hello.host, hello.version);
+    return false;
   }
-  if (const auto why = why_not_of_kind(*led_.mission, hello.kind, hello.requested_id)) {
-    auto& unknown_kinds = newcomers_.unknown_kinds;
-    if (unknown_kinds.size() < kMaxUnknownKinds) unknown_kinds.emplace(hello.host, *why);
-    return;
+  if (const auto why = why_not_of_kind(mission, hello.kind, hello.requested_id)) {
+    if (unknown_kinds_.size() < kMaxUnknownKinds) unknown_kinds_.emplace(hello.host, *why);
+    return false;
   }
-  const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
-    return entry.author.incarnation == nonce;
-  });
-  if (known) return repeat_mission_soon();
-  note_silences(now);
+  return true;
+}
+
+std::optional<Newcomer> Admission::admitted(const Hello& hello, const Mission& mission,
+                                            const Members& members, const SignsOfLife& signs,
+                                            Announcement& announcement) {
   // This HELLO is older than the newest revision: its sender has not received that yet, or it is a
   // recording.
-  if (hello.revision < revisions_.admits_from) return repeat_mission_soon();
+  if (hello.revision < announcement.admits_from()) {
+    announcement.repeat_soon();
+    return std::nullopt;
+  }
   std::optional<AgentId> id = hello.requested_id;
-  if (*id == kUnassigned) id = free_id(nonce, hello.kind, now);
-  if (!id) return;  // no number is free yet, or the team is full
-  if (const RosterEntry* holder = active_entry(*id)) {
-    if (alive(*holder, now)) return;  // the holder of the number keeps it
+  if (*id == kUnassigned) id = free_id(hello, mission, members, signs);
+  if (!id) return std::nullopt;  // no number is free yet, or the team is full
+  if (const RosterEntry* holder = members.active_entry(*id)) {
+    if (signs.alive(*holder)) return std::nullopt;  // the holder of the number keeps it
     // The silence of a member matters only for its own number. On a network with long delays
     // members fall silent often, and no other agent's HELLO would ever be new enough.
-    if (hello.revision < members_[holder->author].silence_revision) return repeat_mission_soon();
+    if (hello.revision < members.at(holder->author).silence_revision) {
+      announcement.repeat_soon();
+      return std::nullopt;
+    }
   }
-  const auto brought = kind_named(*led_.mission, hello.kind);
-  admit({*id, nonce}, brought.value_or(planned_kind(*led_.mission, *id)), now);
+  const auto brought = kind_named(mission, hello.kind);
+  return Newcomer{{*id, hello.header.incarnation}, brought.value_or(planned_kind(mission, *id))};
 }
 
-void Coordinator::admit(const Author& author, int kind, Instant now) {
-  const auto incarnations =
-      std::count_if(roster_.begin(), roster_.end(),
-                    [&](const RosterEntry& entry) { return entry.author.agent == author.agent; });
-  if (roster_.size() >= kMaxRosterEntries || incarnations >= kMaxIncarnationsPerAgent) return;
-  // The world may have stopped since its last state. The agents may then be ahead of that state.
-  const Tick newest = std::max(world_.tick, team_tick_);
-  if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;
-  const Tick from = state_ == MissionState::kRunning ? newest : 0;
-  roster_.push_back({author, from, -1});
-  roster_.back().kind = kind;
-  std::sort(roster_.begin(), roster_.end(),
-            [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
-  members_[author];
-  admissions_.emplace(author, admissions_.size());
-  me_.presume_alive(author, now);
-  newcomers_.asked.erase(author.incarnation);
-  newcomers_.heard.erase(author.incarnation);
-  world_.tick_since = now;  // the tick also waits for the newcomer, which gets the full time
-  announce();
+void Admission::forget(Incarnation newcomer) {
+  asked_.erase(newcomer);
+  heard_.erase(newcomer);
+}
+
+/// The time of the first request for any number.
+Instant Admission::first_asked(Incarnation newcomer, Instant now) {
+  if (asked_.size() >= kMaxRosterEntries) {
+    asked_.erase(std::min_element(asked_.begin(), asked_.end(), [](const auto& a, const auto& b) {
+      return a.second < b.second;
+    }));
+  }
+  return asked_.try_emplace(newcomer, now).first->second;
+}
+
+std::optional<AgentId> Admission::free_id(const Hello& hello, const Mission& mission,
+                                          const Members& members, const SignsOfLife& signs) {
+  // A restarted process may succeed a member that still counts as alive. So it waits while
+  // may_have_stopped() is true.
+  const Instant since = first_asked(hello.header.incarnation, signs.now);
+  if (may_have_stopped(members, since, signs)) return std::nullopt;
+  const std::optional<int> brought = kind_named(mission, hello.kind);
+  for (AgentId id = 0; id < kMaxAgents; ++id) {
+    const RosterEntry* holder = members.active_entry(id);
+    const bool is_free = holder == nullptr || !signs.alive(*holder);
+    if (is_free && suits_number(mission, brought, id)) return id;
+  }
+  return std::nullopt;
 }
 
 }  // namespace ergocast

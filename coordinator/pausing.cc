@@ -1,39 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names the ticks from which the mission is paused, and from which it goes on.
-#include <algorithm>
+// Adds a hold, or ends the last one, at a tick that all agents learn in time.
+#include "coordinator/pausing.h"
 
-#include "coordinator/coordinator.h"
+#include <algorithm>
+#include <chrono>
+#include <optional>
 
 namespace ergocast {
+namespace {
 
-static_assert(kMaxHoldsPerMessage == 1, "mission_parts() puts one hold into a part");
-
-/// All agents must change at the same tick. In lockstep the world first stands by: it stays at a
-/// tick until it knows which one is named. In real time the team gets notice.
-void Coordinator::on(const Pause& pause, const Arrival& arrival) {
-  if (looking() || !may_change_holds() || pause.changes != named_changes(holds_)) return;
-  if (timing().pace == Pace::kRealtime) return name_tick_with_notice(arrival.now);
-  change();
-  stand_by_revision_ = revisions_.current;
+/// Real time: the tick after the notice. It counts from the newest tick that the world can be at.
+/// Nothing while the world is silent, because that tick is then unknown; the operator asks again.
+std::optional<Tick> tick_with_notice(const Timing& timing, const TickWatch& ticks,
+                                     const SignsOfLife& signs) {
+  if (!ticks.world_heard() || signs.me.silent(kWorld, signs.now)) return std::nullopt;
+  const double since_s = std::chrono::duration<double>(signs.now - ticks.since()).count();
+  const auto since = static_cast<Tick>(since_s * timing.realtime_factor / timing.dt_s);
+  return ticks.newest() + 1 + since + notice_ticks(timing);
 }
 
-/// Whether the mission runs, and no other change waits for its tick.
-bool Coordinator::may_change_holds() const {
+}  // namespace
+
+void Pausing::adopt(std::span<const Hold> known) {
+  if (named_changes(known) > named_changes(holds_)) holds_.assign(known.begin(), known.end());
+}
+
+bool Pausing::may_change() const {
   const bool full = holds_.size() == kMaxHolds && !is_open(holds_);
-  return state_ == MissionState::kRunning && !ending_.since && stand_by_revision_ < 0 && !full;
+  return stand_by_revision_ < 0 && !full;
 }
 
-/// Counts the notice from the newest tick that the world can be at. While the world is silent, that
-/// tick is unknown and no tick is named; the operator asks again.
-void Coordinator::name_tick_with_notice(Instant now) {
-  if (!world_.heard || me_.silent(kWorld, now)) return;
-  const double since_s = std::chrono::duration<double>(now - world_.tick_since).count();
-  const auto since = static_cast<Tick>(since_s * timing().realtime_factor / timing().dt_s);
-  name_tick(std::max(world_.tick, team_tick_) + 1 + since + notice_ticks(timing()));
+void Pausing::obey(const Pause& pause, const Timing& timing, const TickWatch& ticks,
+                   const SignsOfLife& signs, Announcement& announcement) {
+  if (!may_change() || pause.changes != named_changes(holds_)) return;
+  if (timing.pace == Pace::kRealtime) {
+    if (const auto tick = tick_with_notice(timing, ticks, signs)) name_tick(*tick, announcement);
+    return;
+  }
+  announcement.change();
+  stand_by(announcement.revision());
+}
+
+void Pausing::note_world(const TickWatch& ticks, Announcement& announcement) {
+  if (stand_by_revision_ < 0 || ticks.world_revision() < stand_by_revision_) return;
+  // The world goes on once it knows the named tick. No agent answers the next tick before that.
+  name_tick(ticks.tick() + 2, announcement);
 }
 
 /// The next hold begins, or the last one ends, with `tick`.
-void Coordinator::name_tick(Tick tick) {
+void Pausing::name_tick(Tick tick, Announcement& announcement) {
   stand_by_revision_ = -1;
   if (is_open(holds_)) {
     // Real time: the operator may resume before the hold has begun.
@@ -41,7 +56,7 @@ void Coordinator::name_tick(Tick tick) {
   } else {
     holds_.push_back({holds_.empty() ? tick : std::max(tick, holds_.back().until)});
   }
-  change();
+  announcement.change();
 }
 
 }  // namespace ergocast

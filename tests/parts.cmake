@@ -54,6 +54,7 @@ ergocast_test(NAME team_tests LABELS unit
     team/command_window_test.cc
     team/hostile_plan_test.cc
     team/liveness_test.cc
+    team/median_metric_test.cc
     team/mission_follower_test.cc
     team/participant_test.cc
     team/plan_test.cc
@@ -96,6 +97,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     agent/reckoning_test.cc
     agent/repair_test.cc
     coordinator/admission_test.cc
+    coordinator/announcement_test.cc
     coordinator/coordinator_test.cc
     coordinator/departure_test.cc
     coordinator/farewell_test.cc

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/mission/kinds.h"
+#include "team/median_metric.h"
 
 namespace ergocast {
 namespace {
@@ -26,17 +27,12 @@ double to_s(PacingClock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 
-std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
-  std::vector<double> metrics;
+std::optional<double> metric_of_members(const std::vector<AgentRow>& rows) {
+  std::vector<const AgentStatus*> members;
   for (const AgentRow& row : rows) {
-    const bool knows =
-        row.status && row.status->answered_tick >= 0 && row.condition != Condition::kGone;
-    if (knows) metrics.push_back(row.status->ergodic_metric);
+    if (row.status && row.condition != Condition::kGone) members.push_back(&*row.status);
   }
-  if (metrics.empty()) return std::nullopt;
-  const auto middle = metrics.begin() + static_cast<std::ptrdiff_t>(metrics.size() / 2);
-  std::nth_element(metrics.begin(), middle, metrics.end());
-  return *middle;
+  return median_metric(members);
 }
 
 }  // namespace
@@ -184,7 +180,7 @@ void TeamView::add_agents(TeamPicture& picture, Instant now) const {
   picture.free_domain = mission && mission->basis.free_domain;
   std::stable_sort(picture.agents.begin(), picture.agents.end(),
                    [](const AgentRow& a, const AgentRow& b) { return a.condition < b.condition; });
-  picture.ergodic_metric = median_metric(picture.agents);
+  picture.ergodic_metric = metric_of_members(picture.agents);
   picture.trouble |=
       std::any_of(picture.agents.begin(), picture.agents.end(),
                   [](const AgentRow& row) { return row.condition < Condition::kUnheard; });

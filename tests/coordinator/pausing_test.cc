@@ -97,5 +97,21 @@ TEST(Pausing, InLockstepBeginsWithTheTickAfterTheNextOnceTheWorldStands) {
   EXPECT_EQ(coordinator.holds(), (std::vector<Hold>{{11 + 2, 12 + 2}}));
 }
 
+TEST(Pausing, EndsTheLastOfTheMostHoldsButBeginsNoOther) {
+  const Participant me(Role::kCoordinator, {kRun, kCoordinator, kCoordinatorLife});
+  for (const bool open : {false, true}) {
+    std::vector<Hold> holds;
+    for (Tick from = 0; holds.size() < kMaxHolds; from += 2) holds.push_back({from, from + 1});
+    if (open) holds.back().until = -1;
+    Pausing pausing;
+    pausing.plan(holds);
+    Announcement announcement;
+    const int changes = named_changes(holds);
+    pausing.obey(pause_after(changes), small_mission(2).timing, {}, {me, at(1s)}, announcement);
+    EXPECT_EQ(pausing.stand_by_revision() >= 0, open);
+    EXPECT_EQ(announcement.revision(), open ? 1 : 0);
+  }
+}
+
 }  // namespace
 }  // namespace ergocast
