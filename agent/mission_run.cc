@@ -47,8 +47,8 @@ void Agent::advance_mission(InMission& mission_run, Instant now, Outbox& out) {
   }
   if (!me_.cut_off(step.tick, now)) return;
   finish(true,
-         "neither the world nor the coordinator can be heard, and the mission must be over by "
-         "now: check this host's network");
+         "nothing arrives from the world or the coordinator, and the mission must be over by now: "
+         "check this host's network");
 }
 
 /// Gives the forecast the positions of vehicles in range. In real time a vehicle stands still once

@@ -120,7 +120,7 @@ class Pausing : public TeamCommand {
   }
   std::string why_not() const {
     if (!team().coordinator_seen())
-      return "no coordinator is heard, and nobody else names a tick: start one with "
+      return "no coordinator answers, and only a coordinator names the tick: start one with "
              "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
     if (team().holds().size() == kMaxHolds && pauses_)
       return "a mission can be paused " + std::to_string(kMaxHolds) + " times, and it was";

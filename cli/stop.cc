@@ -146,7 +146,7 @@ class Stopping : public TeamCommand {
   std::optional<int> why_not_in_order(const MonitoredRun& team, Instant::duration waited) const {
     if (!team.coordinator_seen() && waited >= kListeningTime) {
       return fail(team,
-                  "no coordinator is heard, and nobody else ends a mission in order: "
+                  "no coordinator answers, and only a coordinator ends a mission in order: "
                   "ergocast stop --now stops the team at once");
     }
     if (waited >= kAnswerPatience) {

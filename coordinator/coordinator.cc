@@ -211,7 +211,7 @@ void Coordinator::check_tick(Instant now) {
     return end(true,
                world_.heard
                    ? "the world has not gone beyond tick " + std::to_string(world_.tick) + since
-                   : "no world was heard" + since + ": is one running on this URL?",
+                   : "no world answered" + since + ": is one running on this URL?",
                now);
   }
   const std::string who = "agent " + std::to_string(late->author.agent) +

@@ -102,7 +102,7 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
     return other_coordinator_leads(now) ? leave(led_by_other_coordinator(), now) : begin_own();
   }
   if (looked >= kTakeoverPatience && !search_.found) {
-    leave("no agent on this URL knows a mission that could be taken over", now);
+    leave("no agent on this URL knows a mission to take over", now);
   }
   if (now < search_.next_question) return;
   search_.next_question = now + kQuestionPeriod;
@@ -134,7 +134,7 @@ std::optional<std::string> Coordinator::not_ours(Instant now) const {
   if (me_.follower().plan_problem()) return run + ": " + *me_.follower().plan_problem();
   if (!led_.plan.empty() && me_.follower().plan() != led_.plan) {
     return run + " of another plan (" + me_.follower().mission()->name +
-           ") is flying on this URL: choose another URL, or wait for its end";
+           ") is running on this URL: choose another URL, or wait for its end";
   }
   if (search_.takeover == Takeover::kIfRunning && other_coordinator_leads(now))
     return led_by_other_coordinator();

@@ -182,13 +182,13 @@ TEST(AgentJoining, SaysWhatItWaitsFor) {
   const Mission mission = small_mission(2);
   announce(mission);
   Agent agent(identity_of(1));
-  EXPECT_EQ(agent.blocked_reason(), "no coordinator is heard");
+  EXPECT_EQ(agent.blocked_reason(), "no coordinator answers");
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   EXPECT_EQ(agent.blocked_reason(), "waiting to be admitted");
   give(agent, mission_part(1, MissionState::kWaiting, {{{1, 77}, 0, -1}}), at(0s));
   EXPECT_EQ(agent.blocked_reason(),
-            "waiting to be admitted: the roster has another agent 1, which may have "
-            "died and not be missed yet");
+            "waiting to be admitted: the roster has another agent 1, whose end the coordinator may "
+            "not have noticed yet");
   give(agent, mission_part(2, MissionState::kWaiting, roster_of(2)), at(0s));
   EXPECT_EQ(agent.blocked_reason(), "admitted as agent 1, waiting for the quorum");
   give(agent, mission_part(3, MissionState::kRunning, roster_of(2)), at(0s));
@@ -446,8 +446,8 @@ TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
   EXPECT_EQ(agent.reason(),
-            "neither the world nor the coordinator can be heard, and the mission must "
-            "be over by now: check this host's network");
+            "nothing arrives from the world or the coordinator, and the mission must be over by "
+            "now: check this host's network");
   ASSERT_EQ(last.size(), 1u);
   EXPECT_EQ(last[0].phase, AgentPhase::kFinished);
 }

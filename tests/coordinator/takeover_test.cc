@@ -128,7 +128,7 @@ TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
   EXPECT_TRUE(advance(coordinator, at(30s)).empty());
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
-  EXPECT_EQ(coordinator.reason(), "no agent on this URL knows a mission that could be taken over");
+  EXPECT_EQ(coordinator.reason(), "no agent on this URL knows a mission to take over");
 }
 
 TEST(TakeoverIfRunning, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
@@ -320,8 +320,8 @@ TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
     EXPECT_TRUE(coordinator.finished());
     EXPECT_EQ(coordinator.state(), MissionState::kFailed);
     EXPECT_EQ(coordinator.reason(),
-              "run 0000000000001234 of another plan (small) is flying on this "
-              "URL: choose another URL, or wait for its end");
+              "run 0000000000001234 of another plan (small) is running on this URL: choose another "
+              "URL, or wait for its end");
   }
 }
 

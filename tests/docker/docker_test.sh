@@ -124,7 +124,7 @@ in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order() {
   docker network connect team_default "$(one agent)"
   becomes says coordinator 'agent [0-3] .* is alive at tick [1-9]'
   compose stop
-  says coordinator 'mission ended .*: the coordinator was told to stop' || complain 'not ended in order'
+  says coordinator 'mission ended .*: a signal stopped the coordinator' || complain 'not ended in order'
   expect test -s "$ERGOCAST_RUNS"/*/report.html
   stop_team
 }

@@ -411,7 +411,7 @@ TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   EXPECT_STREQ(record.recorder.result(), "stopped");
   EXPECT_EQ(
       record.recorder.reason(),
-      "neither the world nor the coordinator can be heard, and the mission must be over by now");
+      "nothing arrives from the world or the coordinator, and the mission must be over by now");
   EXPECT_EQ(record.trajectory_rows().size(), 1u);
 }
 

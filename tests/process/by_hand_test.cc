@@ -91,7 +91,7 @@ TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
   begin_mission(endless_pair());
   Program& other = hand("ergocast-coordinator", {scenario_file("paper_fig2b")});
   EXPECT_EQ(wait_for(other.child), 4) << other.printed();
-  EXPECT_TRUE(other.prints("is flying on this URL: choose another URL")) << other.printed();
+  EXPECT_TRUE(other.prints("is running on this URL: choose another URL")) << other.printed();
   EXPECT_TRUE(moves_on());
 }
 

@@ -96,7 +96,7 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
   signal_to({"ergocast-coordinator"}, SIGKILL);
   ASSERT_TRUE(moves_on());
   EXPECT_EQ(stop(), 4);
-  EXPECT_TRUE(answered("no coordinator is heard")) << output();
+  EXPECT_TRUE(answered("no coordinator answers")) << output();
   EXPECT_TRUE(answered("ergocast stop --now")) << output();
   ASSERT_TRUE(moves_on()) << "nobody obeys a stop in order but the coordinator";
   ASSERT_EQ(stop({"--now"}), 0) << output();
