@@ -69,7 +69,7 @@ class Pausing : public TeamCommand {
       if (!listen()) return interrupted();
       if (team().over()) return ended_before();
     }
-    std::printf("paused at %s: `ergocast resume` lets the mission go on\n",
+    std::printf("paused at %s: `ergocast resume` continues the mission\n",
                 mission_time(named()).c_str());
     return kExitDone;
   }
@@ -112,19 +112,21 @@ class Pausing : public TeamCommand {
     return kExitDone;
   }
   int refused() const {
-    return report_error(kExitFailed,
-                        team().over() ? "the mission is over: " + team().reason()
-                        : team().knows_mission()
-                            ? "the mission has not begun: it waits for its quorum, and nobody moves"
-                            : "the mission was not heard: is its coordinator running?");
+    return report_error(
+        kExitFailed,
+        team().over() ? "the mission is over: " + team().reason()
+        : team().knows_mission()
+            ? "the mission has not begun: it waits for its quorum, and no vehicle moves"
+            : "the mission was not received: is its coordinator running?");
   }
   std::string why_not() const {
     if (!team().coordinator_seen())
       return "no coordinator answers, and only a coordinator names the tick: start one with "
              "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
     if (team().holds().size() == kMaxHolds && pauses_)
-      return "a mission can be paused " + std::to_string(kMaxHolds) + " times, and it was";
-    return "the coordinator names no tick: it may have another key, or hear no world";
+      return "a mission can be paused " + std::to_string(kMaxHolds) +
+             " times, and this one has been";
+    return "the coordinator names no tick: it may have another key, or receive no world";
   }
 
   const bool pauses_;

@@ -62,7 +62,8 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, 
     transport.deliver_until(now() + (over ? kAttendPeriodAtEnd : kAttendPeriod), signals.fd());
     if (const int count = signals.take(); count > 0) {
       asked += count;
-      if (asked == 1) display.print("ending the mission in order; once more to end it now");
+      if (asked == 1)
+        display.print("ending the mission in order; a second Ctrl-C or SIGTERM ends it at once");
       if (asked == 2) launcher.escalate(1);
       if (asked > 2) launcher.escalate(2);
       mission.stop(false, "Ctrl-C or SIGTERM");
@@ -72,10 +73,10 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, 
     if (page != nullptr) page->attend(now());
     // Without a coordinator no other process detects an overdue tick.
     if (const auto overdue = mission.overdue(now()); overdue && launcher.leaderless()) {
-      launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
+      launcher.fail(*overdue + ", and no coordinator is left to end the mission");
     }
     if (mission.deserted(now()) && launcher.leaderless()) {
-      launcher.fail("no agent flies any more, and no coordinator is left to admit one");
+      launcher.fail("no agent runs any more, and no coordinator is left to admit one");
     }
     if (launcher.failure()) mission.stop(true, *launcher.failure());
     mission.repeat(transport, now(), launcher.led());

@@ -80,11 +80,11 @@ class Listener {
 };
 
 int choose(const Listener& listener) {
-  std::string text = "several runs are heard on this URL; choose one with --run-id:";
+  std::string text = "several runs are on this URL; choose one with --run-id:";
   for (const auto& [key, view] : listener.runs()) {
     const TeamPicture picture = view.picture(now());
     text += "\n  --run-id " + to_hex(key.first) + "  " + (key.second ? "replay of " : "") +
-            (picture.scenario.empty() ? "a mission not heard yet" : picture.scenario) + ", " +
+            (picture.scenario.empty() ? "a mission not received yet" : picture.scenario) + ", " +
             std::to_string(picture.agents_alive) + " agents, tick " +
             std::to_string(picture.counted);
   }
@@ -155,7 +155,7 @@ int watch(const StatusOptions& options, Listener& listener, StopSignals& signals
     listener.follow_network();
     if (view != nullptr) screen.show(view->picture(now()));
     if (view == nullptr && !options.json) {
-      screen.show("nobody is heard on " + options.url.base() + " yet\n");
+      screen.show("no message yet on " + options.url.base() + "\n");
     }
   }
 }

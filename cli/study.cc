@@ -137,14 +137,14 @@ std::string command_of(const StudyOptions& options) {
 /// Prints the paths of the results, and the command that completes the study if runs are missing.
 void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
                      const StudyOptions& options) {
-  std::printf("\n%zu runs flown now, %zu in %s\n", runner.completed(), directory.rows().size(),
+  std::printf("\n%zu runs done now, %zu in %s\n", runner.completed(), directory.rows().size(),
               (options.out / "study.csv").c_str());
   std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
   if (runner.missing() == 0 && options.shard) {
-    std::printf("when all shards are flown: ergocast study merge FOLDER… --out DIR\n");
+    std::printf("when all shards are done: ergocast study merge FOLDER… --out DIR\n");
   }
   if (runner.missing() == 0) return;
-  std::printf("%zu runs are missing%s: the same command flies them\n", runner.missing(),
+  std::printf("%zu runs are missing%s: the same command runs them\n", runner.missing(),
               runner.failed() > 0
                   ? (", " + std::to_string(runner.failed()) + " of them failed").c_str()
                   : "");

@@ -133,7 +133,7 @@ int trials(const TrialsOptions& options) {
   for (const FieldValue& field : options.mission.overrides.fields) {
     if (field.path != "seed") continue;
     return report_error(kExitBadInput,
-                        field.flag + ": --seeds says it too (leave out one of them)");
+                        field.flag + ": --seeds sets it too (leave out one of them)");
   }
   const auto scenario = load_or_complain(options.mission.scenario, options.mission.overrides);
   if (!scenario) return kExitBadInput;

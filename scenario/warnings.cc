@@ -171,7 +171,7 @@ void warn_of_tight_stations(const Mission& mission, Findings& findings) {
       if (!their_m || (*home_m - *their_m).norm() >= passage_m) continue;
       return findings.add("agents.kind",
                           "agents " + std::to_string(other) + " and " + std::to_string(one) +
-                              " have stations that nobody passes between: the first agent at "
+                              " have stations that no agent can pass between: the first agent at "
                               "home may shut others out",
                           "write stations at least " + shortest(rounded_up(passage_m)) +
                               " m apart, or accept it for one row that all can reach from a side");
@@ -254,10 +254,10 @@ void warn_of_hidden_mass(const Mission& mission, const DensityGrid& density, Fin
   const double hidden = hidden_share(mission, density);
   if (hidden <= kMostHidden) return;
   findings.add("world.walls",
-               "hide the target from itself: for " + shortest(rounded_up(100 * hidden)) +
+               "separate parts of the target: for " + shortest(rounded_up(100 * hidden)) +
                    " % of its pairs of places the shortest way is more than " + shortest(kDetour) +
-                   " times the straight line, and the cosines of the basis know only that. Agents "
-                   "follow walls where they get stuck, and cover the target late",
+                   " times the straight line, and the cosines of the basis ignore walls. Agents "
+                   "then follow walls where they get stuck, and cover the target late",
                "write basis { free_domain: true }, open more passages, or accept it");
 }
 

@@ -306,7 +306,7 @@ export function stateOf(run, track, t) {
     said.state === 'silent'
       ? `silent ${said.silent_s.toFixed(0)} s`
       : said.state === 'not heard'
-        ? 'not heard yet'
+        ? 'no message yet'
         : said.state === 'waiting' && said.waiting_for
           ? `waits for ${said.waiting_for}`
           : said.state;

@@ -184,7 +184,7 @@ TEST(RobotsOfPhysics, RefuseMissionsThatTheyCannotFly) {
   EXPECT_NE(problem_of(other).find("less than a robot's radius"), std::string::npos);
   other = mission;
   other.starts_m.resize(129);
-  EXPECT_NE(problem_of(other).find("fly fewer"), std::string::npos);
+  EXPECT_NE(problem_of(other).find("use fewer"), std::string::npos);
 }
 
 }  // namespace

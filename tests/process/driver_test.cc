@@ -182,7 +182,7 @@ TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsOutOfOrderAndFromTheFuture) 
   EXPECT_TRUE(eventually([&] {
     early.header.sequence += 3;  // soon newer than the newest of agent 1
     stranger.send(Bus::kSwarm, early);
-    return first.printed().find("answers to one that this agent has not sent yet") !=
+    return first.printed().find("answers one that this agent has not sent yet") !=
            std::string::npos;
   })) << first.printed();
   EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << first.printed();

@@ -133,7 +133,7 @@ TEST_F(Babble, AnAgentThatSaysAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamFlie
   signal_to(agent(3), SIGSTOP);
   ASSERT_TRUE(eventually([&] {
     rate_offender.exceed_rate();
-    return log_of("agent-0").find("agent 3 babbles") != std::string::npos;
+    return log_of("agent-0").find("agent 3 sends more than eight times") != std::string::npos;
   })) << log_of("agent-0");
   for (const auto& agent : agents()) {
     if (agent["id"] == 3) continue;

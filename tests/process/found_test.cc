@@ -133,7 +133,7 @@ TEST_F(Found, AnEmergencyOfARunThatCannotBeTakenStopsTheOthers) {
   text.replace(at, text.find('"', at) - at, "9.9.9");
   std::ofstream(file) << text;  // the same file: its lock stays
   EXPECT_EQ(ergocast({"stop", "--now"}), 2);
-  EXPECT_TRUE(printed("is flown by ergocast 9.9.9, this is ")) << output();
+  EXPECT_TRUE(printed("was started with ergocast 9.9.9, this is ")) << output();
   EXPECT_EQ(wait_for(second), 0);
   EXPECT_TRUE(first.running());
   first.send(SIGINT);
@@ -189,7 +189,7 @@ TEST_F(Found, ARunOfAnotherVersionIsNotTaken) {
   text.replace(at, text.find('"', at) - at, "9.9.9");
   std::ofstream(file) << text;  // the same file: its lock stays
   EXPECT_EQ(ergocast({"stop"}), 2);
-  EXPECT_TRUE(printed("is flown by ergocast 9.9.9, this is ")) << output();
+  EXPECT_TRUE(printed("was started with ergocast 9.9.9, this is ")) << output();
   EXPECT_TRUE(run.running());
   run.send(SIGINT);
   EXPECT_EQ(wait_for(run), 0);

@@ -153,7 +153,7 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
     outsider.send(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
     member.send(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
   }
-  EXPECT_TRUE(logs("coordinator", "somebody speaks without our --key-file"));
+  EXPECT_TRUE(logs("coordinator", "a process sends without our --key-file"));
   ASSERT_TRUE(moves_on()) << printed();
   EXPECT_EQ(ergocast({"pause", "--lcm-url", kUrl, "--key-file", team_}), 2) << output();
   ASSERT_TRUE(eventually([&] {

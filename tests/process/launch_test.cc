@@ -48,7 +48,7 @@ TEST_F(Launch, WithoutARoomForOneMoreFileADeadAgentComesBackOnceThereIs) {
   const rlimit none{3, former.rlim_max};
   ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, &none, nullptr), 0);
   kill_next(agent(2));
-  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << printed();
+  ASSERT_TRUE(comes_to_say("agent-2: will be started as soon as possible")) << printed();
   EXPECT_TRUE(printed("could not be executed")) << printed();
   ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, &former, nullptr), 0);
   EXPECT_TRUE(moves_on()) << printed();
@@ -90,7 +90,7 @@ TEST_F(OwnPrograms, AreReplacedWhileAnAgentDiesAndItComesBackWithTheNewOne) {
   fs::remove(agent_program());
   std::ofstream(agent_program()) << "half of a program";
   kill_next(agent(2));
-  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << printed();
+  ASSERT_TRUE(comes_to_say("agent-2: will be started as soon as possible")) << printed();
   ASSERT_TRUE(logs("agent-2", "cannot be executed: Permission denied", 2)) << printed();
   fs::remove(agent_program());
   fs::create_symlink(real, agent_program());
@@ -145,7 +145,7 @@ TEST_F(DamagedRecord, GoesOnInAFreshSegmentWithoutWhatCannotBeRead) {
     write("trajectory.csv", rows);
   });
   ASSERT_TRUE(moves_on()) << printed();
-  EXPECT_TRUE(logs("logger", "goes on in a fresh segment")) << log_of("logger");
+  EXPECT_TRUE(logs("logger", "goes on in a new segment")) << log_of("logger");
   while_the_logger_is_dead(mission, [this] { write("trajectory-001.csv", ""); });
   ASSERT_TRUE(moves_on()) << printed();
   while_the_logger_is_dead(mission, [this] { fs::remove(out() / "metrics-002.csv"); });

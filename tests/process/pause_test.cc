@@ -115,7 +115,7 @@ TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
 
 TEST_F(PauseCommand, SaysWhyThereIsNothingToPause) {
   EXPECT_EQ(send_command("pause"), 4);
-  EXPECT_TRUE(answered("nobody of any run")) << output();
+  EXPECT_TRUE(answered("no message of any run")) << output();
 }
 
 }  // namespace

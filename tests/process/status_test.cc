@@ -132,7 +132,7 @@ TEST_F(Status, WithNobodyThereSaysWhatToCheckAndHasPublishedNothing) {
   const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
   Ear swarm(url.of(Bus::kSwarm)), world(url.of(Bus::kWorld)), command(url.of(Bus::kCommand));
   EXPECT_EQ(status(), 4);
-  EXPECT_NE(output().find("nobody of any run was heard on "), std::string::npos) << output();
+  EXPECT_NE(output().find("no message of any run arrived on "), std::string::npos) << output();
   EXPECT_NE(output().find("ergocast doctor --lcm-url"), std::string::npos) << output();
   for (Ear* ear : {&swarm, &world, &command}) {
     ear->listen();
@@ -164,7 +164,7 @@ TEST_F(Status, OfSeveralRunsOnOneUrlAsksWhich) {
 TEST_F(Status, WatchGoesOnUntilTheMissionsEndAndSaysHowItEnded) {
   Program& watch = hand("ergocast", {"status", "--watch"});
   Program& lines = hand("ergocast", {"status", "--watch", "--json"});
-  ASSERT_TRUE(watch.prints("nobody is heard on ")) << watch.printed();
+  ASSERT_TRUE(watch.prints("no message yet on ")) << watch.printed();
   Child mission = launch(scenario(), {"--realtime=5", "--duration", "20", "--lcm-url", kUrl});
   EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(wait_for(watch.child), 0) << watch.printed();
@@ -180,7 +180,7 @@ TEST_F(Status, WatchGoesOnUntilTheMissionsEndAndSaysHowItEnded) {
 
 TEST_F(Status, WatchEndsWithCtrlC) {
   Program& watch = hand("ergocast", {"status", "--watch"});
-  ASSERT_TRUE(watch.prints("nobody is heard on ")) << watch.printed();
+  ASSERT_TRUE(watch.prints("no message yet on ")) << watch.printed();
   watch.child.send(SIGINT);
   EXPECT_EQ(wait_for(watch.child), 0);
 }

@@ -116,7 +116,7 @@ TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
   ASSERT_TRUE(eventually([] { return stopped(pids(agent(2))); })) << all[2]->printed();
   hold_none();
   ASSERT_EQ(stop({"--now"}), 0) << output();
-  EXPECT_TRUE(answered("agent 2 did not say so")) << output();
+  EXPECT_TRUE(answered("agent 2 did not confirm it")) << output();
   signal_to(agent(2), SIGCONT);
   EXPECT_EQ(wait_for(all[0]->child), 0);
   expect_halt(false);
@@ -177,9 +177,9 @@ TEST_F(StopCommand, NeedsTheCoordinatorsKeyIfTheTeamHasOne) {
 
 TEST_F(StopCommand, WithNobodyThereSaysWhatToCheck) {
   EXPECT_EQ(stop({"--now"}), 4);
-  EXPECT_TRUE(answered("nobody of any run was heard on ")) << output();
+  EXPECT_TRUE(answered("no message of any run arrived on ")) << output();
   EXPECT_EQ(stop({"--now", "--run-id", "b2"}), 4);
-  EXPECT_TRUE(answered("nobody of run 00000000000000b2 was heard on ")) << output();
+  EXPECT_TRUE(answered("no message of run 00000000000000b2 arrived on ")) << output();
 }
 
 /// Coordinators of two runs send until `done`.
@@ -206,10 +206,11 @@ TEST_F(StopCommand, OfSeveralRunsOnOneUrlEndsNoneInOrder) {
 TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
   Program& decided = hand("ergocast", {"stop", "--now"});
   two_runs_speak_until([&] { return decided.printed().find("telling") != std::string::npos; });
-  EXPECT_TRUE(decided.prints("run 00000000000000a1: telling everybody to stand still"));
-  EXPECT_TRUE(decided.prints("run 00000000000000b2: telling everybody to stand still"));
+  EXPECT_TRUE(decided.prints("run 00000000000000a1: stopping all vehicles at once"));
+  EXPECT_TRUE(decided.prints("run 00000000000000b2: stopping all vehicles at once"));
   EXPECT_EQ(wait_for(decided.child), 4) << decided.printed();
-  EXPECT_TRUE(decided.prints("no world or driver was heard")) << "so nobody knows about vehicles";
+  EXPECT_TRUE(decided.prints("none came from a world or driver"))
+      << "so nobody knows about vehicles";
 }
 
 // An attacker with recordings of many runs of the same key cannot hide another run behind them.
@@ -232,7 +233,7 @@ TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
     return reached.size() == 20;
   }));
   EXPECT_EQ(wait_for(decided.child), 4) << decided.printed();
-  EXPECT_TRUE(decided.prints("more than 16 runs were heard")) << decided.printed();
+  EXPECT_TRUE(decided.prints("more than 16 runs were found")) << decided.printed();
 }
 
 TEST_F(StopCommand, InAnEmergencyDoesNotSayThatVehiclesStandWhoseWorldIsSilent) {
