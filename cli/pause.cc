@@ -82,7 +82,7 @@ class Pausing : public TeamCommand {
   }
 
   int ended_before() const {
-    return report_error(kExitFailed, "the mission has ended before: " + team().reason());
+    return report_error(kExitFailed, "the mission had already ended: " + team().reason());
   }
 
   /// The coordinator sends MISSION once a second; an agent repeats it at once.

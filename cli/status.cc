@@ -175,7 +175,7 @@ void add_status(CLI::App& app, Action& action) {
   add_bus_options(*command, *options);
   describe_search(*command);
   command->add_flag("--watch", options->watch,
-                    "Show it again and again, until the mission's end or Ctrl-C");
+                    "Show it repeatedly, until the mission's end or Ctrl-C");
   command->add_flag("--json", options->json, "Print one JSON object; with --watch one each second");
   command->footer(
       "Exit codes: 0 all is well; 1 something is in trouble; 2 several runs are found;\n"

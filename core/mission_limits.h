@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mission may say: the limits that docs/reference/scenario.md prints. core/mission_fields.h
-// gives each field its own. scenario/ holds what people write against them, and names what breaks
-// them; team/plan.cc holds what comes off the network.
+// The limits of a mission's fields, which docs/reference/scenario.md prints. core/mission_fields.h
+// gives each field its own. scenario/ checks what people write against them, and names what breaks
+// them; team/plan.cc checks what arrives from the network.
 #pragma once
 
 #include <string_view>

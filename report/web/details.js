@@ -235,7 +235,7 @@ export function showDetails() {
       element(
         'p',
         'muted',
-        `Of this long mission the page has every ${run.stride}th tick; its cₖ are those of these ticks.`,
+        `This page has only every ${run.stride}th tick of this long mission; its cₖ are those of these ticks.`,
       ),
     );
   if (!S.live)

@@ -144,7 +144,7 @@ a_team_with_keys_flies_and_who_has_none_is_told() {
   becomes recorded 10000
   expect docker exec "$(one coordinator)" ergocast status
   ! docker run --rm --network team_default ergocast status >"$work/keyless" 2>&1 ||
-    complain 'it flies without its key'
+    complain 'it runs without its key'
   expect grep 'has a mission key' "$work/keyless"
   compose stop
   expect grep -q '"result": "stopped"' "$ERGOCAST_RUNS"/*/summary.json
