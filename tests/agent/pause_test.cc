@@ -32,7 +32,7 @@ TEST(AgentWithoutTicks, RepeatsOnceASecondWhatItHas) {
   for (const Contribution& one : sent) EXPECT_EQ(one.steps, 1);
 }
 
-TEST(AgentWithoutTicks, SaysNothingWhileTheMissionIsPaused) {
+TEST(AgentWithoutTicks, SendsNoCoverageWhileTheMissionIsPaused) {
   // It joined in the pause and has covered nothing. Others would refuse a row without steps.
   EXPECT_TRUE(sent_in_silence({{0, -1}}).empty());
 }

@@ -269,7 +269,7 @@ TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
   EXPECT_EQ(places, std::ssize(planted));
 }
 
-TEST_F(InvariantsCanFail, AMissionWhoseProcessDiesIsOneThatFailed) {
+TEST_F(InvariantsCanFail, AMissionWhoseProcessCrashesIsOneThatFailed) {
   EXPECT_EQ(run_plant({}, "an agent crashes"), 4);
   EXPECT_TRUE(prints("seed 1: ")) << printed();
   EXPECT_TRUE(prints("SIGABRT")) << printed();

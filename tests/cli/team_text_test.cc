@@ -58,7 +58,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-TEST(TeamTable, SaysWhoBlocksAnAgentOnceItLasts) {
+TEST(TeamTable, ShowsWhichBodyBlocksAnAgentOnceItLasts) {
   AgentRow row = row_of(0, Condition::kOk);
   row.status->blocked_by = 3;
   row.blocked_s = 0.9;
@@ -71,7 +71,7 @@ TEST(TeamTable, SaysWhoBlocksAnAgentOnceItLasts) {
   EXPECT_EQ(condition_text(row), "silent 0 s");
 }
 
-TEST(TeamTable, SaysEverythingInLinesThatFit) {
+TEST(TeamTable, ShowsEverythingInLinesThatFit) {
   EXPECT_EQ(
       team_table(running_team(), false),
       "quadrimodal_corners, run 0000000000001234, running, tick 599999 of 1000000 (60 %), t = "
@@ -114,7 +114,7 @@ TEST(TeamTable, ColourChangesNothingButColour) {
   EXPECT_EQ(coloured, team_table(running_team(), false));
 }
 
-TEST(TeamTable, NamesWhomAnAgentWaitsFor) {
+TEST(TeamTable, NamesTheProcessThatAnAgentWaitsFor) {
   AgentRow row = row_of(1, Condition::kWaiting);
   row.status->waiting_for = 3;
   EXPECT_EQ(condition_text(row), "waiting for 3");
@@ -122,7 +122,7 @@ TEST(TeamTable, NamesWhomAnAgentWaitsFor) {
   EXPECT_EQ(condition_text(row), "waiting for world");
 }
 
-TEST(TeamTable, OfALongHostNameOrANeverHeardAgentStaysAligned) {
+TEST(TeamTable, OfALongHostNameOrANeverReceivedAgentStaysAligned) {
   TeamPicture picture = running_team();
   picture.agents[0].status->host = std::string(63, 'h');
   picture.agents[1].status->host = "über-träge-robotermaschine";

@@ -21,7 +21,7 @@ int answer(std::uint64_t job) {
   return 10 * static_cast<int>(job);
 }
 
-TEST(Workers, LoseAJobThatHangsOrDiesAndNoOther) {
+TEST(Workers, LoseAJobThatHangsOrCrashesAndNoOther) {
   std::map<std::uint64_t, int> results;
   std::map<std::uint64_t, std::string> lost;
   Jobs jobs =

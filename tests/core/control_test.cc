@@ -343,7 +343,7 @@ TEST(RelativeEpsilon, KeepsTheInputAsTheResidualShrinksWhereAnAbsoluteOneThrottl
   EXPECT_LT(speed(Regularization::kAbsolute, 1e-4, 0x1p-20), 1e-2);
 }
 
-TEST(AbsoluteEpsilon, IsWhatTheScenarioSays) {
+TEST(AbsoluteEpsilon, IsTheValueOfTheScenario) {
   Mission mission = uneven_mission();
   mission.law.epsilon = 1.5e-3;
   Controller controller(mission);

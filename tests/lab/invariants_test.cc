@@ -191,7 +191,7 @@ TEST_F(InvariantsTest, RelaysAnswerDigests) {
   EXPECT_EQ(violated(), "a relay answers a digest");
 }
 
-TEST_F(InvariantsTest, DigestsSayWhatIsHeld) {
+TEST_F(InvariantsTest, DigestsListWhatIsHeld) {
   CoverageTable table(mission_.basis, 0.1);
   cover(table, kOne, 20);
   const TableView one = holder(table, c_one_);
@@ -327,21 +327,21 @@ TEST_F(InvariantsTest, HonestMessagesAreNotRefused) {
   EXPECT_EQ(violated(), "no honest message is refused");
 }
 
-TEST_F(InvariantsTest, NobodyEndsBeforeTheMission) {
+TEST_F(InvariantsTest, NoAgentEndsBeforeTheMission) {
   team_.finished(1, kOne, "mission complete", true);
   EXPECT_EQ(violated(), "");
   team_.finished(1, kOne, "lonely", false);
   EXPECT_EQ(violated(), "no agent ends before the mission");
 }
 
-TEST_F(InvariantsTest, NobodyAsksForThePast) {
+TEST_F(InvariantsTest, NoProcessAsksForThePast) {
   team_.wakeup(1, "agent 0", false);
   EXPECT_EQ(violated(), "");
   team_.wakeup(1, "agent 0", true);
   EXPECT_EQ(violated(), "no process asks to be woken in the past");
 }
 
-TEST_F(InvariantsTest, EverybodyLearnsEveryRow) {
+TEST_F(InvariantsTest, EveryAgentLearnsEveryRow) {
   CoverageTable one(mission_.basis, 0.1), two(mission_.basis, 0.1);
   for (CoverageTable* table : {&one, &two}) cover(*table, kTwo, 20);
   cover(one, kLeft, 10);
@@ -366,7 +366,7 @@ TEST_F(InvariantsTest, ViewsAgreeWithinTheirStaleness) {
   EXPECT_GT(team_.largest_view_error(), 0);
 }
 
-TEST_F(InvariantsTest, EverybodyIsBack) {
+TEST_F(InvariantsTest, EveryProcessIsBack) {
   TableView outside;
   outside.self = kOne;
   team_.recovered(1, {outside});

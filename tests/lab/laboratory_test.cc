@@ -48,7 +48,7 @@ TEST(Laboratory, TheSameSeedGivesTheSameMission) {
   EXPECT_NE(run_trial(lab::drawn(1), 1).trajectory, run_trial(lab::drawn(2), 2).trajectory);
 }
 
-TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
+TEST(Laboratory, TheViewErrorIsOfAgentsThatReachedTheEnd) {
   Faults faults;
   faults.loss = 0.3;
   for (const double share : {0.6, 1.0}) {

@@ -114,7 +114,7 @@ TEST(MessageAuthenticator, ARepeatUnderAnotherNameIsRefused) {
             "accepted");
 }
 
-TEST(MessageAuthenticator, AMemberCannotSpeakForTheCoordinator) {
+TEST(MessageAuthenticator, AMemberCannotSendInTheNameOfTheCoordinator) {
   for (const Message& message : every_message()) {
     if (!is_signed(message)) continue;
     const std::string& channel = channel_of(message);

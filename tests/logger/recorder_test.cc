@@ -116,7 +116,7 @@ TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
 
 // ---- acknowledgements ----
 
-TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
+TEST(Acknowledgement, FirstReportsThatTheRecordIsReady) {
   std::ostringstream trajectory, metrics;
   announce(small_mission(1));
   Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
@@ -264,7 +264,7 @@ TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   EXPECT_EQ(facts.ergodic_metric.size(), 4u);
 }
 
-TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
+TEST(Metrics, CountWhatTheNewestStatusOfEachAgentReports) {
   Record record(small_mission(3));
   const auto report = [](AgentId id, std::int64_t sequence, double metric, double staleness,
                          std::int64_t received, std::int64_t lost) {
@@ -369,7 +369,7 @@ TEST(RecordEnd, ComesASecondAfterTheLastTickSoThatLastStatusesCount) {
   EXPECT_EQ(record.recorder.next_wakeup(), Instant::max());
 }
 
-TEST(RecordEnd, SaysThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
+TEST(RecordEnd, ReportsThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
   Record record(small_mission(1));
   for (Tick tick = 0; tick <= 7; ++tick) record.deliver(state_of(tick));
   record.deliver(mission_part(1, MissionState::kFailed, roster_of(1), "agent 0 is late"), at(5s));
@@ -398,7 +398,7 @@ TEST(RecordEnd, AStopAtOnceEndsItWithTheStopsReason) {
   }
 }
 
-TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
+TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNoMessagesArrive) {
   Record record(realtime_mission());  // 10 s
   for (const Tick tick : {0, 1, 40}) record.deliver(state_of(tick), at(4s));
   advance(record.recorder, at(40s));  // 6 s after tick 40, and 30 s more

@@ -90,7 +90,7 @@ class Resume : public testing::Test {
 
 // ---- the same record as without a kill ----
 
-TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
+TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatWasNotStopped) {
   Mission mission = small_mission(3);
   mission.separation.distance_m = 1;
   mission.speed_limit_mps = 20;
@@ -209,7 +209,7 @@ TEST_F(Resume, WhatIsNotRepeatedWithinHalfASecondIsAGap) {
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
 }
 
-TEST_F(Resume, AGapEndsAtTheFirstStateHeardEvenIfTheNextIsMissing) {
+TEST_F(Resume, AGapEndsAtTheFirstStateReceivedEvenIfTheNextIsMissing) {
   Record resumed(small_mission(1), ten_rows());
   for (const Tick tick : {30, 32}) resumed.deliver(state_of(tick), at(10s));
   advance(resumed.recorder, at(30s));

@@ -82,7 +82,7 @@ TEST(Theorem2, MeanSquareStaysUnderTheBoundWithAndWithoutEdges) {
   }
 }
 
-TEST(Theorem2, ReflectionMovesNobodyAwayFromACentreInside) {
+TEST(Theorem2, ReflectionMovesNoAgentAwayFromACentreInside) {
   Mission mission = loud(200);
   for (mission.seed = 1; mission.seed <= 20; ++mission.seed) {
     PaperTeam team(mission, Edges::kNone);

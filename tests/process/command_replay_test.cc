@@ -173,7 +173,7 @@ TEST_F(CommandReplay, AStopThatNoCoordinatorObeyedDoesNotEndTheMissionLater) {
   expect_obedience();
 }
 
-TEST_F(CommandReplay, AStopAtOnceThatTheTeamDidNotHearDoesNotStopItLater) {
+TEST_F(CommandReplay, AStopAtOnceThatTheTeamDidNotReceiveDoesNotStopItLater) {
   constexpr const char* kElsewhere = "udpm://239.255.76.67:24800?ttl=0";
   start_mission();
   Tape tape(kElsewhere);

@@ -70,7 +70,7 @@ TEST_F(Deploy, HandsTheTableOfModesToEveryHost) {
   }
 }
 
-TEST_F(Deploy, SaysThatEachRobotNeedsItsOwnDriver) {
+TEST_F(Deploy, NotesThatEachRobotNeedsItsOwnDriver) {
   const std::string leased =
       (std::filesystem::path(ERGOCAST_SOURCE_DIR) / "tests/lab/leased_team.textproto").string();
   const auto deployed = [&](const std::string& roles) {
@@ -132,7 +132,7 @@ TEST_F(Deploy, RefusesKeysThatWouldNotDo) {
   EXPECT_TRUE(printed("chmod 600")) << output();
 }
 
-TEST_F(Deploy, RefusesAFileThatTheScenarioNamesByItsWholePath) {
+TEST_F(Deploy, RefusesAFileThatTheScenarioNamesByItsAbsolutePath) {
   std::ofstream(folder_ / "room.svg")
       << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">)"
          R"(<path d="M 40 40 L 60 40 L 60 60 L 40 60 Z"/></svg>)";
@@ -179,7 +179,7 @@ TEST_F(Deploy, TheCoordinatorChangesTheScenarioAsItWasChangedHere) {
   EXPECT_TRUE(printed("a service's settings cannot hold")) << output();
 }
 
-TEST_F(Deploy, SaysThatOnlyFilesTakeTheTableOfModesAlong) {
+TEST_F(Deploy, NotesThatOnlyFilesTakeTheTableOfModesAlong) {
   const std::string office =
       (std::filesystem::path(ERGOCAST_SOURCE_DIR) / "scenarios/office.textproto").string();
   ASSERT_EQ(ergocast({"deploy", office, "--to", "ssh", "--hosts",

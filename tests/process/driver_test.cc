@@ -20,7 +20,7 @@ class DrivenRobots : public ByHand {
   }
 };
 
-TEST_F(DrivenRobots, FlyAWholeMissionWhoseRecordIsComplete) {
+TEST_F(DrivenRobots, RunAWholeMissionWhoseRecordIsComplete) {
   std::filesystem::create_directory(out());
   Program& logger = hand("ergocast-logger", {"--out", out()});
   Program& driver = hand("ergocast-example-driver");
@@ -34,7 +34,7 @@ TEST_F(DrivenRobots, FlyAWholeMissionWhoseRecordIsComplete) {
   EXPECT_EQ(summary()["ticks"], 300);
 }
 
-TEST_F(DrivenRobots, StandStillAtOnceWhenTheyAreToldToStop) {
+TEST_F(DrivenRobots, StandStillAtOnceAfterAStop) {
   std::filesystem::create_directory(out());
   Program& logger = hand("ergocast-logger", {"--out", out()});
   Program& driver = hand("ergocast-example-driver");
@@ -127,7 +127,7 @@ class RobotsWithTheirOwnDrivers : public ByHand {
   }
 };
 
-TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver) {
+TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotReceivedAndRefuseASecondDriver) {
   std::filesystem::create_directory(out());
   Program& logger = hand("ergocast-logger", {"--out", out()});
   std::vector<Program*> drivers;
@@ -156,7 +156,7 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver)
 
 // A foreign sender repeats agent 1's messages with another position, and echoes messages that no
 // process has sent.
-TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsOutOfOrderAndFromTheFuture) {
+TEST_F(RobotsWithTheirOwnDrivers, GoOnBesideBeaconsOutOfOrderAndFromTheFuture) {
   std::filesystem::create_directory(out());
   hand("ergocast-logger", {"--out", out()});
   Program& first = hand("ergocast-agent", {"--id", "0"});

@@ -161,7 +161,7 @@ TEST_F(Found, ItsProcessesAreNamedWithTheirIds) {
   EXPECT_EQ(wait_for(run), 0);
 }
 
-TEST_F(Found, HelpSaysWhereACommandLooks) {
+TEST_F(Found, HelpNamesWhereACommandLooks) {
   for (const char* command : {"status", "watch", "stop", "pause", "resume"}) {
     EXPECT_EQ(ergocast({command, "--help"}), 0);
     EXPECT_TRUE(printed("default: that of your live run on this host")) << command << output();
@@ -169,7 +169,7 @@ TEST_F(Found, HelpSaysWhereACommandLooks) {
   }
 }
 
-TEST_F(Found, ARunThatWasKilledIsSaidAndNotTaken) {
+TEST_F(Found, ARunThatWasKilledIsReportedAndNotTaken) {
   Child run = start_mission("one");
   run.send(SIGKILL);
   wait_for(run);

@@ -15,7 +15,7 @@ INSTANTIATE_TEST_SUITE_P(Processes, FreezeInLockstep,
                          ::testing::Values("agent", "coordinator", "sim", "logger"),
                          [](const auto& process) { return std::string(process.param); });
 
-TEST_P(FreezeInLockstep, EverybodyWaitsOrGoesOnAndTheTrajectoryIsTheSame) {
+TEST_P(FreezeInLockstep, AllWaitOrGoOnAndTheTrajectoryIsTheSame) {
   Child mission = launch_endless(scenario());
   const std::string process = GetParam();
   freeze(process == "agent" ? agent(1) : std::vector{"ergocast-" + process});

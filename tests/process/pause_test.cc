@@ -113,7 +113,7 @@ TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
   EXPECT_EQ(ergocast({"report", out()}), 0) << output();
 }
 
-TEST_F(PauseCommand, SaysWhyThereIsNothingToPause) {
+TEST_F(PauseCommand, ReportsWhyThereIsNothingToPause) {
   EXPECT_EQ(send_command("pause"), 4);
   EXPECT_TRUE(answered("no message of any run")) << output();
 }

@@ -62,7 +62,7 @@ class Channels {
   std::set<std::string> names_;
 };
 
-TEST_F(Replay, OfTheCommandIsShownAsAReplayAndNobodyJoinsOrStopsIt) {
+TEST_F(Replay, OfTheCommandIsShownAsAReplayThatCannotBeJoinedOrStopped) {
   ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "600",
                       "--event-log", "--out", out()}),
             0)

@@ -22,7 +22,7 @@ class Set : public OwnHost {
       "--set", "law.epsilon=0.3", "--set", "agents.starts[1].x_m=33", "--duration", "20"};
 };
 
-TEST_F(Set, TheRecordSaysWhatWasFlown) {
+TEST_F(Set, TheRecordHasTheScenarioThatRan) {
   auto words = options_;
   words.insert(words.begin(), scenario_);
   const std::string wanted = plan(words);

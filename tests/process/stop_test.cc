@@ -109,7 +109,7 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
 }
 
 // The team waits for one agent, so the tick in which STOP arrives is known.
-TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
+TEST_F(StopCommand, NoVehicleMovesInTheTickAfterItWasReceived) {
   constexpr Tick kWaitedFor = 100;
   hold_next("ERGOCAST_COMMAND_2", kWaitedFor);
   const auto all = start_all(endless(false));
@@ -139,7 +139,7 @@ TEST_F(StopCommand, EndsAMissionOfALauncherWhichCallsItStopped) {
   }
 }
 
-TEST_F(StopCommand, ALauncherEndsAMissionWhoseCoordinatorIsDeaf) {
+TEST_F(StopCommand, ALauncherEndsAMissionWhoseCoordinatorIsFrozen) {
   Child mission = launch_endless(scenario());
   signal_to({"ergocast-coordinator"}, SIGSTOP);
   mission.send(SIGINT);
@@ -175,7 +175,7 @@ TEST_F(StopCommand, NeedsTheCoordinatorsKeyIfTheTeamHasOne) {
   EXPECT_TRUE(sim.prints("stopped at once")) << sim.printed();
 }
 
-TEST_F(StopCommand, WithNobodyThereSaysWhatToCheck) {
+TEST_F(StopCommand, WithoutATeamNamesWhatToCheck) {
   EXPECT_EQ(stop({"--now"}), 4);
   EXPECT_TRUE(answered("no message of any run arrived on ")) << output();
   EXPECT_EQ(stop({"--now", "--run-id", "b2"}), 4);
@@ -203,7 +203,7 @@ TEST_F(StopCommand, OfSeveralRunsOnOneUrlEndsNoneInOrder) {
   EXPECT_TRUE(undecided.prints("--run-id 00000000000000b2")) << undecided.printed();
 }
 
-TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
+TEST_F(StopCommand, InAnEmergencyStopsAllThatAreReceived) {
   Program& decided = hand("ergocast", {"stop", "--now"});
   two_runs_speak_until([&] { return decided.printed().find("telling") != std::string::npos; });
   EXPECT_TRUE(decided.prints("run 00000000000000a1: stopping all vehicles at once"));
@@ -214,7 +214,7 @@ TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
 }
 
 // An attacker with recordings of many runs of the same key cannot hide another run behind them.
-TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
+TEST_F(StopCommand, InAnEmergencySendsAlsoToMoreRunsThanItCanWatch) {
   std::set<RunId> reached;
   const auto listener =
       std::get<0>(Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {kTypes<Stop>},
@@ -236,7 +236,7 @@ TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
   EXPECT_TRUE(decided.prints("more than 16 runs were found")) << decided.printed();
 }
 
-TEST_F(StopCommand, InAnEmergencyDoesNotSayThatVehiclesStandWhoseWorldIsSilent) {
+TEST_F(StopCommand, InAnEmergencyDoesNotReportThatVehiclesStandWhoseWorldIsSilent) {
   start_mission(endless(true));
   signal_to({"ergocast-sim"}, SIGSTOP);
   EXPECT_EQ(stop({"--now"}), 4) << output();

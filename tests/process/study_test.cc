@@ -67,7 +67,7 @@ std::vector<std::vector<std::string>> rows_of(const std::string& table) {
   return rows;
 }
 
-TEST_F(Study, FliesEveryCombinationOnceInOrder) {
+TEST_F(Study, RunsEveryCombinationOnceInOrder) {
   auto words = arguments("4:6", out());
   words.insert(words.end(), {"--vary", "law.regularization=ABSOLUTE,RELATIVE"});
   ASSERT_EQ(ergocast(words), 0) << output();
@@ -93,7 +93,7 @@ TEST_F(Study, DoesNotDependOnTheNumberOfJobs) {
   EXPECT_EQ(table(), fresh("1:9"));
 }
 
-TEST_F(Study, ARunIsTheMissionThatSimulateFlies) {
+TEST_F(Study, ARunIsTheMissionThatSimulateRuns) {
   ASSERT_EQ(study("7", out()), 0);
   const auto simulated = folder_ / "simulated";
   auto mission = std::string(kMission);
@@ -176,7 +176,7 @@ TEST_F(Study, DrawsAFinishedStudyAgain) {
   EXPECT_EQ(text_of(out() / "report.html"), page);
 }
 
-TEST_F(Study, AWorkerThatDiesCostsItsRun) {
+TEST_F(Study, AWorkerThatCrashesCostsItsRun) {
   auto words = arguments("1", out());
   words.insert(words.end(), {"--duration", "10000000"});
   Child child = start("ergocast", words);
@@ -334,7 +334,7 @@ TEST_F(Study, RefusesAFolderWithOtherFilesAndADamagedTable) {
   EXPECT_EQ(table(), damaged);
 }
 
-TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
+TEST_F(Study, RefusesWhatCannotRunBeforeItRunsAnything) {
   const auto refused = [&](std::vector<std::string> words, const std::string& why) {
     words.insert(words.begin(), {"study", folder_ / "mission.textproto", "--out", out()});
     EXPECT_EQ(ergocast(words), 2) << why;

@@ -35,7 +35,7 @@ class OtherVersion : public ByHand {
   Stranger stranger_{kUrl};
 };
 
-TEST_F(OtherVersion, OfACoordinatorEndsEverybodyWithBothVersionsNamed) {
+TEST_F(OtherVersion, OfACoordinatorEndsAllProcessesWithBothVersionsNamed) {
   std::filesystem::create_directory(out());
   std::vector<Program*> programs{&hand("ergocast-logger", {"--out", out()}), &hand("ergocast-sim"),
                                  &hand("ergocast-agent"),

@@ -284,7 +284,7 @@ TEST_F(EventLogReaderTest, NamesFileByteAndRemedyOfDamage) {
             "A " + place + "an event longer than any message of Ergocast" + remedy);
 }
 
-TEST_F(EventLogReaderTest, SaysWhatIsMissing) {
+TEST_F(EventLogReaderTest, NamesWhatIsMissing) {
   EXPECT_NE(read_back(folder_).find("has no event log"), std::string::npos);
   EXPECT_NE(read_back(folder_ / "none").find("name a run directory"), std::string::npos);
   write({"A", "B", "C", "D", "E"});

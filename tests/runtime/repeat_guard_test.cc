@@ -36,14 +36,14 @@ class Guarded : public ::testing::Test {
   RepeatGuard guard_{Bus::kSwarm};
 };
 
-TEST_F(Guarded, NewsAreNeverAFlood) {
+TEST_F(Guarded, NewMessagesAreNeverAFlood) {
   for (int i = 0; i < 100 * RepeatGuard::kMostRepeats; ++i) {
     EXPECT_FALSE(receive(sent(3, 7, i), at(1s)));
   }
   EXPECT_TRUE(guard_.flooded().empty());
 }
 
-TEST_F(Guarded, FewerRepeatsThanAFloodHasAreHeardForEver) {
+TEST_F(Guarded, FewerRepeatsThanAFloodHasAreAlwaysReceived) {
   receive(sent(3, 7, 5), at(1s));
   for (int second = 2; second < 100; ++second) {
     EXPECT_FALSE(
@@ -51,7 +51,7 @@ TEST_F(Guarded, FewerRepeatsThanAFloodHasAreHeardForEver) {
   }
 }
 
-TEST_F(Guarded, AFloodIsCutAtTheNewestThatIsKnownOfWhoIsRepeated) {
+TEST_F(Guarded, AFloodIsCutAtTheNewestMessageOfTheRepeatedSender) {
   receive(sent(3, 7, 5), at(1s));
   receive(sent(3, 7, 90), at(1s));
   receive(sent(kWorld, 8, 1000), at(1s));
@@ -79,7 +79,7 @@ TEST_F(Guarded, AFloodThatLastsIsCutAtEverNewerSequencesAndItsEndOpensAgain) {
   EXPECT_FALSE(receive(sent(3, 7, 11), at(5000ms))) << "told once";
 }
 
-TEST_F(Guarded, RemembersNoMoreLivesThanItsLimit) {
+TEST_F(Guarded, RemembersNoMoreIncarnationsThanItsLimit) {
   const int many = static_cast<int>(RepeatGuard::kMaxIncarnations) + 50;
   for (int life = 1; life <= many; ++life)
     receive(sent(0, static_cast<Incarnation>(life), 1), at(1s));

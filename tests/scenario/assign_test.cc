@@ -36,7 +36,7 @@ TEST(Assign, SetsNumbersWordsTruthValuesAndListedFields) {
   EXPECT_EQ(good(kSmall, with("agents.random_count", "3")).mission().starts_m.size(), 4U);
 }
 
-TEST(Assign, IsWhatTheFileWouldHaveSaid) {
+TEST(Assign, EqualsTheSameFieldInTheFile) {
   EXPECT_EQ(plan_of(good(kSmall, with("law.u_max_mps", "7"))),
             plan_of(good(small_with("u_max_mps: 5", "u_max_mps: 7"))));
 }
@@ -81,7 +81,7 @@ TEST(Assign, RefusesValuesThatTheFieldDoesNotTakeAndBlamesTheFlag) {
   EXPECT_TRUE(has(problem_of("law.epsilon", ""), "--vary law.epsilon=: "));
 }
 
-TEST(Assign, RefusesWhatAnotherFlagSays) {
+TEST(Assign, RefusesWhatAnotherFlagSets) {
   const auto printed = [](const std::string& path, const std::string& value,
                           const std::function<void(Overrides&)>& set) {
     Overrides overrides = with(path, value);

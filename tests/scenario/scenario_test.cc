@@ -102,7 +102,7 @@ TEST(Defaults, OnlyTheRecommendedLawLooksAhead) {
   EXPECT_EQ(law.epsilon, 0.2) << "a relative one, where nobody looks ahead";
 }
 
-TEST(Defaults, WhoIsNotReckonedTellsEachTickWhatItCovered) {
+TEST(Defaults, AgentsWithoutDeadReckoningBroadcastEachTick) {
   for (const char* fields : {"law { anticipation: 0", "agents { dead_reckoning: false",
                              "law { perturbation: CONSTANT", "law { regularization: ABSOLUTE"}) {
     const std::string block(fields, std::string_view(fields).find('{') + 1);

@@ -41,7 +41,7 @@ TEST(WorldKeepsBodiesApart, WhateverTheirAgentsCommand) {
   }
 }
 
-TEST(WorldKeepsBodiesApart, ByTheMissionsWordOnly) {
+TEST(WorldKeepsBodiesApart, OnlyIfTheMissionRequiresIt) {
   for (const bool guard : {true, false}) {
     Mission mission = apart(2, Pace::kRealtime);
     mission.timing.command_hold_s = 0;
@@ -100,7 +100,7 @@ World asking(const Mission& mission) {
   return world;
 }
 
-TEST(RestartedWorld, KnowsTheBodiesOfThoseWhoHaveLeft) {
+TEST(RestartedWorld, KnowsTheBodiesOfAgentsThatHaveLeft) {
   World world = asking(apart(3, Pace::kLockstep));
   for (const Tick tick : {8, 9}) {
     give(world, answer(0, tick, 300), at(1ms));
@@ -129,7 +129,7 @@ TEST(RestartedWorld, GoesOnFromTheNewestStateThatAnyAgentKnows) {
 }
 
 /// Answers of two ticks are of two times, at which distances differed.
-TEST(RestartedWorld, InRealTimePutsAllWhereOneStateSaysAndLetsThemStand) {
+TEST(RestartedWorld, InRealTimePutsAllWhereOneStateHasThemAndLetsThemStand) {
   World world = asking(apart(3, Pace::kRealtime));
   give(world, state_before(7, 0), at(1ms), 0);
   give(world, state_before(8, 4), at(1ms), 1);

@@ -69,7 +69,7 @@ TEST(WorldRefuses, TheAnswerThatAnAgentGaveBeforeItWasEvicted) {
   EXPECT_EQ(place(state, 1), mission.starts_m[1]);
 }
 
-TEST(WorldRefuses, TheFormerLifeOfARestartedAgentWhichGoesOnFromItsPlace) {
+TEST(WorldRefuses, TheFormerIncarnationOfARestartedAgentWhichGoesOnFromItsPlace) {
   const Mission mission = small_mission(1);
   World world = running_world(mission);
   advance(world, at(0s));
@@ -90,7 +90,7 @@ TEST(WorldRefuses, TheFormerLifeOfARestartedAgentWhichGoesOnFromItsPlace) {
   EXPECT_EQ(place(state), Eigen::Vector3d(101, 501, 0));
 }
 
-TEST(WorldRefuses, ToRunOnWithNobodyLeft) {
+TEST(WorldRefuses, ToRunOnWithNoAgentLeft) {
   World world = running_world(small_mission(2));
   advance(world, at(0s));
   std::vector<RosterEntry> roster = roster_of(2);

@@ -156,7 +156,7 @@ World asking_world(const Mission& mission) {
   return world;
 }
 
-TEST(WorldAsks, TenTimesASecondAndMovesNobodyMeanwhile) {
+TEST(WorldAsks, TenTimesASecondAndMovesNoVehicleMeanwhile) {
   World world = asking_world(small_mission(2));
   nobody_has_moved(world, 1, at(0s));
   int questions = 0;
@@ -190,7 +190,7 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
 
 // Each agent may be the only one that received the former world's last tick, and no other process
 // knows its position.
-TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
+TEST(WorldAsks, InLockstepUntilAllAgentsHaveAnswered) {
   World world = asking_world(small_mission(2));
   for (const Tick tick : {8, 9})
     give(world, command_from(0, tick, {300, 400, 0}, {1, 0, 0}), at(0s));
@@ -217,7 +217,7 @@ TEST(WorldAsks, WithTheNumberOfTheFirstThatHasNotAnswered) {
   EXPECT_EQ(asked_for(at(400ms)), 2);
 }
 
-TEST(WorldAsks, InLockstepNobodyWhoHasLeftTheRosterMeanwhile) {
+TEST(WorldAsks, InLockstepNoAgentThatHasLeftTheRosterMeanwhile) {
   World world = asking_world(small_mission(2));
   for (const Tick tick : {8, 9})
     give(world, command_from(0, tick, {300, 400, 0}, {1, 0, 0}), at(0s));
@@ -268,7 +268,7 @@ TEST(WorldAsks, OneOfTwoCommandsIsHalfAnAnswer) {
 }
 
 /// An agent that has answered only tick 0 first sends a command without a tick.
-TEST(WorldAsks, HalfAnAnswerDoesNotSayThatThereIsNone) {
+TEST(WorldAsks, HalfAnAnswerDoesNotMeanThatThereIsNone) {
   const auto halves = [](AgentId id, Tick last, std::int64_t sequence) {
     std::vector<Command> sent = {command_from(id, -1, {0, 0, 0}, {0, 0, 0}),
                                  command_from(id, last, {700, 500, 0}, {0, 10, 0})};
@@ -291,7 +291,7 @@ TEST(WorldAsks, HalfAnAnswerDoesNotSayThatThereIsNone) {
   }
 }
 
-TEST(WorldAsks, NobodyWhoAnswersSomebodyElse) {
+TEST(WorldAsks, NoAgentThatAnswersAnotherProcess) {
   World world = asking_world(small_mission(1));
   for (const Incarnation asked_by : {Incarnation{0}, kWorldLife - 1}) {
     for (const Tick tick : {4, 5}) {
@@ -307,7 +307,7 @@ TEST(WorldAsks, NobodyWhoAnswersSomebodyElse) {
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 9);
 }
 
-TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {
+TEST(WorldAsks, ForNoTicksOrPlacesThatCannotBe) {
   const Mission mission = small_mission(1);
   World world = asking_world(mission);
   give(world, command_from(0, mission.timing.tick_count + 1, {300, 400, 0}, {0, 0, 0}), at(0s));
@@ -335,7 +335,7 @@ TEST(WorldAsks, NotTheRosterForATickBeyondThePlan) {
 
 // ---- real time ----
 
-TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
+TEST(WorldResumesInRealTime, AVehicleThatIsBehindHasGoneOnWithItsHeldCommand) {
   for (const double hold_s : {10.0, 0.1}) {
     Mission mission = small_mission(2);
     mission.timing.pace = Pace::kRealtime;
@@ -374,7 +374,7 @@ TEST(WorldWithoutAMission, AsksForItAfterASecondAndAHalfIfItKnowsTheRun) {
   }
 }
 
-TEST(WorldWithoutAMission, WaitsForTheFirstItHearsOfIfItKnowsNoRun) {
+TEST(WorldWithoutAMission, WaitsForTheFirstItReceivesIfItKnowsNoRun) {
   announce(small_mission(1));
   World world(0, kWorldLife);
   for (int second = 0; second < 10; ++second) EXPECT_TRUE(advance(world, at(second * 1s)).empty());
@@ -422,7 +422,7 @@ TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   EXPECT_EQ(world.tick(), 85);
 }
 
-TEST(WorldRecord, WordsOfADeadLoggerSaidAgainDoNotKeepTheTeamWaiting) {
+TEST(WorldRecord, RepeatedMessagesOfAStoppedLoggerDoNotKeepTheTeamWaiting) {
   Mission mission = small_mission(1);
   mission.wait_for_logger = true;
   mission.timing.lockstep_timeout_s = 10;

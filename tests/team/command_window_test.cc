@@ -53,7 +53,7 @@ TEST(CommandWindow, WantsTheNewestTickUntilItsOwnerTakesPart) {
   EXPECT_TRUE(window.admits(6000)) << "said since";
 }
 
-TEST(CommandWindow, AdmitsWhatWasSaidWhileItsOwnerStood) {
+TEST(CommandWindow, AdmitsWhatWasSentWhileItsOwnerStood) {
   CommandWindow window;
   window.note(10, true, at(0s));
   window.note(10, true, at(6s));

@@ -170,7 +170,7 @@ TEST(MissionFollower, DecodesThePlanOnce) {
   EXPECT_EQ(follower.revision(), 4);
 }
 
-TEST(MissionFollower, SaysThatAPlanIsUnreadable) {
+TEST(MissionFollower, ReportsThatAPlanIsUnreadable) {
   MissionFollower follower;
   EXPECT_FALSE(follower.plan_problem());
   for (std::int64_t revision = 0; revision < 3; ++revision) {

@@ -34,7 +34,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(HostsFile, SaysWhoDoesWhat) {
+TEST(HostsFile, AssignsTheRoles) {
   const auto hosts = hosts_in(
       "# our team\n"
       "ground  ops@10.0.0.1  coordinator logger sim\r\n"
