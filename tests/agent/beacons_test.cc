@@ -89,7 +89,7 @@ TEST(AgentsWithBeacons, AnAgentWithoutEchoesStandsAfterTheLease) {
   EXPECT_LE(moved, 20);
   EXPECT_EQ(pair.pass(false)[0].norm(), 0);
   for (int i = 0; i < 6; ++i) pair.pass();
-  EXPECT_GT(pair.pass()[0].norm(), 5) << "heard again";
+  EXPECT_GT(pair.pass()[0].norm(), 5) << "received again";
 }
 
 /// A newer roster may have a body that the agent does not know of.

@@ -270,7 +270,7 @@ TEST(AgentInLockstep, StatusNamesTheWorldOnceItHasBeenSilentForThreeSeconds) {
   EXPECT_EQ(status_after(agent, at(7499ms)).waiting_for, 1) << "not yet";
   EXPECT_EQ(status_after(agent, at(8s)).waiting_for, kWorld) << "whatever else is missing";
   deliver(agent, first, at(8900ms));
-  EXPECT_EQ(status_after(agent, at(9s)).waiting_for, kWorld) << "anybody may have recorded it";
+  EXPECT_EQ(status_after(agent, at(9s)).waiting_for, kWorld) << "any process may have recorded it";
   deliver(agent, world(), at(10s));
   EXPECT_EQ(status_after(agent, at(10s)).waiting_for, 1) << "a repeat of its own is a word, too";
 }

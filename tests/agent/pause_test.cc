@@ -56,7 +56,7 @@ TEST(AgentThatLearnsLateOfAPause, DoesNotWaitForTheTickThatItAnnouncedMeanwhile)
   ++part.revision;
   part.holds = {{2, 20}};
   give(agent, part, at(2s));
-  EXPECT_EQ(steps_sent_at(20), std::vector<std::int64_t>{21}) << "nobody else can say it";
+  EXPECT_EQ(steps_sent_at(20), std::vector<std::int64_t>{21}) << "no other process can send it";
   EXPECT_EQ(steps_sent_at(21), std::vector<std::int64_t>{22});
 }
 

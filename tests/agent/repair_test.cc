@@ -177,7 +177,7 @@ TEST_F(Repair, AnyGapIsOneIfItsAuthorHasLeft) {
 TEST_F(Repair, NoAgentSendsItsOwnRow) {
   hold(author_of(0), 20);
   complain_twice(1, author_of(0), 0, at(0s));
-  EXPECT_EQ(answered(at(1s)), nobody) << "in lockstep, ticks depend on when that is said";
+  EXPECT_EQ(answered(at(1s)), nobody) << "in lockstep, ticks depend on when that is sent";
 }
 
 TEST_F(Repair, NoAgentIsSentItsOwnRow) {
@@ -369,7 +369,7 @@ TEST(AgentDigests, FromAgentsThatAreNoMembersAreIgnored) {
     }
     return only<Contribution>(advance(agent, at(2s))).size();
   };
-  EXPECT_EQ(answers_to({1, 4711}), 0u) << "a member's number, but nobody's life";
+  EXPECT_EQ(answers_to({1, 4711}), 0u) << "a member's number, but no member's incarnation";
   EXPECT_EQ(answers_to({0, incarnation_of(1)}), 0u) << "a member's life under another number";
   EXPECT_EQ(answers_to(author_of(1)), 1u);
 }

@@ -139,7 +139,8 @@ class Scenarios : public OwnHost {
       found = found || !mistake.has_line || in_line || mistake.to.find('\n') != mistake.to.npos;
       EXPECT_TRUE(said.ends_with(")") && !said.ends_with("()")) << said;
     }
-    EXPECT_TRUE(found) << mistake.said << " is not said of " << mistake.to.substr(0, 200) << ":\n"
+    EXPECT_TRUE(found) << mistake.said << " is not reported for " << mistake.to.substr(0, 200)
+                       << ":\n"
                        << output().substr(0, 2000);
   }
 

@@ -245,7 +245,7 @@ TEST_F(InvariantsCanFail, EachOfThem) {
     for (const char* seed : {"seed 1: ", "seed 2: "}) {
       EXPECT_TRUE(prints(seed + name + ": ")) << plant.bug << " is not seen: " << printed();
     }
-    EXPECT_TRUE(prints(plant.prints)) << plant.prints << " is not said: " << printed();
+    EXPECT_TRUE(prints(plant.prints)) << plant.prints << " is not reported: " << printed();
     EXPECT_TRUE(prints("again: ergocast simulate ")) << printed();
     EXPECT_TRUE(prints("--seeds 2")) << printed();
   }

@@ -160,7 +160,7 @@ TEST_F(TeamViewTest, AnAgentThatWaitsIsNamedWithTheProcessThatItWaitsFor) {
   AgentStatus waiting = status(1, 1, 5);
   waiting.waiting_for = 3;
   give(view_, waiting, at(0s));
-  EXPECT_EQ(condition(1, at(0s)), Condition::kOk) << "in lockstep everybody waits now and then";
+  EXPECT_EQ(condition(1, at(0s)), Condition::kOk) << "in lockstep every agent waits now and then";
   waiting.header.sequence = 2;
   give(view_, waiting, at(800ms));
   EXPECT_EQ(condition(1, at(800ms)), Condition::kWaiting);

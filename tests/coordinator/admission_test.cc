@@ -352,7 +352,7 @@ TEST(CoordinatorStarts, WhenTheQuorumIsThereAndNotBefore) {
   give(coordinator, hello_of(3), at(1s));
   const auto sent = only<MissionPart>(advance(coordinator, at(1s)));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-  ASSERT_FALSE(sent.empty()) << "and says so at once";
+  ASSERT_FALSE(sent.empty()) << "and reports it at once";
   EXPECT_EQ(sent[0].state, MissionState::kRunning);
 }
 

@@ -366,7 +366,7 @@ TEST(CoordinatorEnds, WakesUpNoLaterThanItsNextMessage) {
   advance(coordinator, at(10s));
   EXPECT_EQ(coordinator.next_wakeup(), at(10s + 250ms)) << "the team's status";
   give(coordinator, hello_of(0), at(10s));
-  EXPECT_LE(coordinator.next_wakeup(), at(10s)) << "a change is said at once";
+  EXPECT_LE(coordinator.next_wakeup(), at(10s)) << "a change is sent at once";
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(Leaving, AnAgentThatReportsItsEndIsAMemberNoLonger) {
   give(coordinator, farewell_of(1, 5), at(100ms));
   EXPECT_EQ(entry_of(coordinator, author_of(1)).active_until, 7);
   EXPECT_EQ(entry_of(coordinator, author_of(0)).active_until, -1);
-  EXPECT_TRUE(sent_revision(coordinator, at(100ms))) << "and all are told at once";
+  EXPECT_TRUE(sent_revision(coordinator, at(100ms))) << "and all receive it at once";
 }
 
 TEST(Leaving, ItsLastTickCountsEvenIfTheWorldHasNotSentItYet) {
@@ -181,7 +181,7 @@ TEST(Forgetting, IsNotRevokedByATakeover) {
   give(coordinator, flown_by(2000, 9), at(1s));
   only_0_speaks(coordinator, at(2s));
   advance(coordinator, at(2s));
-  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "nothing was heard of it";
+  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "nothing was received of it";
   reports(coordinator, author_of(1), at(3s));
   advance(coordinator, at(3s));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);

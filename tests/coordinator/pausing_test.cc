@@ -71,7 +71,7 @@ TEST(Pausing, ARecordingOfAPauseThatWasNotObeyedHasNoEffect) {
     advance(coordinator, at(second * 1s));
   }
   give(coordinator, pause, at(31s));
-  EXPECT_TRUE(coordinator.holds().empty()) << "somebody else chooses the moment";
+  EXPECT_TRUE(coordinator.holds().empty()) << "another process chooses the tick";
   EXPECT_EQ(coordinator.late_commands(), 1);
   pause.header.tick = coordinator.tick();
   give(coordinator, pause, at(31s));

@@ -99,7 +99,7 @@ TEST(Takeover, AsksTheAgentsFourTimesASecondOnceItKnowsTheRun) {
   for (int ms = 250; ms < 2250; ms += 10) {
     for (const Outgoing& outgoing : advance(coordinator, at(ms * 1ms))) {
       const auto* question = std::get_if<Hello>(&outgoing.message);
-      ASSERT_NE(question, nullptr) << "it has nothing else to say";
+      ASSERT_NE(question, nullptr) << "it has nothing else to send";
       EXPECT_EQ(outgoing.bus, Bus::kSwarm);
       EXPECT_EQ(question->header.run, kRun);
       EXPECT_EQ(question->header.sender, kCoordinator);
@@ -157,7 +157,7 @@ TEST(TakeoverIfRunning, LeavesAMissionToTheCoordinatorThatLeadsIt) {
   give(coordinator, alive(kCoordinatorLife), at(100ms));
   give(coordinator, memory_of(3), at(100ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(700ms))).empty())
-      << "and says nothing to its team";
+      << "and sends nothing to its team";
   EXPECT_TRUE(coordinator.finished());
   EXPECT_TRUE(coordinator.left());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);

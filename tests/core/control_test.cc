@@ -389,7 +389,7 @@ TEST(Command, PushesTwoOfAPairInOppositeWays) {
     EXPECT_NE(pushed(2, tick, true), pushed(0, tick, true));
     EXPECT_NE(pushed(1, tick, false), -pushed(0, tick, false));
     EXPECT_EQ(pushed(2, tick, true), pushed(2, tick, false))
-        << "the first of a pair is nobody's mirror";
+        << "the first of a pair mirrors no other";
   }
 }
 

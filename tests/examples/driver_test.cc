@@ -50,7 +50,7 @@ TEST(ExampleDriver, SendsThePlacesOfItsRobotsEachTick) {
   EXPECT_EQ(second.vehicles[1].answered_tick, 0);
   EXPECT_NEAR(second.vehicles[1].position_m.x(), 200.4, 1e-9);
   EXPECT_EQ(second.vehicles[1].velocity_mps, Eigen::Vector3d(4, 0, 0));
-  EXPECT_EQ(second.vehicles[0].position_m, first.vehicles[0].position_m) << "nobody moved it";
+  EXPECT_EQ(second.vehicles[0].position_m, first.vehicles[0].position_m) << "no driver moved it";
   EXPECT_EQ(second.missed_deadlines, 1);
 }
 

@@ -82,7 +82,7 @@ TEST_P(RobotsInPhysics, HaveNoContactsWhereTheyCrowd) {
   Mission prompt = mission_of(team(), 1, kDuration_s);
   prompt.separation.response_s = 0;
   const Contacts late = reported_outcome_of(team(), prompt, "lag ignored").contacts;
-  EXPECT_GE(late.robots, 50) << "the check is worth nothing if no lag touches anybody";
+  EXPECT_GE(late.robots, 50) << "the check is worth nothing if no lag touches a robot";
   EXPECT_GE(late.walls, 1);
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     const Outcome outcome =

@@ -201,7 +201,8 @@ TEST_F(DoctorOnHosts, ATunnelIsAnInterfaceToo) {
   lan_->route_multicast(0, "tun0");
   const Answer answer = alone(0, 1);
   EXPECT_EQ(answer.exit_code, 1);
-  EXPECT_EQ(answer.of("interface")["found"], "tun0 has no carrier") << "nobody holds its other end";
+  EXPECT_EQ(answer.of("interface")["found"], "tun0 has no carrier")
+      << "its other end is not connected";
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(Laboratory, TheViewErrorIsOfAgentsThatReachedTheEnd) {
     const TriedTeam tried = run_trial(faults, 1);
     EXPECT_EQ(tried.problem(), "");
     EXPECT_GT(tried.result.figures.view_error, 0)
-        << "what was said last, at different ticks, is not all";
+        << "the last reports, at different ticks, are not all";
     EXPECT_LT(tried.result.figures.view_error, 0.1);
   }
 }

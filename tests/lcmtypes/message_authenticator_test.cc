@@ -71,7 +71,7 @@ TEST(MessageAuthenticator, FingerprintsAreEqualForEqualKeysOnly) {
   MissionKey half = key_of(1);
   half.coordinator = key_of(2).coordinator;
   EXPECT_NE(MessageAuthenticator(half).fingerprint(), kMemberAuthenticator.fingerprint())
-      << "obeys somebody else";
+      << "obeys another sender";
 }
 
 TEST(MessageAuthenticator, WhatHasNoKeyOrAnotherIsRefusedByName) {

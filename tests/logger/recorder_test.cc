@@ -177,7 +177,7 @@ TEST(Gap, InLockstepARecorderThatWasCutOffAndGivenUpComesBackAndCountsTheRowsItL
   const Outbox sent = record.deliver(state_of(501), back);
   ASSERT_EQ(acks(sent).size(), 1U);
   EXPECT_NE(header_of(sent.front().message).incarnation, kLoggerLife)
-      << "as somebody whom it takes back";
+      << "as a logger that it takes back";
   record.deliver(state_of(502), back + seconds(1));
   record.deliver(state_of(503), back + seconds(2));
   EXPECT_EQ(number(record.trajectory_rows().back(), 0), 502);

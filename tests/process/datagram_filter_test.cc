@@ -88,7 +88,7 @@ TEST_F(DatagramFilter, InAFloodPassesOnAllThatIsNew) {
     for (std::int64_t later = 1; later < 50; ++later) {
       EXPECT_TRUE(passes(stamped(message, 0x700000001, 100 + later))) << channel_of(message);
       EXPECT_TRUE(passes(stamped(message, 2, later))) << channel_of(message);
-      EXPECT_TRUE(passes(stamped(message, 4, later))) << "a life that nobody repeats";
+      EXPECT_TRUE(passes(stamped(message, 4, later))) << "an incarnation that is not repeated";
       EXPECT_TRUE(passes(stamped(message, 3, 5000000000 + later)));
     }
   }

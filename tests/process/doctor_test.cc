@@ -144,7 +144,7 @@ TEST_F(Doctor, TwoOnOneHostReceiveEachOther) {
   Child other = start("ergocast", {"doctor", "--peer", "600", "--lcm-url", kUrl});
   ASSERT_TRUE(eventually([] {
     return text_of("/proc/net/udp").find(":5DC0 ") != std::string::npos;
-  })) << "nobody listens to port 24000";
+  })) << "no program listens to port 24000";
   // The other one listens to the bus before it tests; on a busy machine that takes a while.
   ASSERT_TRUE(eventually([&] {
     doctor({"--peer", "3"});

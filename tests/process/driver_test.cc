@@ -144,9 +144,9 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotReceivedAndRefuseASecondDriv
   EXPECT_TRUE(drivers[2]->child.running()) << drivers[2]->printed();
 
   drivers[2]->child.send(SIGKILL);
-  EXPECT_TRUE(eventually_all({0, 1, 3}, false)) << "nobody echoes for robot 2: the lease is over";
+  EXPECT_TRUE(eventually_all({0, 1, 3}, false)) << "no beacon echoes robot 2: the lease is over";
   hand("ergocast-example-driver", {"--id", "2"});
-  EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << "all are heard again";
+  EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << "all are received again";
 
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   EXPECT_EQ(wait_for(logger.child), 0) << logger.printed();

@@ -98,7 +98,7 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
   EXPECT_EQ(stop(), 4);
   EXPECT_TRUE(answered("no coordinator answers")) << output();
   EXPECT_TRUE(answered("ergocast stop --now")) << output();
-  ASSERT_TRUE(moves_on()) << "nobody obeys a stop in order but the coordinator";
+  ASSERT_TRUE(moves_on()) << "only the coordinator obeys a stop in order";
   ASSERT_EQ(stop({"--now"}), 0) << output();
   for (Program* program : all) {
     if (program == all[2]) continue;
@@ -121,7 +121,7 @@ TEST_F(StopCommand, NoVehicleMovesInTheTickAfterItWasReceived) {
   EXPECT_EQ(wait_for(all[0]->child), 0);
   expect_halt(false);
   EXPECT_EQ(recorded_rows(out()).rbegin()->first, kWaitedFor)
-      << "the tick nobody had answered in full";
+      << "the tick that was not answered in full";
 }
 
 TEST_F(StopCommand, EndsAMissionOfALauncherWhichCallsItStopped) {
@@ -210,7 +210,7 @@ TEST_F(StopCommand, InAnEmergencyStopsAllThatAreReceived) {
   EXPECT_TRUE(decided.prints("run 00000000000000b2: stopping all vehicles at once"));
   EXPECT_EQ(wait_for(decided.child), 4) << decided.printed();
   EXPECT_TRUE(decided.prints("none came from a world or driver"))
-      << "so nobody knows about vehicles";
+      << "so the state of vehicles is unknown";
 }
 
 // An attacker with recordings of many runs of the same key cannot hide another run behind them.

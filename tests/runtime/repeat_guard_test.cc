@@ -57,7 +57,7 @@ TEST_F(Guarded, AFloodIsCutAtTheNewestMessageOfTheRepeatedSender) {
   receive(sent(kWorld, 8, 1000), at(1s));
   EXPECT_TRUE(flood(sent(3, 7, 5), RepeatGuard::kMostRepeats, at(1s)));
   EXPECT_EQ(dropped_up_to(7), 90);
-  EXPECT_EQ(dropped_up_to(8), -1) << "nobody repeats the world";
+  EXPECT_EQ(dropped_up_to(8), -1) << "the world is not repeated";
 }
 
 TEST_F(Guarded, AFloodThatLastsIsCutAtEverNewerSequencesAndItsEndOpensAgain) {
@@ -76,7 +76,7 @@ TEST_F(Guarded, AFloodThatLastsIsCutAtEverNewerSequencesAndItsEndOpensAgain) {
   EXPECT_FALSE(receive(sent(3, 7, 9), at(2900ms)));
   EXPECT_TRUE(receive(sent(3, 7, 10), at(3010ms)));
   EXPECT_TRUE(guard_.flooded().empty());
-  EXPECT_FALSE(receive(sent(3, 7, 11), at(5000ms))) << "told once";
+  EXPECT_FALSE(receive(sent(3, 7, 11), at(5000ms))) << "reported once";
 }
 
 TEST_F(Guarded, RemembersNoMoreIncarnationsThanItsLimit) {

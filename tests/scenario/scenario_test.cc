@@ -99,7 +99,7 @@ TEST(Defaults, OnlyTheRecommendedLawLooksAhead) {
     EXPECT_EQ(good(small_with("law {", other)).mission().law.anticipation, 0) << other;
   }
   const ControlLaw law = good(small_with("law {", "law { anticipation: 0")).mission().law;
-  EXPECT_EQ(law.epsilon, 0.2) << "a relative one, where nobody looks ahead";
+  EXPECT_EQ(law.epsilon, 0.2) << "a relative one, where no agent looks ahead";
 }
 
 TEST(Defaults, AgentsWithoutDeadReckoningBroadcastEachTick) {

@@ -106,7 +106,7 @@ TEST(RestartedWorld, KnowsTheBodiesOfAgentsThatHaveLeft) {
     give(world, answer(0, tick, 300), at(1ms));
     give(world, answer(1, tick, 340), at(1ms));
   }
-  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "nobody has said where agent 2 stands";
+  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "no answer has the place of agent 2";
   EXPECT_EQ(only<Hello>(advance(world, at(150ms))).size(), 1u) << "it asks again";
   give(world, state_before(9, 0), at(151ms), 0);
   const WorldState state = state_after(world, at(152ms));
@@ -171,7 +171,7 @@ TEST(RestartedWorld, TakesPlacesAndVelocitiesAmongWallsFromAState) {
   for (const AgentId id : {0, 1}) {
     for (const Tick tick : {7, 8}) give(world, answer(id, tick, 300), at(1ms));
   }
-  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "nobody has said where all were";
+  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "no answer has all places";
   give(world, before, at(3ms), 0);
   const WorldState state = state_after(world, at(4ms));
   EXPECT_EQ(state.header.tick, 8);

@@ -49,7 +49,7 @@ TEST(WorldRefuses, TheCommandsOfAnEvictedAgentWhichStandsStill) {
   give(world, command_of(1, 1, {5, 5, 0}), at(0s));
   give(world, command_of(0, 1, {1, 0, 0}), at(0s));
   const WorldState state = state_after(world, at(0s));
-  EXPECT_EQ(state.header.tick, 2) << "nobody waits for it any more";
+  EXPECT_EQ(state.header.tick, 2) << "no process waits for it any more";
   EXPECT_EQ(applied(state, 1), Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(place(state, 1), mission.starts_m[1] + Eigen::Vector3d(1, 0, 0) * 0.1);
 }
@@ -132,7 +132,7 @@ TEST(WorldAdmits, ALateAgentAtItsOwnStart) {
   EXPECT_TRUE(advance(world, at(1ms)).empty()) << "the tick is the newcomer's too";
   const WorldState again = state_after(world, at(20ms));
   EXPECT_EQ(again.header.tick, 0);
-  EXPECT_EQ(again.roster_revision, 0) << "a tick is flown by one roster";
+  EXPECT_EQ(again.roster_revision, 0) << "a tick has one roster";
   ASSERT_EQ(again.vehicle_count, 2) << "which has to see where it is";
   EXPECT_EQ(place(again, 1), mission.starts_m[1]);
   give(world, command_of(1, 0, {0, 0, 0}), at(20ms));

@@ -185,7 +185,7 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
   EXPECT_EQ(states[0].header.tick, 9);
   EXPECT_EQ(place(states[0], 0), Eigen::Vector3d(301, 401, 0));
   EXPECT_EQ(applied(states[0], 0), Eigen::Vector3d(1, 0, 0)) << "in the step that led here";
-  EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
+  EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "no process knows better";
 }
 
 // Each agent may be the only one that received the former world's last tick, and no other process
@@ -300,8 +300,7 @@ TEST(WorldAsks, NoAgentThatAnswersAnotherProcess) {
       give(world, recording, at(0s));
     }
   }
-  EXPECT_TRUE(states_after(world, at(1ms)).empty())
-      << "what was said before does not say where it is";
+  EXPECT_TRUE(states_after(world, at(1ms)).empty()) << "earlier answers do not have its place";
   for (const Tick tick : {8, 9})
     give(world, command_from(0, tick, {301, 401, 0}, {0, 1, 0}), at(1s));
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 9);
@@ -315,7 +314,7 @@ TEST(WorldAsks, ForNoTicksOrPlacesThatCannotBe) {
   Command stranger = command_from(0, 50, {300, 400, 0}, {0, 0, 0});
   stranger.header.incarnation = 99;
   give(world, stranger, at(0s));
-  EXPECT_TRUE(states_after(world, at(2s)).empty()) << "nobody has answered";
+  EXPECT_TRUE(states_after(world, at(2s)).empty()) << "no agent has answered";
   nobody_has_moved(world, 1, at(3s));
   const WorldState state = state_after(world, at(3s));
   EXPECT_EQ(state.header.tick, 0);

@@ -102,7 +102,7 @@ TEST(WorldNumbers, CountsTheCommandsThatCannotBeTrue) {
   }
   EXPECT_EQ(world.refused(), 3);
   give(world, command_of(0, 1, {1, 0, 0}), at(0s));
-  EXPECT_EQ(world.refused(), 4) << "a tick that was not said";
+  EXPECT_EQ(world.refused(), 4) << "a tick that was not sent";
   EXPECT_TRUE(advance(world, at(0s)).empty()) << "unanswered";
   give(world, command_of(0, 0, {1, 0, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector3d(1, 0, 0));
@@ -141,7 +141,8 @@ TEST(WorldHalt, SetsAllVelocitiesToZeroAtOnceAndReportsIt) {
     }
     for (AgentId id : {0, 1}) give(world, command_of(id, 1, {9, 0, 0}), at(3ms));
     give(world, mission_part(1, MissionState::kEnded, roster_of(2), "later"), at(3ms));
-    EXPECT_EQ(place(state_after(world, at(1s))), place(before)) << "said again, and nobody moves";
+    EXPECT_EQ(place(state_after(world, at(1s))), place(before))
+        << "sent again, and no vehicle moves";
     EXPECT_FALSE(world.finished());
     advance(world, at(2100ms));
     EXPECT_TRUE(world.finished());

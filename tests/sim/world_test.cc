@@ -276,7 +276,7 @@ TEST(WorldEnd, TheMissionsEndAndItsProcessEndItAtOnce) {
   give(by_mission, mission_part(1, MissionState::kFailed, roster_of(1), "agent 3 is late"), at(0s));
   EXPECT_TRUE(by_mission.finished());
   EXPECT_EQ(by_mission.reason(), "agent 3 is late");
-  EXPECT_TRUE(advance(by_mission, at(1s)).empty()) << "and it moves nobody any more";
+  EXPECT_TRUE(advance(by_mission, at(1s)).empty()) << "and it moves no vehicle any more";
 
   World by_process = running_world(small_mission(1));
   by_process.stop("SIGTERM");

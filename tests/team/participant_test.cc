@@ -41,7 +41,7 @@ TEST(Participant, AcceptsWhatItsRoleReceivesOnThatBus) {
   EXPECT_FALSE(agent.accept(team_status(1), Bus::kSwarm, kCoordinator, at(0s))) << "not by agents";
   EXPECT_FALSE(participant(Role::kWorld).accept(state, Bus::kWorld, kWorld, at(0s)));
   EXPECT_EQ(agent.received(), 1);
-  EXPECT_EQ(agent.refused(), RefusalCounts{}) << "nobody is to blame";
+  EXPECT_EQ(agent.refused(), RefusalCounts{}) << "no sender is to blame";
 }
 
 TEST(Participant, EveryRoleReceivesTheMissionAndOnlyItsOwnTypes) {
@@ -152,7 +152,7 @@ TEST(Participant, KnowsMembersUnderTheirOwnNumbersOnly) {
 
 TEST(Participant, AnAgentIsSilentAfterThreeSeconds) {
   Participant coordinator = participant(Role::kCoordinator);
-  EXPECT_TRUE(coordinator.silent(author_of(1), at(0s))) << "never heard";
+  EXPECT_TRUE(coordinator.silent(author_of(1), at(0s))) << "never received";
   accept(coordinator, status_of(1, 1), at(10s));
   EXPECT_FALSE(coordinator.silent(author_of(1), at(12999ms)));
   EXPECT_TRUE(coordinator.silent(author_of(1), at(13s)));
@@ -177,7 +177,7 @@ TEST(Participant, ACoordinatorIsAliveByMissionWhereNothingElseIsReceived) {
   EXPECT_FALSE(agent.silent(kCoordinator, at(15999ms)));
   EXPECT_TRUE(agent.silent(kCoordinator, at(16s)));
   accept(agent, with_sequence(1, mission_part(0, MissionState::kWaiting, {})), at(16s));
-  EXPECT_TRUE(agent.silent(kCoordinator, at(16s))) << "said again by somebody";
+  EXPECT_TRUE(agent.silent(kCoordinator, at(16s))) << "sent again by another sender";
 }
 
 TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
