@@ -28,7 +28,7 @@ function slopeText(run) {
   return typeof run.slope === 'number' ? run.slope.toFixed(2).replace('-', '−') : '–';
 }
 
-// `live`: {rate, lost, authenticated, …} of a team that flies, or null.
+// `live`: {rate, lost, authenticated, …} of a running team, or null.
 export function showFacts(live) {
   const { run } = S,
     { mission, summary, metrics } = run,
