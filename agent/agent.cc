@@ -193,7 +193,7 @@ const Coefficients& Agent::foreseen_coverage() const {
 
 std::string Agent::blocked_reason() const {
   if (finished()) return "";
-  if (follower().revision() < 0) return "no coordinator is heard";
+  if (follower().revision() < 0) return "no coordinator answers";
   const std::string as_agent = "admitted as agent " + std::to_string(me_.id()) + ", waiting for ";
   if (phase() == AgentPhase::kWaiting) return as_agent + "the quorum";
   if (phase() == AgentPhase::kRunning) return tick() < 0 ? as_agent + "the world" : "";
@@ -203,7 +203,7 @@ std::string Agent::blocked_reason() const {
   });
   if (!taken) return "waiting to be admitted";
   return "waiting to be admitted: the roster has another agent " + std::to_string(requested_id_) +
-         ", which may have died and not be missed yet";
+         ", whose end the coordinator may not have noticed yet";
 }
 
 }  // namespace ergocast

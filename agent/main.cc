@@ -40,8 +40,8 @@ class EncodingLog {
     if (refused == 0 || reported_) return;
     reported_ = true;
     spdlog::warn(
-        "somebody sends coverage in another contribution_encoding than the plan says, and it is "
-        "refused: within a run all agents use the plan's");
+        "coverage in another contribution_encoding than the plan's arrives and is refused: all "
+        "agents of a run must use the plan's");
   }
 
  private:
@@ -58,8 +58,8 @@ class BeaconLog {
       spdlog::info("beacons of teammates overtake each other; overtaken beacons are ignored");
     if (beacons->from_the_future() > 0 && !std::exchange(future_reported_, true))
       spdlog::warn(
-          "a teammate's beacon answers to one that this agent has not sent yet, and is refused: "
-          "does another process send beacons under this agent's id?");
+          "a teammate's beacon answers one that this agent has not sent yet, and is refused: does "
+          "another process send beacons under this agent's id?");
   }
 
  private:
@@ -82,7 +82,7 @@ int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) 
   spdlog::info("joining on {}", node.url.base());
 
   run_core(
-      agent, transport, signals, [&] { agent.leave("told to stop by a signal"); },
+      agent, transport, signals, [&] { agent.leave("stopped by a signal"); },
       [&] {
         transport.set_run(agent.run());
         agent.note_loop_lag(lag.take_s());

@@ -148,7 +148,7 @@ std::optional<MissionOver> MissionRun::advance(Participant& me, Instant now, Out
   }
   if (!me.cut_off(step_.tick, now)) return std::nullopt;
   return MissionOver{true,
-                     "neither the world nor the coordinator can be heard, and the mission must be "
+                     "nothing arrives from the world or the coordinator, and the mission must be "
                      "over by now: check this host's network"};
 }
 

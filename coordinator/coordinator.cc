@@ -179,7 +179,7 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
     case MissionSearch::Outcome::kLedByOther:
       return leave(other_coordinator_.why_not_ours(), now);
     case MissionSearch::Outcome::kNoAnswer:
-      leave("no agent on this URL knows a mission that could be taken over", now);
+      leave("no agent on this URL knows a mission to take over", now);
       break;
     case MissionSearch::Outcome::kNone:
       break;

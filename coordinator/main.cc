@@ -41,7 +41,7 @@ class RosterLog {
   void look_at_coverage(const RosterEntry& entry) {
     if (forgotten_.contains(entry.author) == entry.forgotten) return;
     entry.forgotten ? void(forgotten_.insert(entry.author)) : void(forgotten_.erase(entry.author));
-    spdlog::warn("what agent {} ({}) covered {} from tick {} on", entry.author.agent,
+    spdlog::warn("coverage of agent {} ({}) {} from tick {} on", entry.author.agent,
                  to_hex(entry.author.incarnation),
                  entry.forgotten ? "is forgotten" : "counts again", entry.since_tick);
   }
@@ -58,7 +58,7 @@ class VersionMismatchLog {
     for (const auto& mismatch : coordinator.version_mismatches()) {
       if (!seen_.insert(mismatch).second) continue;
       const auto& [host, theirs] = mismatch;
-      spdlog::warn("agent on {} runs version {}, this mission is flown by {}: install {} there",
+      spdlog::warn("agent on {} runs version {}, this mission is run with {}: install {} there",
                    host, theirs, version(), version());
     }
   }
@@ -132,7 +132,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   VersionMismatchLog version_mismatches;
   UnknownKindLog unknown_kinds;
   MissionLog mission;
-  const auto stop = [&] { coordinator.end(false, "the coordinator was told to stop", now()); };
+  const auto stop = [&] { coordinator.end(false, "a signal stopped the coordinator", now()); };
   run_core(coordinator, transport, signals, stop, [&] {
     transport.set_run(coordinator.run());
     if (const Mission* flown = coordinator.mission()) {

@@ -72,7 +72,7 @@ std::optional<std::string> MissionSearch::why_not(const std::vector<std::byte>& 
   if (known.plan_problem()) return run + ": " + *known.plan_problem();
   if (!plan.empty() && known.plan() != plan) {
     return run + " of another plan (" + known.mission()->name +
-           ") is flying on this URL: choose another URL, or wait for its end";
+           ") is running on this URL: choose another URL, or wait for its end";
   }
   if (takeover_ == Takeover::kIfRunning && other.leads(signs)) return other.why_not_ours();
   return std::nullopt;

@@ -82,7 +82,7 @@ std::optional<OverdueTick> TickWatch::overdue(const Timing& timing, Members& mem
   }
   if (world_heard_)
     return OverdueTick{nullptr, "the world has not gone beyond tick " + tick + since};
-  return OverdueTick{nullptr, "no world was heard" + since + ": is one running on this URL?"};
+  return OverdueTick{nullptr, "no world answered" + since + ": is one running on this URL?"};
 }
 
 }  // namespace ergocast

@@ -230,7 +230,7 @@ void Invariants::wakeup(double t_s, const std::string& who, bool in_the_past) {
 void Invariants::gave_up_logger(double t_s, std::optional<Tick> acknowledged, Tick tick) {
   if (!acknowledged || tick - *acknowledged > kRecordWindowTicks) return;
   violate(t_s, Invariant::kHeardLoggerIsKept, "the world",
-          text("gives up at tick ", tick, " a logger whose word of tick ", *acknowledged,
+          text("gives up at tick ", tick, " a logger whose message of tick ", *acknowledged,
                " has reached it"));
 }
 

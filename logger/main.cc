@@ -59,11 +59,12 @@ std::variant<Past, std::string> read_past(const fs::path& folder, std::vector<st
   const bool known = std::holds_alternative<Mission>(decode_plan(past.plan));
   if (!known && (begun || !past.plan.empty())) {
     return (folder / kPlanFile).string() +
-           ": missing or not readable, so nobody can tell which mission's "
-           "record this is; copy it back, or choose another folder with --out";
+           ": missing or not readable, so it is not known which mission's record this is; copy it "
+           "back, or choose another folder with --out";
   }
   if (damage)
-    spdlog::warn("{}; the record goes on in a fresh segment, with what stands before", *damage);
+    spdlog::warn("{}; the record goes on in a new segment, and the rows before the damage are kept",
+                 *damage);
   return past;
 }
 
@@ -129,8 +130,7 @@ class RunLogger {
     if (events_.removed() > 0 && !removal_reported_) {
       removal_reported_ = true;
       spdlog::warn(
-          "the event log has reached its limit: from now on its oldest segment goes for each new "
-          "one");
+          "the event log has reached its limit: from now on each new segment replaces the oldest");
     }
   }
 
@@ -175,7 +175,7 @@ class RunLogger {
     stuck_ = problem.has_value();
     if (stuck_) {
       ++interruptions_;
-      spdlog::error("{}; the team goes on, and the record will once it can be written again",
+      spdlog::error("{}; the team goes on, and the record goes on once it can be written again",
                     *problem);
     } else {
       spdlog::warn("the record can be written again and goes on at tick {}", recorder_.next_row());
@@ -260,7 +260,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
   TrafficWatch watch(transport);
   spdlog::info("recording {} into {}", node.url.base(), folder.string());
 
-  const auto stop = [&] { recorder.stop("the logger was told to stop"); };
+  const auto stop = [&] { recorder.stop("a signal stopped the logger"); };
   run_core(recorder, transport, signals, stop, [&] {
     transport.set_run(recorder.run());
     if (const auto& mission = recorder.follower().mission()) {
@@ -273,8 +273,8 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
   if (logger.wrong_mission()) {
     logger.discard();
     return refuse(kExitBadInput, folder.string() +
-                                     ": the record here is of another mission than the "
-                                     "one that is heard; choose another folder with --out");
+                                     ": the record here is of another mission than the one "
+                                     "received; choose another folder with --out");
   }
   if (const auto& problem = recorder.follower().plan_problem()) {
     logger.discard();

@@ -131,7 +131,7 @@ void Recorder::advance(Instant now, Outbox& out) {
   const bool patience_ends = ending_.since && now - std::max(*ending_.since, progress_) >= kLinger;
   if (patience_ends || everybody_left(now)) close();
   if (abandoned(now)) {
-    stop("neither the world nor the coordinator can be heard, and the mission must be over by now");
+    stop("nothing arrives from the world or the coordinator, and the mission must be over by now");
   }
   if (me_.knows_mission()) acknowledge(now, out);
   if (ending_.finished && follower().over()) {

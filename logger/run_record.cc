@@ -48,9 +48,9 @@ RunRecord::RunRecord(fs::path folder, int segment)
     : folder_(std::move(folder)), segment_(segment) {}
 
 RunRecord::Created RunRecord::create(const fs::path& folder) {
-  return begin(folder, 0,
-               "there is already a record; go on with it by --resume, or choose another folder "
-               "with --out");
+  return begin(
+      folder, 0,
+      "there is already a record; continue it with --resume, or choose another folder with --out");
 }
 
 RunRecord::Created RunRecord::go_on(const fs::path& folder) {

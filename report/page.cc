@@ -91,8 +91,8 @@ Json conventions(const Mission& mission, bool free_domain) {
   };
   if (!mission.domain.planar()) {
     add("view",
-        "slices are what the modes say of their plane; xy, xz and yz are averages along the third "
-        "axis");
+        "slices show the sum of the modes in their plane; xy, xz and yz are averages along the "
+        "third axis");
   }
   if (free_domain) {
     add("free domain",

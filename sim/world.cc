@@ -186,7 +186,7 @@ void World::advance(Instant now, Outbox& out) {
   if (finished_) return publish_final_state(out);
   if (!started_) return ask_for_mission(now, out);
   if (!over_since_ && me_.cut_off(tick_, now)) {
-    return finish("the mission must be over: no agent and no coordinator is heard");
+    return finish("the mission must be over: no agent and no coordinator answers");
   }
   if (question_.since) ask_team(now, out);
   if (question_.since) return;

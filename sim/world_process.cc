@@ -93,7 +93,7 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
   spdlog::info("waiting for a mission on {}", node.url.base());
 
   bool logger_lost = false, begun = false;
-  const auto stop = [&] { world.stop("the world was told to stop"); };
+  const auto stop = [&] { world.stop("a signal stopped the world"); };
   run_core(world, transport, signals, stop, [&] {
     transport.set_run(world.run());
     if (const auto& mission = world.follower().mission()) {
@@ -105,7 +105,8 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
     other_worlds.look(now());
     if (world.begun_at() && !begun) spdlog::info("moving from tick {} on", *world.begun_at());
     begun = world.begun_at().has_value();
-    if (world.logger_lost() && !logger_lost) spdlog::warn("the logger is silent: going on without");
+    if (world.logger_lost() && !logger_lost)
+      spdlog::warn("the logger is silent: the mission goes on without it");
     logger_lost = world.logger_lost();
   });
   if (world.failed()) {

@@ -459,7 +459,7 @@ TEST(Sources, BeginWithTheirLicenceAndASentenceOfTheirOwn) {
     std::string licence, sentence;
     std::getline(file, licence) && std::getline(file, sentence);
     EXPECT_EQ(licence, "// SPDX-License-Identifier: BSD-3-Clause") << path;
-    EXPECT_TRUE(sentence.starts_with("// ")) << path << ": say what the file is about";
+    EXPECT_TRUE(sentence.starts_with("// ")) << path << ": write what the file is about";
     sentences.push_back(sentence);
   }
   std::sort(sentences.begin(), sentences.end());
@@ -475,7 +475,7 @@ TEST(Sources, ModulesBeginWithTheirLicenceAndASentenceOfTheirOwn) {
     std::getline(file, licence) && std::getline(file, sentence);
     EXPECT_EQ(licence, "// SPDX-License-Identifier: BSD-3-Clause") << name;
     EXPECT_TRUE(sentence.starts_with("// ") && sentence.ends_with('.'))
-        << name << ": say on this line what the module is";
+        << name << ": write on this line what the module is";
     EXPECT_TRUE(sentences.insert(sentence).second) << name << ": " << sentence;
   }
 }

@@ -41,9 +41,9 @@ void check_single_roles(const Hosts& hosts, const std::string& file,
   const auto drivers = names_with(hosts, &DeployHost::driver);
   at_most_one("sim", worlds);
   if (worlds.empty() && drivers.empty()) {
-    problems.push_back(
-        {file, "nobody moves the agents",
-         "give the role sim to one host, or driver to those whose own program does"});
+    problems.push_back({file, "no host moves the vehicles",
+                        "give the role sim to one host, or the role driver to each host whose own "
+                        "program moves vehicles"});
   }
   if (!worlds.empty() && !drivers.empty()) {
     problems.push_back(
@@ -87,7 +87,7 @@ std::string roles_of(const DeployHost& host) {
   if (host.coordinator) roles.push_back("coordinator");
   if (host.logger) roles.push_back("logger");
   if (host.sim) roles.push_back("simulated world");
-  if (host.driver) roles.push_back("driver (not ours)");
+  if (host.driver) roles.push_back("driver (your program)");
   std::string ids;
   for (const int id : host.agents) ids += ' ' + std::to_string(id);
   if (!ids.empty()) roles.push_back((host.agents.size() == 1 ? "agent" : "agents") + ids);

@@ -146,8 +146,8 @@ void note_drivers(const Mission& mission, const std::vector<DeployHost>& hosts, 
   const bool driven = std::ranges::any_of(hosts, &DeployHost::driver);
   if (!driven || !uses_beacons(mission)) return;
   std::fprintf(stderr,
-               "note: robots are driven by a program each, which is yours and which nothing here "
-               "starts: beside agent N start it as ergocast-example-driver --id N --lcm-url '%s'\n",
+               "note: each robot needs a driver of your own, which these files do not start: start "
+               "it beside agent N, as ergocast-example-driver --id N --lcm-url '%s'\n",
                url.base().c_str());
 }
 
@@ -205,10 +205,9 @@ void add_deploy(CLI::App& app, Action& action) {
       ->transform(shipped_scenario())
       ->type_name("FILE");
   command
-      ->add_option(
-          "--hosts", options->hosts,
-          "One host a line: name [user@computer] roles, which are coordinator, logger, sim, "
-          "driver (of vehicles, not ours), agent N… and agents=COUNT")
+      ->add_option("--hosts", options->hosts,
+                   "One host a line: name [user@computer] roles, which are coordinator, logger, "
+                   "sim, driver (your program that moves vehicles), agent N… and agents=COUNT")
       ->required()
       ->type_name("FILE");
   command

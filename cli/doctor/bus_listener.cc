@@ -118,7 +118,7 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
             "Every process of a team would parse all of it and refuse it.",
             "--lcm-url '" + other.base() + "'   # on every host"};
   }
-  return {"swarm bus", Level::kOk, "nobody speaks on " + where, "", ""};
+  return {"swarm bus", Level::kOk, "no messages on " + where, "", ""};
 }
 
 Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& authenticator,

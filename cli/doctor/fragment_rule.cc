@@ -134,7 +134,7 @@ Finding fragment_rule_finding(const LcmUrl& url, const std::optional<std::string
                         command_that_loads(url, rules)};
   if (!ruleset) {
     Finding unknown = missing;
-    unknown.found = "only root can tell whether a rule drops them (nft list ruleset)";
+    unknown.found = "only root can see whether a rule drops them (nft list ruleset)";
     return unknown;
   }
   try {

@@ -75,7 +75,7 @@ Finding receive_buffer_finding(const LcmUrl& url, const ReceiveBuffer& buffer) {
 
 Finding fragments_finding(const std::filesystem::path& proc) {
   const auto bytes = number_in(proc / "sys/net/ipv4/ipfrag_high_thresh");
-  if (!bytes) return {"fragments", Level::kOk, "the kernel does not tell its limit", "", ""};
+  if (!bytes) return {"fragments", Level::kOk, "the kernel does not report its limit", "", ""};
   const std::string found = std::to_string(*bytes) + " bytes for fragments that wait";
   if (*bytes >= kFragmentBytes) return {"fragments", Level::kOk, found, "", ""};
   return {

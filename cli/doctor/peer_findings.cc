@@ -22,7 +22,8 @@ bool only_large_are_lost(const Loss& loss) {
 }
 
 Finding one_way(const LcmUrl& url, const Peer& peer) {
-  return {"peer " + peer.host, Level::kProblem, "one-way: heard here, but does not hear this host",
+  return {"peer " + peer.host, Level::kProblem,
+          "one-way: received here, but does not receive this host",
           "What this host sends is lost on the way to " + peer.address +
               ": a wrong route here, a "
               "firewall there, or a switch between that does not pass the group on.",
@@ -62,7 +63,7 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
   if (!peer.to_it) {
     if (peer.judged()) return one_way(url, peer);
     finding.level = Level::kNote;
-    finding.found = "heard too briefly to tell whether it receives this host";
+    finding.found = "received too briefly to know whether it receives this host";
     finding.why = "The tests on the two hosts hardly overlapped.";
     finding.remedy = here_again(url) + "   # on both, at about the same time";
     return finding;
@@ -71,7 +72,7 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
     return mtu_too_small(peer);
   }
   const double worst = std::max(peer.from_it.percent(), peer.to_it->percent());
-  finding.found = "each hears the other";
+  finding.found = "each receives the other";
   if (peer.version != version) {
     finding.level = Level::kWarning;
     finding.found += ", but it has version " + peer.version + " and this host " + version;
@@ -99,7 +100,7 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
 
 Finding nobody(const LcmUrl& url, const PeerTest& test) {
   return {"peers", Level::kProblem,
-          "nobody was heard (" + std::to_string(test.sent) + " probes sent)",
+          "no other host was received (" + std::to_string(test.sent) + " probes sent)",
           "Either no other host ran this test at the same time with the same group and port, or "
           "what it sent did not arrive. Only the other host knows whether it received this one.",
           here_again(url) +
@@ -124,7 +125,7 @@ Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::strin
   if (test.only_received_by_others > 0) {
     findings.push_back(
         {"peers", Level::kProblem,
-         std::to_string(test.only_received_by_others) + " more heard by others, but not here",
+         std::to_string(test.only_received_by_others) + " more received by others, but not here",
          "One-way towards this host: other hosts receive one that it does not receive.",
          "tcpdump -ni any udp port " + std::to_string(url.base_port) + "   # here: what arrives?"});
   }

@@ -122,8 +122,8 @@ Finding ports_finding(const LcmUrl& url, const std::vector<SocketOwner>& holders
   }
   LcmUrl other = url;
   if (free_port) other.base_port = *free_port;
-  const std::string elsewhere =
-      free_port ? "--lcm-url '" + other.base() + "'   # on every host" : "ss -ulpn   # who is it?";
+  const std::string elsewhere = free_port ? "--lcm-url '" + other.base() + "'   # on every host"
+                                          : "ss -ulpn   # which program is it?";
   if (!refusal.empty()) {
     return {
         "ports", Level::kProblem, refusal + (holders.empty() ? "" : "; " + described(holders)),

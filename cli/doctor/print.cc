@@ -55,7 +55,7 @@ std::string verdict(const Findings& findings) {
   return counted(count(Level::kProblem), "problem") + ", " +
          counted(count(Level::kWarning), "warning") + ", " + counted(count(Level::kNote), "note") +
          "; " + std::to_string(count(Level::kOk)) + " of " + std::to_string(findings.size()) +
-         " checks found nothing to say.\n";
+         " checks found nothing to report.\n";
 }
 
 std::string loss_text(const Loss& loss) {
@@ -118,7 +118,8 @@ std::string text_of(const LcmUrl& url, Findings findings, const Look& look) {
 std::string text_of(const std::vector<Peer>& peers) {
   if (peers.empty()) return "";
   std::vector<std::vector<std::string>> rows = {
-      {"host", "address", "hears us", "lost from it %", "lost to it %", "round trip ms", "twice"},
+      {"host", "address", "receives us", "lost from it %", "lost to it %", "round trip ms",
+       "twice"},
       {"", "", "", "short / long", "short / long", "p50 / p99 / max", ""}};
   for (const Peer& peer : peers) {
     rows.push_back({peer.host, peer.address,

@@ -60,7 +60,7 @@ std::optional<bool> clock_is_synchronised() {
 }
 
 Finding clock_finding(std::optional<bool> synchronised) {
-  if (!synchronised) return {"clock", Level::kOk, "the kernel does not tell", "", ""};
+  if (!synchronised) return {"clock", Level::kOk, "the kernel does not report it", "", ""};
   if (*synchronised) return {"clock", Level::kOk, "synchronised", "", ""};
   return {"clock", Level::kNote, "not synchronised",
           "Ergocast itself needs no common clock; only the times in logs of several hosts then do "

@@ -118,8 +118,8 @@ Finding ttl_finding(const LcmUrl& url, bool several_hosts) {
   LcmUrl wider = url;
   wider.ttl = 1;
   return {"TTL", several_hosts ? Level::kProblem : Level::kNote, found + ": never leaves this host",
-          "Right for a team on one host. On several, nobody hears the others without ttl=1 in the "
-          "URL, on every host.",
+          "Right for a team on one host. On several, no host receives the others without ttl=1 in "
+          "the URL, on every host.",
           "--lcm-url '" + wider.base() + "'"};
 }
 

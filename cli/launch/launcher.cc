@@ -126,7 +126,8 @@ void Launcher::note_forgetting(Stage stage) {
     const bool lives_or_left = !process.end_noted || process.child->exit_code() == kExitDone;
     return process.role == Role::kAgent && lives_or_left;
   });
-  if (forgot_) display_.print("no agent is left: those that follow do not know what was covered");
+  if (forgot_)
+    display_.print("no agent is left: agents started from now on do not know what was covered");
 }
 
 void Launcher::take_note(Process& process, Instant now, Stage stage) {
@@ -192,8 +193,7 @@ void Launcher::try_again(Process& process, Instant now, Stage stage, bool execut
   if (process.without_program_since && now - *process.without_program_since >= kLaunchPatience) {
     return give_up(process, stage);
   }
-  if (process.refusals == 0)
-    display_.print(process.name + ": is started as soon as that is possible");
+  if (process.refusals == 0) display_.print(process.name + ": will be started as soon as possible");
   process.restart_at = now + restart_delay(process.restarts + process.refusals++);
 }
 
@@ -271,7 +271,9 @@ std::string Launcher::losses() const {
   for (const Process& process : processes_) {
     if (process.given_up && failure_ != loss_of(process)) losses += "; " + loss_of(process);
   }
-  if (forgot_) losses += "; all agents had stopped at once and forgot what was covered before";
+  if (forgot_)
+    losses +=
+        "; all agents had stopped at once, and the new ones did not know what was covered before";
   return losses;
 }
 

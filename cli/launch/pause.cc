@@ -6,8 +6,8 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/watch/find_run.h"
 #include "cli/launch/team_command.h"
+#include "cli/watch/find_run.h"
 #include "runtime/bus/random_identity.h"
 
 namespace ergocast::cli {
@@ -70,7 +70,7 @@ class Pausing : public TeamCommand {
       if (!listen()) return interrupted();
       if (team().over()) return ended_before();
     }
-    std::printf("paused at %s: `ergocast resume` lets the mission go on\n",
+    std::printf("paused at %s: `ergocast resume` continues the mission\n",
                 mission_time(named()).c_str());
     return kExitDone;
   }
@@ -83,7 +83,7 @@ class Pausing : public TeamCommand {
   }
 
   int ended_before() const {
-    return report_error(kExitFailed, "the mission has ended before: " + team().reason());
+    return report_error(kExitFailed, "the mission had already ended: " + team().reason());
   }
 
   /// The coordinator sends MISSION once a second; an agent repeats it at once.
@@ -113,19 +113,21 @@ class Pausing : public TeamCommand {
     return kExitDone;
   }
   int refused() const {
-    return report_error(kExitFailed,
-                        team().over() ? "the mission is over: " + team().reason()
-                        : team().knows_mission()
-                            ? "the mission has not begun: it waits for its quorum, and nobody moves"
-                            : "the mission was not heard: is its coordinator running?");
+    return report_error(
+        kExitFailed,
+        team().over() ? "the mission is over: " + team().reason()
+        : team().knows_mission()
+            ? "the mission has not begun: it waits for its quorum, and no vehicle moves"
+            : "the mission was not received: is its coordinator running?");
   }
   std::string why_not() const {
     if (!team().coordinator_seen())
-      return "no coordinator is heard, and nobody else names a tick: start one with "
+      return "no coordinator answers, and only a coordinator names the tick: start one with "
              "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
     if (team().holds().size() == kMaxHolds && pauses_)
-      return "a mission can be paused " + std::to_string(kMaxHolds) + " times, and it was";
-    return "the coordinator names no tick: it may have another key, or hear no world";
+      return "a mission can be paused " + std::to_string(kMaxHolds) +
+             " times, and this one has been";
+    return "the coordinator names no tick: it may have another key, or receive no world";
   }
 
   const bool pauses_;

@@ -14,12 +14,13 @@
 #include "cli/commands.h"
 #include "cli/launch/launcher.h"
 #include "cli/launch/mission_watch.h"
-#include "cli/watch/page_process.h"
-#include "cli/watch/progress.h"
-#include "cli/watch/run_registry.h"
 #include "cli/mission_options.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
+#include "cli/watch/page_process.h"
+#include "cli/watch/progress.h"
+#include "cli/watch/run_registry.h"
+#include "cli/watch/serve_page.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "modes/table_file.h"
@@ -31,7 +32,6 @@
 #include "runtime/process/node.h"
 #include "runtime/process/signals.h"
 #include "runtime/record/sealed_file.h"
-#include "cli/watch/serve_page.h"
 
 namespace ergocast::cli {
 namespace {
@@ -64,7 +64,8 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, 
     transport.deliver_until(now() + (over ? kAttendPeriodAtEnd : kAttendPeriod), signals.fd());
     if (const int count = signals.take(); count > 0) {
       asked += count;
-      if (asked == 1) display.print("ending the mission in order; once more to end it now");
+      if (asked == 1)
+        display.print("ending the mission in order; a second Ctrl-C or SIGTERM ends it at once");
       if (asked == 2) launcher.escalate(1);
       if (asked > 2) launcher.escalate(2);
       mission.stop(false, "Ctrl-C or SIGTERM");
@@ -74,10 +75,10 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, 
     if (page != nullptr) page->attend(now());
     // Without a coordinator no other process detects an overdue tick.
     if (const auto overdue = mission.overdue(now()); overdue && launcher.leaderless()) {
-      launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
+      launcher.fail(*overdue + ", and no coordinator is left to end the mission");
     }
     if (mission.deserted(now()) && launcher.leaderless()) {
-      launcher.fail("no agent flies any more, and no coordinator is left to admit one");
+      launcher.fail("no agent runs any more, and no coordinator is left to admit one");
     }
     if (launcher.failure()) mission.stop(true, *launcher.failure());
     mission.repeat(transport, now(), launcher.led());

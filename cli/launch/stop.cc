@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/watch/find_run.h"
 #include "cli/launch/stop_request.h"
 #include "cli/launch/team_command.h"
+#include "cli/watch/find_run.h"
 
 namespace ergocast::cli {
 namespace {
@@ -84,7 +84,7 @@ class Stopping : public TeamCommand {
     Request& request = at->second;
     if (is_new) {
       std::printf("run %s: %s\n", to_hex(run).c_str(),
-                  options_.at_once ? "telling everybody to stand still"
+                  options_.at_once ? "stopping all vehicles at once"
                                    : "asking the coordinator to end the mission");
       std::fflush(stdout);
     }
@@ -114,10 +114,10 @@ class Stopping : public TeamCommand {
       worst = std::max(worst, *request->second.code);
     }
     if (!crowded_) return worst;
-    return report_error(kExitFailed, "more than " + std::to_string(kMostRuns) +
-                                         " runs were heard, recordings of former ones perhaps; all "
-                                         "were told, but not all were seen to obey: say it again "
-                                         "with --run-id");
+    return report_error(kExitFailed,
+                        "more than " + std::to_string(kMostRuns) +
+                            " runs were found, perhaps with recordings among them; the stop was "
+                            "sent to all, but not all were seen to obey: repeat it with --run-id");
   }
 
   std::vector<std::string> awaited(const MonitoredRun& team) const {
@@ -135,7 +135,7 @@ class Stopping : public TeamCommand {
         options_.at_once ? team.knows_roster() || waited >= kLeastInsistence : team.over();
     if (obeyed && left.empty()) return conclude(team);
     if (waited >= kLongest) {
-      return fail(team, "still heard: " + listed(left) +
+      return fail(team, "still running: " + listed(left) +
                             (options_.at_once ? ": end them on their hosts"
                                               : ": ergocast stop --now stops them at once"));
     }
@@ -146,7 +146,7 @@ class Stopping : public TeamCommand {
   std::optional<int> why_not_in_order(const MonitoredRun& team, Instant::duration waited) const {
     if (!team.coordinator_seen() && waited >= kListeningTime) {
       return fail(team,
-                  "no coordinator is heard, and nobody else ends a mission in order: "
+                  "no coordinator answers, and only a coordinator ends a mission in order: "
                   "ergocast stop --now stops the team at once");
     }
     if (waited >= kAnswerPatience) {
@@ -164,7 +164,7 @@ class Stopping : public TeamCommand {
     const bool at_once = options_.at_once;
     const char* obeyed = !at_once ? (team.over() ? "the coordinator has ended the mission"
                                                  : "the coordinator has not answered yet")
-                         : !team.world_seen()  ? "no world or driver is heard yet"
+                         : !team.world_seen()  ? "no world or driver answers yet"
                          : team.stands_still() ? "all vehicles stand still"
                                                : "vehicles still move";
     const auto left = awaited(team);
@@ -177,16 +177,15 @@ class Stopping : public TeamCommand {
     // A mission that never started has moved no vehicle.
     if (options_.at_once && !team.world_seen() && team.tick() > 0) {
       return fail(team,
-                  "nobody is heard any more, but no world or driver was heard "
-                  "before either: whether the vehicles stand still is not known: "
-                  "look at them");
+                  "no messages arrive any more, and none came from a world or driver: it is "
+                  "unknown whether the vehicles stand still: look at them");
     }
     if (options_.at_once && !team.stands_still()) {
       return fail(team, "the world is silent, and in its last state, of " +
                             team.mission_time(team.tick()) + ", vehicles still move: look at them");
     }
     const auto lost = team.lost(now());
-    const std::string but = lost.empty() ? "" : "; " + listed(lost) + " did not say so";
+    const std::string but = lost.empty() ? "" : "; " + listed(lost) + " did not confirm it";
     std::printf("run %s: %s at %s: %s%s\n", to_hex(team.run()).c_str(),
                 options_.at_once ? "stopped" : "the mission has ended",
                 team.mission_time(team.tick()).c_str(),

@@ -68,8 +68,8 @@ int TeamCommand::nobody() const {
   if (replay_ == 0) return report_error(kExitFailed, why_nobody(options_, *transport_));
   return report_error(
       kExitFailed,
-      "what is heard on " + options_.url.base() + " is a replay of run " + to_hex(replay_) +
-          ": no team flies, and nobody can obey. Ctrl-C ends `ergocast replay` where it runs");
+      "the messages on " + options_.url.base() + " are a replay of run " + to_hex(replay_) +
+          ": no team is there to obey. Ctrl-C ends `ergocast replay` in its own terminal");
 }
 
 }  // namespace ergocast::cli

@@ -188,7 +188,7 @@ std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Missi
     if (lacks_a_map(*problems)) {
       return {hash,
               {kScenarioFile, "", problem, ""},
-              {kTargetDensityFile, "", "its maps are gone", ""}};
+              {kTargetDensityFile, "", "its maps are missing", ""}};
     }
     return {hash, {kScenarioFile, "", "", problem + '\n'}};
   }

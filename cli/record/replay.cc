@@ -186,9 +186,10 @@ int replay(const ReplayOptions& options) {
   if (const auto* problem = std::get_if<std::string>(&taken))
     return report_error(kExitUnavailable, *problem);
   if (std::get<bool>(taken)) {
-    return report_error(kExitBadInput, url.base() +
-                                           ": a team or another replay sends here; leave "
-                                           "--lcm-url away, or give another port");
+    return report_error(
+        kExitBadInput,
+        url.base() +
+            ": a team or another replay sends here; leave --lcm-url out, or give another port");
   }
   return play(options, url, *mission, signals);
 }

@@ -38,7 +38,7 @@ const ReplayedMessage* ReplaySource::refuse(Refusal why) {
   if (why == Refusal::kTag && !authenticator_.keyed())
     remedy = "the run had a mission key, or the file is damaged: give --key-file";
   if (why == Refusal::kTag && authenticator_.keyed()) remedy = "the run had another mission key";
-  if (why == Refusal::kUnkeyed) remedy = "the run had no mission key: leave --key-file away";
+  if (why == Refusal::kUnkeyed) remedy = "the run had no mission key: leave --key-file out";
   problem_ = reader_.place() + ": not a message of this run (" + std::string(to_string(why)) +
              "); " + remedy;
   return nullptr;

@@ -93,8 +93,8 @@ std::string what_cannot_be_repeated(const Json& summary, const Mission& mission)
     }
     const auto switched = agent.value("coverage_switched_at", nlohmann::ordered_json());
     if (!switched.is_null()) {
-      return "what " + who +
-             " covered did not count for a while: it was last forgotten or remembered at tick " +
+      return "coverage of " + who +
+             " did not count for a while: it was last forgotten or counted again at tick " +
              switched.dump();
     }
   }
@@ -117,7 +117,7 @@ std::string difference_of(const TrajectoryComparison& comparison, const fs::path
   const bool complete = summary.value("result", Json()) == "done";
   if (!comparison.same()) return comparison.difference();
   if (comparison.recorded_over() && complete) {
-    return file + ": its run is done, says the summary, but it ends after tick " +
+    return file + ": the summary reports a run that is done, but the file ends after tick " +
            comparison.last_tick() + '\n';
   }
   if (comparison.has_more())
@@ -127,12 +127,12 @@ std::string difference_of(const TrajectoryComparison& comparison, const fs::path
   // A segment begins where a logger was killed, possibly within the rows of a tick.
   if (tells_of_gaps && comparison.missing() > gaps.get<Tick>() + segments.get<Tick>() - 1) {
     return file + ": lacks rows, first those of " + comparison.first_missing() + "; " +
-           std::to_string(comparison.missing()) + " ticks do, of " + gaps.dump() +
-           " that the summary tells of\n";
+           std::to_string(comparison.missing()) + " ticks lack rows, and the summary counts " +
+           gaps.dump() + "\n";
   }
   if (comparison.torn() && !summary.empty()) {
     return file + ": ends amid tick " + comparison.last_tick() +
-           ", and yet its logger ended in order\n";
+           ", but its logger ended in order\n";
   }
   return "";
 }
@@ -162,7 +162,7 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
   for (const auto& entry : fs::directory_iterator(run_dir)) {
     const std::string name = entry.path().filename().string();
     if (!name.ends_with(".lcm") && !name.ends_with(".lcm.zst") && name != "log") continue;
-    std::printf("  %-28s what was said, and when\n", name.c_str());
+    std::printf("  %-28s messages and their times\n", name.c_str());
   }
 }
 
@@ -223,7 +223,7 @@ int verify(const fs::path& run_dir) {
   Repetition repetition(*mission, recorded_holds(run_dir, summary));
   if (!summary.is_object()) {
     print_message(run_dir.string() + ": no " + kSummaryFile +
-                  ", so nothing is known of restarts; comparing all the same");
+                  ", so restarts are unknown; comparing anyway");
     summary = Json::object();
   } else if (!is_simulated(summary, repetition.simulation.recorder())) {
     const auto reason = why_not_repeatable(summary, *mission);

@@ -11,7 +11,6 @@
 
 #include "cli/command_text.h"
 #include "cli/commands.h"
-#include "text/shell_word.h"
 #include "cli/progress_line.h"
 #include "cli/report_error.h"
 #include "cli/study/study_directory.h"
@@ -21,8 +20,9 @@
 #include "cli/study/workers.h"
 #include "plan/plan.h"
 #include "runtime/process/node.h"
-#include "studies/study_run.h"
 #include "runtime/process/signals.h"
+#include "studies/study_run.h"
+#include "text/shell_word.h"
 
 namespace ergocast::cli {
 namespace {
@@ -138,14 +138,14 @@ std::string command_of(const StudyOptions& options) {
 /// Prints the paths of the results, and the command that completes the study if runs are missing.
 void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
                      const StudyOptions& options) {
-  std::printf("\n%zu runs flown now, %zu in %s\n", runner.completed(), directory.rows().size(),
+  std::printf("\n%zu runs done now, %zu in %s\n", runner.completed(), directory.rows().size(),
               (options.out / "study.csv").c_str());
   std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
   if (runner.missing() == 0 && options.shard) {
-    std::printf("when all shards are flown: ergocast study merge FOLDER… --out DIR\n");
+    std::printf("when all shards are done: ergocast study merge FOLDER… --out DIR\n");
   }
   if (runner.missing() == 0) return;
-  std::printf("%zu runs are missing%s: the same command flies them\n", runner.missing(),
+  std::printf("%zu runs are missing%s: the same command runs them\n", runner.missing(),
               runner.failed() > 0
                   ? (", " + std::to_string(runner.failed()) + " of them failed").c_str()
                   : "");

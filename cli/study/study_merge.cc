@@ -40,8 +40,8 @@ std::optional<std::string> mismatch(const std::vector<Part>& parts) {
   const Part& first = parts.front();
   const StudyShard& one = first.shard();
   if (first.identity.version != version()) {
-    return first.folder.string() + ": was flown by ergocast " + first.identity.version +
-           ", this is " + version() + " (merge with the version that flew)";
+    return first.folder.string() + ": was run with ergocast " + first.identity.version +
+           ", this is " + version() + " (merge with the version that ran it)";
   }
   std::map<std::uint64_t, fs::path> by_index;
   for (const Part& part : parts) {
@@ -88,7 +88,7 @@ std::variant<std::vector<studies::StudyRow>, std::string> rows_of(const Part& pa
   }
   if (done.size() == own) return directory.rows();
   return part.folder.string() + ": " + std::to_string(own - done.size()) + " of its " +
-         std::to_string(own) + " runs are missing (the command that made it flies them)";
+         std::to_string(own) + " runs are missing (the command that made it runs them)";
 }
 
 std::variant<std::vector<studies::StudyRow>, std::string> all_rows(const std::vector<Part>& parts) {

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "cli/command_text.h"
-#include "text/shell_word.h"
 #include "plan/plan.h"
 #include "runtime/process/node.h"
+#include "text/shell_word.h"
 
 namespace ergocast::cli {
 namespace {
@@ -36,11 +36,11 @@ Problems problems_of(const StudyOptions& options) {
       problems.push_back(flag + ": is varied twice (give all its values in one --vary)");
     }
     if (set.contains(variation.path))
-      problems.push_back(flag + ": --set says it too (leave out one of them)");
+      problems.push_back(flag + ": --set sets it too (leave out one of them)");
     if (variation.path == "seed")
       problems.push_back(flag + ": every point gets the same seeds (use --seeds)");
     if (variation.path == "time.duration_s" && options.duration_s) {
-      problems.push_back(flag + ": --duration says it too (leave out one of them)");
+      problems.push_back(flag + ": --duration sets it too (leave out one of them)");
     }
   }
   if (points > kMostPoints) {

@@ -106,12 +106,12 @@ std::string TrialTotals::describe(double wall_s, const Basis& basis) const {
     text += std::string(line) + '\n';
   };
   TrialFigures figures = sums;
-  text += "What was done to them:\n";
+  text += "Faults:\n";
   for (const Count& count : kCounts) {
     if (count.meaning != nullptr)
       row(count.meaning, "%14.0f", static_cast<double>(count.of(figures)));
   }
-  text += "What came of it:\n";
+  text += "Results:\n";
   row("greatest phi^2 at the end",
       basis.free_domain ? "%14.4g in modes of the free domain" : "%14.4g", worst_metric);
   row("greatest view error", "%14.4g", worst_view_error);

@@ -10,7 +10,6 @@
 #include <map>
 
 #include "cli/command_text.h"
-#include "text/shell_word.h"
 #include "cli/progress_line.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
@@ -21,6 +20,7 @@
 #include "logger/null_buffer.h"
 #include "plan/plan.h"
 #include "runtime/process/node.h"
+#include "text/shell_word.h"
 
 namespace ergocast::cli {
 namespace {
@@ -133,7 +133,7 @@ int trials(const TrialsOptions& options) {
   for (const FieldValue& field : options.mission.overrides.fields) {
     if (field.path != "seed") continue;
     return report_error(kExitBadInput,
-                        field.flag + ": --seeds says it too (leave out one of them)");
+                        field.flag + ": --seeds sets it too (leave out one of them)");
   }
   const auto scenario = load_or_complain(options.mission.scenario, options.mission.overrides);
   if (!scenario) return kExitBadInput;

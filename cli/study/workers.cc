@@ -73,7 +73,7 @@ std::string how_it_died(int status, unsigned patience_s) {
   if (WTERMSIG(status) == SIGPROF) {
     return "no end after " + std::to_string(patience_s) + " s of processor time";
   }
-  return std::string("its process died of SIG") + signal_name(WTERMSIG(status));
+  return std::string("its process was killed by SIG") + signal_name(WTERMSIG(status));
 }
 
 /// Whether `size` bytes arrived before the end of the pipe.

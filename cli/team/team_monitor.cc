@@ -154,7 +154,7 @@ double MonitoredRun::seconds_until(Tick tick) const {
 }
 
 std::string choice_of(const std::map<RunId, MonitoredRun>& runs) {
-  std::string text = "several runs are heard on this URL; choose one with --run-id:";
+  std::string text = "several runs are on this URL; choose one with --run-id:";
   for (const auto& [run, team] : runs) {
     text += "\n  --run-id " + to_hex(run) + "  " + std::to_string(team.agents()) + " agents, " +
             team.mission_time(team.tick());

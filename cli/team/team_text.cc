@@ -135,9 +135,9 @@ std::vector<Cell> cells_of(const AgentRow& row) {
 
 std::string headline(const TeamPicture& at) {
   std::string text = at.replay ? "replay of " : "";
-  text += at.scenario.empty() ? "a mission not heard yet" : at.scenario;
+  text += at.scenario.empty() ? "a mission not received yet" : at.scenario;
   text += ", run " + to_hex(at.run) + ", ";
-  text += at.paused ? "paused" : at.state ? to_string(*at.state) : "no coordinator heard";
+  text += at.paused ? "paused" : at.state ? to_string(*at.state) : "no coordinator found";
   text += ", tick " + std::to_string(at.counted);
   if (at.tick_count > 0) {
     text += " of " + std::to_string(at.tick_count) +
@@ -169,9 +169,9 @@ std::string second_line(const TeamPicture& at) {
 }
 
 std::string process_line(const ProcessRow& row, bool over, bool colour) {
-  std::string state = !row.heard ? "not heard" : over ? "ended" : "alive";
+  std::string state = !row.heard ? "no message" : over ? "ended" : "alive";
   if (row.trouble) state = number("silent %.0f s", row.silent_s);
-  if (row.trouble && !row.heard) state = "not heard";
+  if (row.trouble && !row.heard) state = "no message";
   const Tint tint = row.trouble ? Tint::kBad : row.heard && !over ? Tint::kGood : Tint::kFaint;
   std::string line = row.name + std::string(13 - std::min<std::size_t>(12, row.name.size()), ' ');
   line += tinted(state, tint, colour);
@@ -200,7 +200,7 @@ std::string condition_text(const AgentRow& row) {
     case Condition::kLate:
       return "late";
     case Condition::kUnheard:
-      return "not heard yet";
+      return "no message yet";
     case Condition::kFinished:
       return "finished";
     case Condition::kGone:

@@ -24,8 +24,8 @@ std::string key_problem(const BusOptions& options, const RefusalCounts& refused)
 std::string why_nobody(const BusOptions& options, const Transport& transport) {
   const std::string url = options.url.base();
   std::string text =
-      "nobody of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
-      " was heard on " + url +
+      "no message of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
+      " arrived on " + url +
       ": is the mission running, and on this URL? `ergocast list` names the runs that "
       "you started here, `ergocast doctor --lcm-url \"" +
       url + "\"` checks the network between the hosts";

@@ -37,8 +37,9 @@ std::optional<int> take_key(const CLI::App& command, const LiveRun& run, BusOpti
 std::optional<int> take(const CLI::App& command, const LiveRun& run, BusOptions& options) {
   if (run.version != version()) {
     return report_error(kExitBadInput, "run " + to_hex(run.run) + " of " + run.scenario +
-                                           " is flown by ergocast " + run.version + ", this is " +
-                                           version() + ": use the command that started it");
+                                           " was started with ergocast " + run.version +
+                                           ", this is " + version() +
+                                           ": use the command that started it");
   }
   options.url = run.url;
   options.run = run.run;

@@ -109,7 +109,7 @@ class Watch final : public LiveWatch {
     if (run == team_->run()) {
       if (replay == replay_) team_->receive(message, bus, transmitter, now());
     } else if (others_.size() < kMostRuns && others_.insert(run).second) {
-      team_->log("run " + to_hex(run) + " is heard on this URL, too; --run-id " + to_hex(run) +
+      team_->log("run " + to_hex(run) + " is on this URL, too; --run-id " + to_hex(run) +
                  " shows it");
     }
   }

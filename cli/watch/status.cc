@@ -9,12 +9,12 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/watch/find_run.h"
 #include "cli/report_error.h"
-#include "cli/watch/diagnose_silence.h"
 #include "cli/team/team_monitor.h"
-#include "cli/watch/team_screen.h"
 #include "cli/team/team_view.h"
+#include "cli/watch/diagnose_silence.h"
+#include "cli/watch/find_run.h"
+#include "cli/watch/team_screen.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/transport.h"
 #include "runtime/process/node.h"
@@ -80,11 +80,11 @@ class Listener {
 };
 
 int choose(const Listener& listener) {
-  std::string text = "several runs are heard on this URL; choose one with --run-id:";
+  std::string text = "several runs are on this URL; choose one with --run-id:";
   for (const auto& [key, view] : listener.runs()) {
     const TeamPicture picture = view.picture(now());
     text += "\n  --run-id " + to_hex(key.first) + "  " + (key.second ? "replay of " : "") +
-            (picture.scenario.empty() ? "a mission not heard yet" : picture.scenario) + ", " +
+            (picture.scenario.empty() ? "a mission not received yet" : picture.scenario) + ", " +
             std::to_string(picture.agents_alive) + " agents, tick " +
             std::to_string(picture.counted);
   }
@@ -155,7 +155,7 @@ int watch(const StatusOptions& options, Listener& listener, StopSignals& signals
     listener.follow_network();
     if (view != nullptr) screen.show(view->picture(now()));
     if (view == nullptr && !options.json) {
-      screen.show("nobody is heard on " + options.url.base() + " yet\n");
+      screen.show("no message yet on " + options.url.base() + "\n");
     }
   }
 }
@@ -175,7 +175,7 @@ void add_status(CLI::App& app, Action& action) {
   add_bus_options(*command, *options);
   describe_search(*command);
   command->add_flag("--watch", options->watch,
-                    "Show it again and again, until the mission's end or Ctrl-C");
+                    "Show it repeatedly, until the mission's end or Ctrl-C");
   command->add_flag("--json", options->json, "Print one JSON object; with --watch one each second");
   command->footer(
       "Exit codes: 0 all is well; 1 something is in trouble; 2 several runs are found;\n"

@@ -23,7 +23,7 @@ int run(const NodeOptions& node, double speed_limit_mps, std::optional<AgentId> 
   spdlog::info("waiting for a mission on {}", node.url.base());
 
   run_core(
-      driver, transport, signals, [&] { driver.stop("the driver was told to stop"); },
+      driver, transport, signals, [&] { driver.stop("a signal stopped the driver"); },
       [&] {
         transport.set_run(driver.run());
         if (const auto& mission = driver.follower().mission()) {

@@ -204,7 +204,7 @@ PhysicsMaker mujoco_physics(const RobotDesign& design, MujocoPhysics** made) {
       return "world.wall_clearance_m is less than a robot's radius: robots that keep it touch "
              "walls";
     if (mission.starts_m.size() > kMostRobots)
-      return "the mission has more than " + std::to_string(kMostRobots) + " robots: fly fewer";
+      return "the mission has more than " + std::to_string(kMostRobots) + " robots: use fewer";
     auto physics = std::make_unique<MujocoPhysics>(mission, design);
     if (made != nullptr) *made = physics.get();
     return physics;

@@ -72,7 +72,7 @@ function showBest() {
     ` of ${grouped(best.runs)} ${best.runs === 1 ? 'run' : 'runs'}. `,
     q.bounds(best)
       ? near.length
-        ? `${others} not told apart from it.`
+        ? `${others} not distinguishable from it.`
         : 'Its interval overlaps with no other.'
       : '',
   );

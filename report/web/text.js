@@ -18,7 +18,7 @@ export function put(node, text) {
 const SUPERSCRIPT = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 export const superscript = n => String(n).replace(/./g, c => (c === '-' ? '⁻' : SUPERSCRIPT[c]));
 
-// Of what its φ² over time is, to be said after it. Where nothing is said it is in cosines.
+// The modes of φ² over time, as words that follow it. Without these words it is in cosines.
 export const ofModes = mission => (mission.free_domain ? ' in modes of the free domain' : '');
 
 // Three digits: 0.368, 12.5, 9.33·10⁻⁴.

@@ -26,13 +26,13 @@ std::string key_advice(const RefusalCounts& refused, bool keyed) {
     return refused[static_cast<std::size_t>(kind)] > 0;
   };
   std::string advice;
-  if (some(Refusal::kUnkeyed)) advice += "; unkeyed: somebody speaks without our --key-file";
+  if (some(Refusal::kUnkeyed)) advice += "; unkeyed: a process sends without our --key-file";
   if (some(Refusal::kUnsigned)) {
     advice +=
-        "; unsigned: somebody without the coordinator's --key-file tries to begin or end missions";
+        "; unsigned: a process without the coordinator's --key-file tries to begin or end missions";
   }
   if (some(Refusal::kTag)) {
-    advice += keyed ? "; tag: damaged, or somebody has another --key-file"
+    advice += keyed ? "; tag: damaged, or the sender has another --key-file"
                     : "; tag: damaged, or a team with a --key-file is on this URL";
   }
   return advice;
@@ -73,14 +73,14 @@ bool TrafficWatch::look(Instant now, std::int64_t late_commands) {
   const std::int64_t repeated = refused[kRate] - transport_.over_rate();
   if (transport_.over_rate() != logged_over_rate_) {
     spdlog::warn(
-        "agent {} babbles: it sends more than eight times what the mission asks of an agent, "
-        "and the rest is refused; stop it, or mend its program",
+        "agent {} sends more than eight times what the mission asks of an agent, and the rest is "
+        "refused; stop it, or repair its program",
         transport_.rate_offender());
   }
   if (repeated != logged_repeats_) {
     spdlog::warn(
-        "somebody repeats messages of the team far more often than the team would, and the rest "
-        "is refused: look for a recorder on this network");
+        "messages of the team are repeated far more often than the team would, and the rest is "
+        "refused: look for a program on this network that replays a recording");
   }
   logged_over_rate_ = transport_.over_rate();
   logged_repeats_ = repeated;
@@ -101,8 +101,7 @@ void TrafficWatch::warn_of_late_commands(std::int64_t count, Instant now) {
   next_late_warning_ = now + kLogPeriod;
   spdlog::warn(
       "late={}: a command to stop, pause or resume names a tick that has passed long ago, and is "
-      "ignored: it was delayed, or somebody repeats a recording of it; an operator who still wants "
-      "it must send it again",
+      "ignored: it was delayed, or repeated from a recording; send it again if it is still wanted",
       count);
 }
 

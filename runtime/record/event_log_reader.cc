@@ -87,7 +87,7 @@ const LoggedEvent* EventLogReader::refuse(const std::string& what) {
     remedy = "`zstd -dc " + segment.filename().string() + " | head -c " + bytes + " > " +
              segment.stem().string() + '`';
   }
-  problem_ = place() + ": " + what + "; what stands before is sound: " + remedy + " keeps it";
+  problem_ = place() + ": " + what + "; everything before it is sound: " + remedy + " keeps it";
   return nullptr;
 }
 

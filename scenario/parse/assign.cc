@@ -41,7 +41,7 @@ class Assignment {
 
   void run() {
     if (const std::string other = findings_.blamed(field_.path); !other.empty()) {
-      return problem(other + " says it too", "leave out one of them");
+      return problem(other + " sets it too", "leave out one of them");
     }
     const std::optional<Target> target = find();
     if (!target) return;

@@ -138,7 +138,7 @@ class Validator {
       problem("description",
               std::to_string(description.size()) + " bytes are above the limit " +
                   std::to_string(kMaxDescriptionBytes),
-              "say it in fewer words, or in a comment");
+              "use fewer words, or write a comment");
     }
     if (first_bad_utf8(description) != std::string_view::npos) {
       problem("description", "is not UTF-8", "write the characters themselves, not their bytes");
@@ -168,7 +168,7 @@ class Validator {
     if (!sound("basis")) return;
     const int modes = basis_of(basis).mode_count();
     if (modes < 2) {
-      problem("basis", "a single mode tells no two places apart", "write modes_x: 2 or more");
+      problem("basis", "a single mode cannot distinguish two places", "write modes_x: 2 or more");
     } else if (modes > kMaxModes) {
       problem("basis",
               std::to_string(modes) + " modes are above the limit " + std::to_string(kMaxModes),

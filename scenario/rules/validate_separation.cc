@@ -79,16 +79,15 @@ class SeparationRules {
                     "write " + shortest(static_cast<double>(20) * dt_s));
     }
     if (mission_.separation.guard)
-      lease_problem("says that nobody knows all places, and guard that the world does",
+      lease_problem("means that no process knows all places, and guard that the world does",
                     "remove guard or lease_s");
     if (mission_.separation.disturbance_m > 0)
       lease_problem(
           "relies on bodies that stay where they stand, and disturbance_m lets them drift",
           "write world.disturbance_intensity: 0, or remove lease_s");
     if (mission_.radio_range_m > 0)
-      lease_problem(
-          "needs all agents to hear each other, and world.radio_range_m keeps them from it",
-          "remove one of them");
+      lease_problem("needs each agent to receive all others, and world.radio_range_m prevents that",
+                    "remove one of them");
     if (team > kMostLeasedAgents)
       lease_problem("is for at most " + std::to_string(kMostLeasedAgents) + " agents, not " +
                         std::to_string(team),

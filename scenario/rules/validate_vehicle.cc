@@ -139,7 +139,7 @@ void validate_knowledge(const Mission& mission, Checks& checks) {
   if (!any_but_points(mission) || sure_of_bodies(mission)) return;
   checks.problem("separation",
                  "allows errors, disturbances, late vehicles or commands that the world does not "
-                 "filter: no distance is proven for that, but of points",
+                 "filter: with these, a distance is proven only for points",
                  "write disturbance_m, position_error_m and response_s: 0, and guard: true, or "
                  "vehicle.kind: POINT");
 }

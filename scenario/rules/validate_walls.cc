@@ -55,7 +55,7 @@ class WallRules {
     for (int i = 0; i < scenario_.target().regions_size(); ++i) {
       if (scenario_.target().regions(i).polygon().solid())
         checks_.problem(indexed("target.regions", i) + ".polygon.solid",
-                        "is for keep-outs: nobody could cover the region", "remove it");
+                        "is for keep-outs: no agent could cover the region", "remove it");
     }
     if (scenario_.world().has_wall_clearance_m() && walls_.empty() &&
         checks_.sound("world.walls") && checks_.sound("target.keep_outs"))
@@ -153,12 +153,12 @@ class WallRules {
   void clearance(const Mission& mission) {
     const double least_m = least_wall_clearance_m(mission);
     if (mission.wall_clearance_m >= least_m) return;
-    checks_.problem("world.wall_clearance_m",
-                    shortest(mission.wall_clearance_m) +
-                        " is too little for vehicles that are not where they are said to be, or go "
-                        "on by old commands: they need " +
-                        shortest(rounded_up(least_m)) + " m",
-                    "write at least that, or smaller errors, or guard: true");
+    checks_.problem(
+        "world.wall_clearance_m",
+        shortest(mission.wall_clearance_m) +
+            " is too little for vehicles with position errors or late commands: they need " +
+            shortest(rounded_up(least_m)) + " m",
+        "write at least that, or smaller errors, or guard: true");
   }
 
   void starts(const Mission& mission) {

@@ -81,7 +81,7 @@ void warn_of_speed_limit(const Mission& mission, int kind, const std::string& fi
           shortest(rounded_up(pull_mps)) + " + 6 deviations of its noise " +
           shortest(rounded_up(noise_mps)) + " (" + noise_text(law, dt_s) + ")",
       limit_mps < law.u_max_mps
-          ? std::string("give vehicles that are no faster a ") +
+          ? std::string("if vehicles are no faster, write a ") +
                 (field == "world.speed_limit_mps" ? "law." : "") + "u_max_mps of at most " +
                 shortest(limit_mps) + ": even without noise it is cut"
           : "write at least " + needed +
@@ -138,8 +138,8 @@ void warn_of_packing(const Mission& mission, Findings& findings) {
                    spacing_text(mission, mission.starts_m.size()) + " m apart take up " +
                    shortest(rounded_up(100 * share)) +
                    " % of the domain: above 10 % they often block each other",
-               "write a smaller distance or fewer agents, or accept it: status and summary say how "
-               "long agents are blocked");
+               "write a smaller distance or fewer agents, or accept it: status and summary report "
+               "how long agents are blocked");
 }
 
 /// The computed way home has no detours around other agents.
@@ -173,8 +173,8 @@ void warn_of_tight_stations(const Mission& mission, Findings& findings) {
       if (!their_m || (*home_m - *their_m).norm() >= passage_m) continue;
       return findings.add("agents.kind",
                           "agents " + std::to_string(other) + " and " + std::to_string(one) +
-                              " have stations that nobody passes between: the first agent at "
-                              "home may shut others out",
+                              " have stations that no agent can pass between: the first agent at "
+                              "home may block the others",
                           "write stations at least " + shortest(rounded_up(passage_m)) +
                               " m apart, or accept it for one row that all can reach from a side");
     }
@@ -197,11 +197,11 @@ void warn_of_late_vehicles(const Mission& mission, Findings& findings) {
     }
     if (room_to_begin(mission, id).contains(mission.starts_m[static_cast<std::size_t>(id)]))
       continue;
-    findings.add(indexed("agents.starts", id),
-                 "is nearer to an edge than the " + shortest(rounded_up(margin_m)) +
-                     " m that a vehicle keeps that follows so late: it may cross the edge as long "
-                     "as it is there",
-                 "move it inside");
+    findings.add(
+        indexed("agents.starts", id),
+        "is nearer to an edge than the " + shortest(rounded_up(margin_m)) +
+            " m that a vehicle with this delay keeps: it may cross the edge while it is there",
+        "move it inside");
   }
 }
 
@@ -256,10 +256,10 @@ void warn_of_hidden_mass(const Mission& mission, const DensityGrid& density, Fin
   const double hidden = hidden_share(mission, density);
   if (hidden <= kMostHidden) return;
   findings.add("world.walls",
-               "hide the target from itself: for " + shortest(rounded_up(100 * hidden)) +
+               "separate parts of the target: for " + shortest(rounded_up(100 * hidden)) +
                    " % of its pairs of places the shortest way is more than " + shortest(kDetour) +
-                   " times the straight line, and the cosines of the basis know only that. Agents "
-                   "follow walls where they get stuck, and cover the target late",
+                   " times the straight line, and the cosines of the basis ignore walls. Agents "
+                   "then follow walls where they get stuck, and cover the target late",
                "write basis { free_domain: true }, open more passages, or accept it");
 }
 

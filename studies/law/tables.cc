@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tables of docs/law.md and docs/results/law.md, and what their figures are drawn from, of the
-// studies that studies/law/run has flown.
+// studies of studies/law/run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -18,7 +18,7 @@ using Curves = std::vector<CurvePoint>;
 constexpr double kMedianOfNormal = 0.67448975;  // of |z|
 
 /// Median times against what is varied: 10 % to 90 % measured, the law, and the law without the
-/// past. Of the `other` parameter there is the `wanted` value only.
+/// past. The `other` parameter has only the `wanted` value.
 void write_medians(const std::vector<Row>& rows, double Point::*varied, double Point::*other,
                    double wanted, const fs::path& file) {
   Curves curves;

@@ -56,7 +56,7 @@ class Pair {
   Tick tick_ = 0;
 };
 
-TEST(AgentsWithBeacons, StandUntilTheyHearEachOther) {
+TEST(AgentsWithBeacons, StandUntilTheyReceiveEachOther) {
   Pair pair;
   EXPECT_EQ(pair.pass()[0].norm(), 0);
   for (int i = 0; i < 6; ++i) pair.pass();
@@ -64,7 +64,7 @@ TEST(AgentsWithBeacons, StandUntilTheyHearEachOther) {
   EXPECT_GT(pair.pass()[1].norm(), 5);
 }
 
-TEST(AgentsWithBeacons, KeepFromWhereTheOtherSaysItIs) {
+TEST(AgentsWithBeacons, KeepTheirDistanceFromTheReportedPlace) {
   Pair pair;
   for (int i = 0; i < 10; ++i) pair.pass();
   const Eigen::Vector3d free_mps = pair.pass()[0];
@@ -80,7 +80,7 @@ TEST(AgentsWithBeacons, KeepFromWhereTheOtherSaysItIs) {
   EXPECT_LE(pair.pass()[0].dot(free_mps.normalized()), 1e-9) << "nearer than it may have come";
 }
 
-TEST(AgentsWithBeacons, WhoIsNotHeardStandsAfterTheLease) {
+TEST(AgentsWithBeacons, AnAgentWithoutEchoesStandsAfterTheLease) {
   Pair pair;
   for (int i = 0; i < 10; ++i) pair.pass();
   int moved = 0;
@@ -89,7 +89,7 @@ TEST(AgentsWithBeacons, WhoIsNotHeardStandsAfterTheLease) {
   EXPECT_LE(moved, 20);
   EXPECT_EQ(pair.pass(false)[0].norm(), 0);
   for (int i = 0; i < 6; ++i) pair.pass();
-  EXPECT_GT(pair.pass()[0].norm(), 5) << "heard again";
+  EXPECT_GT(pair.pass()[0].norm(), 5) << "received again";
 }
 
 /// A newer roster may have a body that the agent does not know of.
@@ -108,7 +108,7 @@ TEST(AgentsWithBeacons, StandWhileTheirRosterIsOld) {
   EXPECT_GT(commanded(2, 1), 5);
 }
 
-TEST(AgentsWithBeacons, SayNoneWhereTheWorldSaysAllPlaces) {
+TEST(AgentsWithBeacons, SendNoneWhereTheWorldSendsAllPlaces) {
   Mission mission = leased(2);
   mission.separation.lease_s = 0;
   Agent agent = running_agent(mission);

@@ -75,7 +75,7 @@ TEST(AgentKeepsApart, AnswersOnlyOnceAllPartsOfATickAreThere) {
   }
 }
 
-TEST(AgentKeepsApart, SaysWhoBlocksIt) {
+TEST(AgentKeepsApart, ReportsWhichAgentBlocksIt) {
   const Mission mission = apart(7, Pace::kRealtime);
   Agent agent = running_agent(mission);
   std::vector<Eigen::Vector3d> ring = {{500, 500, 0}};
@@ -97,7 +97,7 @@ TEST(AgentKeepsApart, SaysWhoBlocksIt) {
   EXPECT_EQ(status.longest_block_ticks, 3);
 }
 
-TEST(AgentKeepsApart, TellsARestartedWorldWhereAllBodiesWere) {
+TEST(AgentKeepsApart, SendsARestartedWorldThePlacesOfAllBodies) {
   Agent agent = running_agent(apart(2, Pace::kRealtime));
   const WorldState state = world_state(4, {{500, 500, 0}, {900, 900, 0}});
   commands(agent, state);
@@ -119,7 +119,7 @@ TEST(AgentKeepsApart, AlsoBesideTheDomain) {
   EXPECT_GE(v_mps.x(), 0) << "never further out";
 }
 
-TEST(AgentKeepsApart, OnlyWhereTheMissionSaysSo) {
+TEST(AgentKeepsApart, OnlyWhereTheMissionRequiresIt) {
   Mission mission = apart(2, Pace::kRealtime);
   mission.separation = {};
   const Eigen::Vector3d free = command_among(mission, {{500, 500, 0}, {900, 900, 0}});

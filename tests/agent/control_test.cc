@@ -58,7 +58,7 @@ TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
   EXPECT_EQ(commands[0].header.incarnation, incarnation_of(0));
 }
 
-TEST(AgentTick, SpeaksOnTheBusesOfTheProtocol) {
+TEST(AgentTick, SendsOnTheBusesOfTheProtocol) {
   Agent agent = running_agent(small_mission(1));
   for (const Outgoing& outgoing : deliver(agent, world_state(0, {{100, 500, 0}}))) {
     const bool command = std::holds_alternative<Command>(outgoing.message);
@@ -79,7 +79,7 @@ TEST(AgentTick, ContributionsAreCumulative) {
   }
 }
 
-TEST(AgentTick, WhereAveragesTravelSaysWhatItHasGainedSinceItLastSpoke) {
+TEST(AgentTick, WhereAveragesAreSentAddsWhatItHasGainedSinceTheLastBroadcast) {
   Mission mission = two_block_mission(1);
   mission.timing.broadcast_period_ticks = 3;
   mission.timing.contribution_encoding = ContributionEncoding::kFixed16;
@@ -145,7 +145,7 @@ std::map<Tick, std::vector<Sent>> sent_by(const Mission& mission, AgentId id, Ti
   return all;
 }
 
-TEST(AgentTick, SaysHighModesEverySoManyPeriodsAndNamesTheirNextTimeTruthfully) {
+TEST(AgentTick, SendsHighModesEverySoManyPeriodsAndNamesTheirNextTimeTruthfully) {
   Mission mission = two_block_mission(4);
   mission.timing.broadcast_period_ticks = 4;
   mission.timing.high_mode_period_factor = 3;
@@ -171,7 +171,7 @@ TEST(AgentTick, SaysHighModesEverySoManyPeriodsAndNamesTheirNextTimeTruthfully) 
   EXPECT_EQ(second_broadcast, (std::vector<Tick>{12, 1, 6, 11})) << "spread over three periods";
 }
 
-TEST(AgentTick, SaysAllModesAsOftenWhereThereAreOnlyLowOnes) {
+TEST(AgentTick, SendsAllModesAsOftenWhereThereAreOnlyLowOnes) {
   Mission rare = small_mission(4);
   rare.timing.broadcast_period_ticks = 4;
   Mission usual = rare;
@@ -179,7 +179,7 @@ TEST(AgentTick, SaysAllModesAsOftenWhereThereAreOnlyLowOnes) {
   EXPECT_EQ(sent_by(rare, 2, 40), sent_by(usual, 2, 40));
 }
 
-TEST(AgentInRealTime, WithoutNewTicksSaysAllModes) {
+TEST(AgentInRealTime, WithoutNewTicksSendsAllModes) {
   Mission mission = two_block_mission(1);
   mission.timing.broadcast_period_ticks = 4;
   mission.timing.high_mode_period_factor = 3;
@@ -270,7 +270,7 @@ TEST(AgentInLockstep, StatusNamesTheWorldOnceItHasBeenSilentForThreeSeconds) {
   EXPECT_EQ(status_after(agent, at(7499ms)).waiting_for, 1) << "not yet";
   EXPECT_EQ(status_after(agent, at(8s)).waiting_for, kWorld) << "whatever else is missing";
   deliver(agent, first, at(8900ms));
-  EXPECT_EQ(status_after(agent, at(9s)).waiting_for, kWorld) << "anybody may have recorded it";
+  EXPECT_EQ(status_after(agent, at(9s)).waiting_for, kWorld) << "any process may have recorded it";
   deliver(agent, world(), at(10s));
   EXPECT_EQ(status_after(agent, at(10s)).waiting_for, 1) << "a repeat of its own is a word, too";
 }
@@ -285,7 +285,7 @@ TEST(AgentInLockstep, DoesNotWaitForWhatIsNotDue) {
   EXPECT_TRUE(only<Command>(deliver(agent, world_state(3, {{100, 500, 0}}))).empty());
 }
 
-TEST(AgentInLockstep, DoesNotWaitForMembersWhoHaveLeftOrAreYetToCome) {
+TEST(AgentInLockstep, DoesNotWaitForMembersThatHaveLeftOrAreYetToCome) {
   const Mission mission = small_mission(3);
   announce(mission);
   Agent agent(identity_of(0));
@@ -322,7 +322,7 @@ TEST(AgentInLockstep, ARepeatedTickIsAnsweredAgainWithTheSameBlocksAndCommand) {
   EXPECT_GT(only<Command>(again)[0].header.sequence, only<Command>(first)[0].header.sequence);
 }
 
-TEST(AgentInLockstep, BetweenBroadcastsARepeatSaysWhatTheLastBroadcastSaid) {
+TEST(AgentInLockstep, BetweenBroadcastsARepeatEqualsTheLastBroadcast) {
   Mission mission = small_mission(1);
   mission.timing.broadcast_period_ticks = 4;
   Agent agent = running_agent(mission);

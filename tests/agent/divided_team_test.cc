@@ -60,7 +60,7 @@ Coefficients average_of(
   return average_of(mission, table);
 }
 
-TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
+TEST(Chain, BlocksReachAgentsThatCannotReceiveTheirAuthor) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   team.set_receives([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
@@ -80,7 +80,7 @@ TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
   }
 }
 
-TEST(Chain, NewsKeepUpWithAMissionThatIsFasterThanTheClock) {
+TEST(Chain, BlocksKeepUpWithAMissionThatIsFasterThanTheClock) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   team.set_receives([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
@@ -92,7 +92,7 @@ TEST(Chain, NewsKeepUpWithAMissionThatIsFasterThanTheClock) {
   }
 }
 
-TEST(Chain, WhatIsPassedOnIsWhatItsAuthorSaidByteForByte) {
+TEST(Chain, WhatIsPassedOnIsWhatItsAuthorSentByteForByte) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   team.set_receives([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
@@ -143,7 +143,7 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   }
 }
 
-TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
+TEST(Restart, AnAgentGetsItsFormerIncarnationsBackFromATeammate) {
   const Mission mission = realtime(2);
   const Author former = author_of(0), restarted{0, 99};
   LiveTeam team(mission);
@@ -169,7 +169,7 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
   }
 }
 
-TEST(LostBroadcast, IsMendedByATeammateWhoHeardIt) {
+TEST(LostBroadcast, IsRepairedByATeammateThatReceivedIt) {
   // In real time the next broadcast repairs a loss anyway, but an agent's last broadcast has no
   // next one.
   const Mission mission = realtime(3);

@@ -51,7 +51,7 @@ void receive(Agent& agent, const std::vector<Contribution>& sent) {
 
 // ---- what it answers to ----
 
-TEST(AgentForesees, ItsCommandAnswersToWhatItForeseesAndItsStatusTellsWhatItKnows) {
+TEST(AgentForesees, ItsCommandUsesTheForecastAndItsStatusReportsWhatItKnows) {
   for (const bool dead_reckoning : {false, true}) {
     Mission mission = looking_ahead(3, dead_reckoning);
     mission.law.epsilon = 1e-4;
@@ -169,7 +169,7 @@ std::vector<Eigen::Vector3d> commands_in_lockstep(Mission mission, int period, i
   return velocities_mps;
 }
 
-TEST(AgentReckons, SoThatALockstepTeamFliesTheSameHoweverSeldomItTells) {
+TEST(AgentReckons, SoThatALockstepTeamMovesTheSameHoweverSeldomItBroadcasts) {
   Mission mission = looking_ahead(4, true, Pace::kLockstep);
   mission.target_coefficients[14] = 0.3;
   const auto often = commands_in_lockstep(mission, 1, 60);
@@ -196,7 +196,7 @@ TEST(AgentReckons, NotByAVehicleOutsideTheDomain) {
   EXPECT_EQ(foreseen(true, {2001, 300, 0}), blind);
 }
 
-TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
+TEST(AgentReckons, NotByPlacesFromTheTimeOfAFormerIncarnation) {
   // 1 was restarted at tick 5. Its blocks from tick 5 on are of the new incarnation, those before
   // of the former one.
   const Mission mission = looking_ahead(3, true);
@@ -218,7 +218,7 @@ TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
   EXPECT_EQ(foreseen({1900, 900, 0}), foreseen({700, 300, 0}));
 }
 
-TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
+TEST(AgentReckons, AndSendsNothingOfIt) {
   const Mission mission = looking_ahead(3, true);
   Agent agent = running_agent(mission);
   const auto words = words_of(mission, 1, 2, 1);

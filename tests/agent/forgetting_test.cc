@@ -58,7 +58,7 @@ TEST(AgentForgets, WhatComesOnlyAfterwardsToo) {
   EXPECT_TRUE(steered_alone(agent, mission, 1));
 }
 
-TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
+TEST(AgentForgets, AtTheTickThatWaitsForTheNewRevision) {
   // All agents must forget at the same tick, whichever receives the revision first.
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
@@ -68,7 +68,7 @@ TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
   EXPECT_TRUE(steered_alone(agent, mission, 1));
 }
 
-TEST(AgentForgets, NotBeforeTheWorldFliesByTheRosterThatSaysSo) {
+TEST(AgentForgets, NotBeforeTheWorldUsesTheRosterThatNamesIt) {
   // Agents with a newer roster must not differ from the others.
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
@@ -96,7 +96,7 @@ TEST(AgentForgets, UntilTheNamedTickAtWhichItCountsAgain) {
   }
 }
 
-TEST(AgentForgets, NobodyWhoseAdmissionDiedWithTheCoordinator) {
+TEST(AgentForgets, NoAgentWhoseAdmissionWasLostWithTheCoordinator) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));

@@ -106,7 +106,7 @@ TEST(AgentJoining, DoesNothingInTheWorldBeforeTheMissionRuns) {
   EXPECT_EQ(only<Command>(running).size(), 1u);
 }
 
-TEST(AgentJoining, AnAgentWithoutARunJoinsTheFirstItHearsOf) {
+TEST(AgentJoining, AnAgentWithoutARunJoinsTheFirstThatItReceives) {
   AgentIdentity late = identity_of(0);
   late.run = 0;
   announce(small_mission(1));
@@ -119,7 +119,7 @@ TEST(AgentJoining, AnAgentWithoutARunJoinsTheFirstItHearsOf) {
   EXPECT_FALSE(agent.finished());
 }
 
-TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
+TEST(AgentJoining, StopsAndReportsWhyIfAnotherProcessRunsUnderItsNumber) {
   announce(small_mission(2));
   Agent agent(identity_of(1));
   AgentStatus duplicate = status_of(1, 1);
@@ -135,7 +135,7 @@ TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
   EXPECT_TRUE(advance(agent, at(1h)).empty()) << "it must not send under a number that is taken";
 }
 
-TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
+TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotStopIt) {
   announce(small_mission(2));
   Agent agent(identity_of(1));
   AgentStatus duplicate = status_of(1, 5);
@@ -150,7 +150,7 @@ TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
   EXPECT_FALSE(agent.finished());
 }
 
-TEST(AgentJoining, AnAgentThatAskedForNoNumberHasNoRival) {
+TEST(AgentJoining, AnAgentThatAskedForNoNumberHasNoDuplicate) {
   AgentIdentity anybody = identity_of(1);
   anybody.requested_id = kUnassigned;
   announce(small_mission(2));
@@ -169,7 +169,7 @@ TEST(AgentJoining, OnceAdmittedItDoesNotGiveWay) {
   EXPECT_FALSE(agent.finished());
 }
 
-TEST(AgentJoining, RefusesAPlanItCannotReadAndSaysWhatToDo) {
+TEST(AgentJoining, RefusesAPlanItCannotReadAndNamesTheRemedy) {
   Agent agent(identity_of(0));
   announced_plan = kNoPlan;
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
@@ -178,17 +178,17 @@ TEST(AgentJoining, RefusesAPlanItCannotReadAndSaysWhatToDo) {
   EXPECT_EQ(agent.reason(), why_no_plan());
 }
 
-TEST(AgentJoining, SaysWhatItWaitsFor) {
+TEST(AgentJoining, ReportsWhatItWaitsFor) {
   const Mission mission = small_mission(2);
   announce(mission);
   Agent agent(identity_of(1));
-  EXPECT_EQ(agent.blocked_reason(), "no coordinator is heard");
+  EXPECT_EQ(agent.blocked_reason(), "no coordinator answers");
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   EXPECT_EQ(agent.blocked_reason(), "waiting to be admitted");
   give(agent, mission_part(1, MissionState::kWaiting, {{{1, 77}, 0, -1}}), at(0s));
   EXPECT_EQ(agent.blocked_reason(),
-            "waiting to be admitted: the roster has another agent 1, which may have "
-            "died and not be missed yet");
+            "waiting to be admitted: the roster has another agent 1, whose end the coordinator may "
+            "not have noticed yet");
   give(agent, mission_part(2, MissionState::kWaiting, roster_of(2)), at(0s));
   EXPECT_EQ(agent.blocked_reason(), "admitted as agent 1, waiting for the quorum");
   give(agent, mission_part(3, MissionState::kRunning, roster_of(2)), at(0s));
@@ -210,7 +210,7 @@ TEST(Agent, IgnoresAndCountsAPlanThatIsNotItsRuns) {
   EXPECT_EQ(agent.refused()[static_cast<std::size_t>(Refusal::kRange)], 1);
 }
 
-TEST(Agent, TellsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
+TEST(Agent, ReportsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
   Agent agent = running_agent(small_mission(2));
   for (const double lag_s : {0.1, 0.7, 0.2}) agent.note_loop_lag(lag_s);
   const auto sent = only<AgentStatus>(advance(agent, at(10s)));
@@ -221,7 +221,7 @@ TEST(Agent, TellsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
 
 // ---- restarts and the end ----
 
-TEST(AgentHears, CoverageOfMembersOnly) {
+TEST(AgentReceives, CoverageOfMembersOnly) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   // More incarnations of our own number than a table holds, and one of a teammate: none is in the
@@ -237,7 +237,7 @@ TEST(AgentHears, CoverageOfMembersOnly) {
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
 }
 
-TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
+TEST(AgentReceives, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent,
@@ -281,7 +281,7 @@ TEST(AgentInLockstep, BeginsNoTickBeforeItKnowsTheMissionThatTheWorldGoesBy) {
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
 }
 
-TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
+TEST(AgentRestarted, ItsFormerIncarnationIsARowOfItsOwn) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
   const Author former{0, 55};
@@ -296,7 +296,7 @@ TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   EXPECT_EQ(agent.coverage()->steps_held(former), 2);
 }
 
-TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasHeardAPartAtOnce) {
+TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasReceivedAPartAtOnce) {
   announce(small_mission(2));
   Agent agent(identity_of(0));
   const auto named = [&](Instant now) {
@@ -353,7 +353,7 @@ TEST(AgentRestarted, CoversNothingOfATickBeforeItsFirstThatARestartedWorldStands
   EXPECT_EQ(covered[0].steps, 1);
 }
 
-TEST(AgentRestarted, SaysNothingOfACoverageThatHasNotBegunWhileTheWorldIsSilent) {
+TEST(AgentRestarted, SendsNoCoverageBeforeItHasBegunWhileTheWorldIsSilent) {
   Mission mission = small_mission(1);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = successor_from_7(mission);
@@ -363,7 +363,7 @@ TEST(AgentRestarted, SaysNothingOfACoverageThatHasNotBegunWhileTheWorldIsSilent)
   EXPECT_TRUE(only<Contribution>(advance(agent, at(10s))).empty());
 }
 
-TEST(AgentEnd, AStopAtOnceEndsItAndTheLastStatusSaysSoOnce) {
+TEST(AgentEnd, AStopAtOnceEndsItAndTheLastStatusReportsItOnce) {
   for (const bool failed : {false, true}) {
     Agent agent = running_agent(small_mission(1));
     advance(agent, at(0s));
@@ -433,7 +433,7 @@ TEST(AgentEnd, LeavingIsNoFailure) {
   EXPECT_EQ(only<AgentStatus>(advance(agent, at(0s))).at(0).phase, AgentPhase::kFinished);
 }
 
-TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
+TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNoMessagesArrive) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   mission.timing.realtime_factor = 2;
@@ -446,13 +446,13 @@ TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
   EXPECT_EQ(agent.reason(),
-            "neither the world nor the coordinator can be heard, and the mission must "
-            "be over by now: check this host's network");
+            "nothing arrives from the world or the coordinator, and the mission must be over by "
+            "now: check this host's network");
   ASSERT_EQ(last.size(), 1u);
   EXPECT_EQ(last[0].phase, AgentPhase::kFinished);
 }
 
-TEST(AgentEnd, IsNotThereForAsLongAsTheWorldOrTheCoordinatorSpeaks) {
+TEST(AgentEnd, DoesNotComeWhileTheWorldOrTheCoordinatorSendsMessages) {
   Mission mission = small_mission(1);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);

@@ -51,7 +51,7 @@ std::size_t repeated_after(Agent& agent, const Message& message) {
   return only<MissionPart>(advance(agent, at(10s + 50ms))).size();
 }
 
-TEST(MissionRepeat, IsEveryPartAsItsCoordinatorSaidItOnBothBuses) {
+TEST(MissionRepeat, IsEveryPartAsItsCoordinatorSentItOnBothBuses) {
   for (const AgentId asker : {kCoordinator, kWorld}) {
     Agent agent = informed_agent();
     give(agent, question_of(asker, -1), at(10s));
@@ -86,7 +86,7 @@ TEST(MissionRepeat, ComesAfterAWaitOfItsOwnWithin50Milliseconds) {
   EXPECT_NE(due[0], due[1]) << "one of many answers first";
 }
 
-TEST(MissionRepeat, IsNotForWhoKnowsTheMission) {
+TEST(MissionRepeat, IsNotForAProcessThatKnowsTheMission) {
   Agent agent = informed_agent();
   EXPECT_EQ(repeated_after(agent, question_of(kWorld, 0)), 0u);
   EXPECT_EQ(repeated_after(agent, question_of(kCoordinator, 0)), 0u);
@@ -107,7 +107,7 @@ TEST(MissionRepeat, IsNotGivenBeforeTheMissionIsKnown) {
   EXPECT_EQ(repeated_after(agent, question_of(kCoordinator, -1)), 0u);
 }
 
-TEST(MissionRepeat, IsNotNeededIfSomebodyElseHasSaidIt) {
+TEST(MissionRepeat, IsNotNeededIfAnotherProcessHasSentIt) {
   for (const std::int64_t revision : {3, 4}) {
     Agent agent = informed_agent();
     give(agent, question_of(kCoordinator, -1), at(10s));
@@ -116,7 +116,7 @@ TEST(MissionRepeat, IsNotNeededIfSomebodyElseHasSaidIt) {
   }
 }
 
-TEST(MissionRepeat, IsNeededIfSomebodyElseKnowsLess) {
+TEST(MissionRepeat, IsNeededIfAnotherProcessKnowsLess) {
   Agent agent = informed_agent();
   give(agent, question_of(kCoordinator, -1), at(10s));
   give(agent, two_parts(2)[0], at(10s));
@@ -135,18 +135,18 @@ std::size_t repeats_to(Say request) {
   return parts / 4;
 }
 
-TEST(MissionRepeat, ComesTwiceASecondAtMostToWhoSaysAnOldOne) {
+TEST(MissionRepeat, ComesTwiceASecondAtMostToASenderOfAnOldOne) {
   EXPECT_EQ(repeats_to([] { return two_parts(2)[0]; }), 6u) << "every 500 ms and a little";
 }
 
-TEST(MissionRepeat, ComesTenTimesASecondAtMostToWhoAsks) {
+TEST(MissionRepeat, ComesTenTimesASecondAtMostToAProcessThatAsks) {
   const std::size_t answers = repeats_to([] { return question_of(kCoordinator, -1); });
   EXPECT_GE(answers, 20u);
   EXPECT_LE(answers, 30u);
 }
 
 // Recordings of an old mission must not use up the answers to mission requests.
-TEST(MissionRepeat, ComesToWhoAsksAlsoJustAfterAnOldOneWasCorrected) {
+TEST(MissionRepeat, ComesToAProcessThatAsksAlsoJustAfterAnOldOneWasCorrected) {
   Agent agent = informed_agent();
   EXPECT_EQ(repeated_after(agent, two_parts(2)[0]), 4u);
   give(agent, question_of(kCoordinator, -1), at(10s + 151ms));

@@ -32,7 +32,7 @@ TEST(AgentWithoutTicks, RepeatsOnceASecondWhatItHas) {
   for (const Contribution& one : sent) EXPECT_EQ(one.steps, 1);
 }
 
-TEST(AgentWithoutTicks, SaysNothingWhileTheMissionIsPaused) {
+TEST(AgentWithoutTicks, SendsNoCoverageWhileTheMissionIsPaused) {
   // It joined in the pause and has covered nothing. Others would refuse a row without steps.
   EXPECT_TRUE(sent_in_silence({{0, -1}}).empty());
 }
@@ -56,7 +56,7 @@ TEST(AgentThatLearnsLateOfAPause, DoesNotWaitForTheTickThatItAnnouncedMeanwhile)
   ++part.revision;
   part.holds = {{2, 20}};
   give(agent, part, at(2s));
-  EXPECT_EQ(steps_sent_at(20), std::vector<std::int64_t>{21}) << "nobody else can say it";
+  EXPECT_EQ(steps_sent_at(20), std::vector<std::int64_t>{21}) << "no other process can send it";
   EXPECT_EQ(steps_sent_at(21), std::vector<std::int64_t>{22});
 }
 

@@ -20,7 +20,7 @@ Mission short_range(Pace pace) {
   return mission;
 }
 
-TEST(AgentRadio, DoesNotHearWhoIsTooFar) {
+TEST(AgentRadio, ReceivesNothingFromAgentsThatAreTooFar) {
   const Mission mission = short_range(Pace::kRealtime);
   Agent agent = running_agent(mission);
   deliver(agent, world_state(0, kLine));
@@ -31,7 +31,7 @@ TEST(AgentRadio, DoesNotHearWhoIsTooFar) {
   EXPECT_EQ(status_after(agent, at(0s)).refused, RefusalCounts{}) << "nothing wrong with it";
 }
 
-TEST(AgentRadio, HearsItThroughATeammateInReach) {
+TEST(AgentRadio, ReceivesItThroughATeammateInReach) {
   const Mission mission = short_range(Pace::kRealtime);
   Agent agent = running_agent(mission);
   deliver(agent, world_state(0, kLine));
@@ -45,7 +45,7 @@ TEST(AgentRadio, HearsItThroughATeammateInReach) {
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), std::nullopt);
 }
 
-TEST(AgentRadio, HearsAgainWhoComesCloser) {
+TEST(AgentRadio, ReceivesAgainFromAnAgentThatComesCloser) {
   const Mission mission = short_range(Pace::kRealtime);
   Agent agent = running_agent(mission);
   deliver(agent, world_state(0, kLine));
@@ -54,14 +54,14 @@ TEST(AgentRadio, HearsAgainWhoComesCloser) {
   EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), 1);
 }
 
-TEST(AgentRadio, LockstepDoesNotWaitForWhomItCannotHear) {
+TEST(AgentRadio, LockstepDoesNotWaitForAgentsOutOfReach) {
   const Mission mission = short_range(Pace::kLockstep);
   Agent agent = running_agent(mission);
   EXPECT_TRUE(only<Command>(deliver(agent, world_state(0, kLine))).empty()) << "1 is in reach";
   EXPECT_EQ(only<Command>(deliver(agent, block_of(mission, 1, {kLine[1]}, 1))).size(), 1u);
 }
 
-TEST(AgentRadio, LockstepWaitsForWhoHasComeIntoReach) {
+TEST(AgentRadio, LockstepWaitsForAgentsThatHaveComeIntoReach) {
   const Mission mission = short_range(Pace::kLockstep);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, {kLine[1]}, 9), at(0s));

@@ -93,7 +93,7 @@ class Reckoning : public ::testing::Test {
   std::optional<Agent> agent_;
 };
 
-TEST_F(Reckoning, PlacesSinceATeammatesLastBlockCountAsIfItHadSaidThem) {
+TEST_F(Reckoning, PlacesSinceATeammatesLastBlockCountAsIfItHadSentThem) {
   begin(dead_reckoning_mission());
   hear_block(their_path(0, 1));
   run_ticks(0, 6);
@@ -165,7 +165,7 @@ TEST_F(Reckoning, APlaceBeyondTheRadiosRangeIsNone) {
   expect_foreseen(foreseen(mission_, 0, 3, known, 1, 0));
 }
 
-TEST_F(Reckoning, InRealTimeAVehicleThatNobodyDrivesAnyMoreIsNotItsDriver) {
+TEST_F(Reckoning, InRealTimePlacesOfAVehicleWithoutNewCommandsDoNotCount) {
   begin(dead_reckoning_mission(Pace::kRealtime));  // an old command is held for 5 ticks
   hear_block(their_path(0, 1));
   for (Tick tick = 0; tick < 12; ++tick)
@@ -173,7 +173,7 @@ TEST_F(Reckoning, InRealTimeAVehicleThatNobodyDrivesAnyMoreIsNotItsDriver) {
   expect_foreseen(foreseen(mission_, 0, 11, their_path(0, 9), 1, 3));
 }
 
-TEST_F(Reckoning, InLockstepNobodyAnswersBeforeAllPartsOfTheWorldsStateAreThere) {
+TEST_F(Reckoning, InLockstepNoAgentAnswersBeforeAllPartsOfTheWorldsStateAreThere) {
   begin(dead_reckoning_mission());
   hear_block(their_path(0, 1));
   WorldState first = world_answered(0, -1), second = first;
@@ -187,7 +187,7 @@ TEST_F(Reckoning, InLockstepNobodyAnswersBeforeAllPartsOfTheWorldsStateAreThere)
   expect_foreseen(foreseen(mission_, 0, 0, their_path(0, 1), 1, 0));
 }
 
-TEST_F(Reckoning, InRealTimeAMissingPartHoldsUpNobody) {
+TEST_F(Reckoning, InRealTimeAMissingPartHoldsUpNoAgent) {
   begin(dead_reckoning_mission(Pace::kRealtime));
   WorldState first = world_answered(0, -1);
   first.parts = 2;

@@ -69,7 +69,7 @@ class Repair : public ::testing::Test {
 
 // ---- digests ----
 
-TEST_F(Repair, ADigestNamesEverybodyInTheRosterWithNothingForWhatIsNotHeld) {
+TEST_F(Repair, ADigestNamesAllOfTheRosterWithNothingForWhatIsNotHeld) {
   const Author former{3, 33};
   admit({former, 0, 4});
   hold(author_of(2), 9);
@@ -174,19 +174,19 @@ TEST_F(Repair, AnyGapIsOneIfItsAuthorHasLeft) {
   EXPECT_EQ(answered(at(3s)), nobody);
 }
 
-TEST_F(Repair, NobodyAnswersForItself) {
+TEST_F(Repair, NoAgentSendsItsOwnRow) {
   hold(author_of(0), 20);
   complain_twice(1, author_of(0), 0, at(0s));
-  EXPECT_EQ(answered(at(1s)), nobody) << "in lockstep, ticks depend on when that is said";
+  EXPECT_EQ(answered(at(1s)), nobody) << "in lockstep, ticks depend on when that is sent";
 }
 
-TEST_F(Repair, NobodyIsToldOfItself) {
+TEST_F(Repair, NoAgentIsSentItsOwnRow) {
   hold(author_of(1), 20);
   complain_twice(1, author_of(1), 0, at(0s));
   EXPECT_EQ(answered(at(1s)), nobody);
 }
 
-TEST_F(Repair, ButOfItsFormerLivesItIs) {
+TEST_F(Repair, ButAnAgentIsSentItsFormerIncarnations) {
   const Author former{1, 11};
   admit({former, 0, 20});
   hold(former, 20);
@@ -194,7 +194,7 @@ TEST_F(Repair, ButOfItsFormerLivesItIs) {
   EXPECT_EQ(answered(at(1s)), std::vector<Author>{former});
 }
 
-TEST_F(Repair, WhoKnowsNoMoreIsSilent) {
+TEST_F(Repair, AnAgentThatKnowsNoMoreIsSilent) {
   complain_twice(1, author_of(2), 0, at(0s));
   EXPECT_EQ(answered(at(1s)), nobody) << "nothing is held";
   hold(author_of(2), 20);
@@ -213,7 +213,7 @@ TEST_F(Repair, AnAnswerIsEveryBlockOfTheRow) {
   EXPECT_EQ(repair.relayed(), 2);
 }
 
-TEST_F(Repair, OneAnswerIsForAllWhoLackIt) {
+TEST_F(Repair, OneAnswerIsForAllThatLackIt) {
   hold(author_of(2), 20);
   for (const AgentId from : {1, 3, 4}) complain(from, author_of(2), 0, at(0s));
   for (const AgentId from : {1, 3, 4}) complain(from, author_of(2), 0, at(1s));
@@ -274,7 +274,7 @@ TEST_F(Repair, ATeammatesOlderAnswerIsNot) {
   EXPECT_EQ(answered(at(1s)), two);
 }
 
-TEST_F(Repair, SaysWhatItHoldsWhenItSpeaksNotWhenItDecided) {
+TEST_F(Repair, SendsWhatItHoldsAtThatTimeNotWhenItDecided) {
   hold(author_of(2), 20);
   complain_twice(1, author_of(2), 0, at(0s));
   hold(author_of(2), 25);
@@ -285,7 +285,7 @@ TEST_F(Repair, SaysWhatItHoldsWhenItSpeaksNotWhenItDecided) {
 
 // ---- digests that cannot be true ----
 
-TEST_F(Repair, StrangersInADigestAreNobody) {
+TEST_F(Repair, StrangersInADigestAreIgnored) {
   const Author stranger{2, 4711};
   hold(stranger, 20);
   complain_twice(1, stranger, 0, at(0s));
@@ -307,7 +307,7 @@ TEST_F(Repair, AFloodOfDigestsGetsNoMoreThanOneAnswerAtATime) {
   EXPECT_LT(blocks, 2u * 100u);
 }
 
-TEST_F(Repair, NoMoreRowsAreTakenUpInASecondThanItsLimitWhateverDigestsSay) {
+TEST_F(Repair, NoMoreRowsAreTakenUpInASecondThanItsLimitWhateverDigestsList) {
   constexpr auto kMost = static_cast<int>(AntiEntropy::kMaxAnswers);
   std::vector<Author> gone;
   for (int i = 0; i <= kMost; ++i) gone.push_back({5 + i / 13, 5000 + static_cast<Incarnation>(i)});
@@ -343,7 +343,7 @@ TEST_F(Repair, NoMoreRowsWaitToBeRepeatedThanItsLimitHoweverManySecondsPass) {
   EXPECT_EQ(answered(at(3s)).size(), AntiEntropy::kMaxAnswers);
 }
 
-TEST_F(Repair, WhoHasComplainedAndGoneMakesRoomForOthers) {
+TEST_F(Repair, AnAgentThatHasComplainedAndLeftMakesRoomForOthers) {
   constexpr AgentId kMany = 128;
   roster = roster_of(kMany);
   for (AgentId id = 1; id < kMany; ++id) hold(author_of(id), 20);
@@ -354,7 +354,7 @@ TEST_F(Repair, WhoHasComplainedAndGoneMakesRoomForOthers) {
   EXPECT_EQ(answered(at(7s)), two);
 }
 
-TEST(AgentDigests, OfWhoIsNoMemberAreNotRead) {
+TEST(AgentDigests, FromAgentsThatAreNoMembersAreIgnored) {
   Mission mission = small_mission(3);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
@@ -369,7 +369,7 @@ TEST(AgentDigests, OfWhoIsNoMemberAreNotRead) {
     }
     return only<Contribution>(advance(agent, at(2s))).size();
   };
-  EXPECT_EQ(answers_to({1, 4711}), 0u) << "a member's number, but nobody's life";
+  EXPECT_EQ(answers_to({1, 4711}), 0u) << "a member's number, but no member's incarnation";
   EXPECT_EQ(answers_to({0, incarnation_of(1)}), 0u) << "a member's life under another number";
   EXPECT_EQ(answers_to(author_of(1)), 1u);
 }

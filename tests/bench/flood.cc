@@ -152,7 +152,7 @@ int main(int argc, char** argv) {
   try {
     ergocast::test::enter_own_host();
   } catch (const std::exception& why) {
-    std::fprintf(stderr, "%s: nobody floods the network of this machine\n", why.what());
+    std::fprintf(stderr, "%s: no program floods the network of this machine\n", why.what());
     return 3;
   }
   benchmark::Initialize(&argc, argv);

@@ -159,7 +159,7 @@ std::vector<Neighbour> misjudged(SeparationFilter* self, const Mover& mover,
     for (Neighbour& other : sent) other.velocity_mps.setZero();
   }
   if (bug("uncertainty narrows no direction")) sent = old_news(self, mover, others);
-  if (bug("a body that is not heard does not exist")) {
+  if (bug("a body without messages does not exist")) {
     std::erase_if(sent, [&](const Neighbour& other) { return draw_of(mover, other) % 3 == 0; });
   }
   for (Neighbour& other : sent) {
@@ -551,16 +551,14 @@ void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
 void bug_receive_at_coordinator(Coordinator* self, const Message& message, Bus bus,
                                 AgentId transmitter, Instant now) {
   const auto* status = std::get_if<AgentStatus>(&message);
-  if (bug("the coordinator does not hear an agent") && status != nullptr &&
-      status->header.sender == 2)
+  if (bug("the coordinator ignores an agent") && status != nullptr && status->header.sender == 2)
     return;
   real_receive_at_coordinator(self, message, bus, transmitter, now);
 }
 
 void bug_receive_at_world(World* self, const Message& message, Bus bus, AgentId transmitter,
                           Instant now) {
-  if (bug("the world does not hear the logger") && std::holds_alternative<RecordAck>(message))
-    return;
+  if (bug("the world ignores the logger") && std::holds_alternative<RecordAck>(message)) return;
   if (const auto* state = std::get_if<WorldState>(&message);
       state != nullptr && bug("a restarted world takes bodies to stand")) {
     WorldState taken = *state;

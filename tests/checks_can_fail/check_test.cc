@@ -139,7 +139,8 @@ class Scenarios : public OwnHost {
       found = found || !mistake.has_line || in_line || mistake.to.find('\n') != mistake.to.npos;
       EXPECT_TRUE(said.ends_with(")") && !said.ends_with("()")) << said;
     }
-    EXPECT_TRUE(found) << mistake.said << " is not said of " << mistake.to.substr(0, 200) << ":\n"
+    EXPECT_TRUE(found) << mistake.said << " is not reported for " << mistake.to.substr(0, 200)
+                       << ":\n"
                        << output().substr(0, 2000);
   }
 
@@ -367,7 +368,7 @@ class CheckCanFail : public Scenarios {
       said_of_flags_.push_back(output());
     }
     expect_refused({"check", file_, "--set", "law.epsilon=1", "--set", "law.epsilon=2"},
-                   "--set law.epsilon=1 says it too");
+                   "--set law.epsilon=1 sets it too");
     said_of_flags_.push_back(output());
   }
 
@@ -473,8 +474,9 @@ class CheckCanFail : public Scenarios {
   void plant_warnings() {
     expect_warning_of_homes("station { x_m: 10 y_m: 9 } station { x_m: 20 y_m: 9 } reserve_s: 0.1",
                             "agents.kind[0].reserve_s: 0.1 is little for 2 agents");
-    expect_warning_of_homes("station { x_m: 10 y_m: 9 } station { x_m: 13 y_m: 9 } reserve_s: 20",
-                            "agents.kind: agents 0 and 1 have stations that nobody passes between");
+    expect_warning_of_homes(
+        "station { x_m: 10 y_m: 9 } station { x_m: 13 y_m: 9 } reserve_s: 20",
+        "agents.kind: agents 0 and 1 have stations that no agent can pass between");
     expect_warning_of_hidden_mass();
     expect_warning_of_footprints();
     expect_warning("perturbation: CONSTANT", "3", "at most 3: even without noise");

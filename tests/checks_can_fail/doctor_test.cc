@@ -313,7 +313,7 @@ std::vector<Plant> DoctorCanFail::plants_of_kernels() {
       {"LCM fragments", "at 1 of our 3 ports", "note", 0,
        drop + "; nft 'add rule inet t i udp dport $PORT @th,64,32 0x4c433033 drop'"},
       {"LCM fragments",
-       "only root can tell",
+       "only root can see",
        "note",
        0,
        "",
@@ -441,7 +441,7 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
   const auto every_fourth = [](std::uint32_t sequence) { return doctor::is_large(sequence); };
   const auto every_fifth = [](std::uint32_t sequence) { return sequence % 5 == 2; };
   return {
-      {"peers", "nobody was heard", "problem", 1, "", "ttl=1", test},
+      {"peers", "no other host was received", "problem", 1, "", "ttl=1", test},
       {"peers", "cannot send: ", "problem", 1,
        "nft 'add table inet w; add chain inet w o { type filter hook output priority 0; }; "
        "add rule inet w o udp dport $PORT drop'",
@@ -450,7 +450,7 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
        test},
       {"peers", "not tried: the port is in use", "warning", 1, "", "ttl=1", test, "", {0}},
       plant("peer stranger", "one-way", "problem", {.answers = false}, test),
-      plant("peer stranger", "heard too briefly", "note", {.answers = false, .most = 3}, test),
+      plant("peer stranger", "received too briefly", "note", {.answers = false, .most = 3}, test),
       plant("peer stranger", "only short datagrams arrive", "problem", {.leaves_out = every_fourth},
             test),
       plant("peer stranger", "it has version 9.9", "warning", {.version = "9.9"}, test),
@@ -460,7 +460,7 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
       plant("peer stranger", "it has no mission key and this host has one", "warning", {}, keyed),
       plant("peer stranger", ", lost: ", "warning", {.leaves_out = every_fifth}, test),
       plant("peer stranger", "probes came twice", "note", {.twice = true}, test),
-      plant("peers", "1 more heard by others, but not here", "problem", {.gossips = true}, test),
+      plant("peers", "1 more received by others, but not here", "problem", {.gossips = true}, test),
       // The output for people, on a terminal.
       {.arguments = {"--peer", "1"}, .wrapper = "env NO_COLOR=1", .on_a_terminal = true},
   };

@@ -43,7 +43,8 @@ inline void expect_all_said(const std::vector<std::string>& files,
     }
   }
   for (const Unsayable& one : unsayable) {
-    EXPECT_TRUE(used.contains(&one)) << one.file << " says it after all, or no more: " << one.words;
+    EXPECT_TRUE(used.contains(&one))
+        << one.file << " prints it after all, or no more: " << one.words;
   }
   if (words_of_two == Words::kMayBeShared) return;
   for (const std::string& words : said_twice(sayings)) {

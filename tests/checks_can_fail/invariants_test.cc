@@ -113,7 +113,7 @@ const Plant kPlants[] = {
     {Invariant::kDistanceKept, "a body takes the whole gap", "", kCrowd},
     {Invariant::kDistanceKept, "old places count as new", "", kCrowd},
     {Invariant::kDistanceKept, "places count as half as old", "", kFastCrowd},
-    {Invariant::kDistanceKept, "a body that is not heard does not exist", "", kCrowd},
+    {Invariant::kDistanceKept, "a body without messages does not exist", "", kCrowd},
     {Invariant::kDistanceKept, "edges count afterwards", "", kCrowdInACorner},
     {Invariant::kDistanceKept, "no command is held", "loss = 0.3", kUnguardedCrowd},
     {Invariant::kDistanceKept, "places of beacons are always new", kLateBeacons, kHearsayCrowd},
@@ -170,10 +170,10 @@ const Plant kPlants[] = {
     {Invariant::kHonestMessagesAccepted, "an honest block is refused"},
     {Invariant::kNoEarlyEnd, "an agent gives up"},
     {Invariant::kNoWakeupInThePast, "an agent never sleeps"},
-    {Invariant::kHeardLoggerIsKept, "the world does not hear the logger"},
+    {Invariant::kHeardLoggerIsKept, "the world ignores the logger"},
     {Invariant::kEverybodyIsBack, "a newcomer is mute", "", "agents { quorum: 3 }"},
-    {Invariant::kLiveAgentsAreKnown, "the coordinator does not hear an agent"},
-    {Invariant::kLiveAgentsCount, "the coordinator does not hear an agent", "",
+    {Invariant::kLiveAgentsAreKnown, "the coordinator ignores an agent"},
+    {Invariant::kLiveAgentsCount, "the coordinator ignores an agent", "",
      "agents { forget_silent_after_s: 1 }"},
     {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped", "", "", ", a member"},
     {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped", "",
@@ -245,7 +245,7 @@ TEST_F(InvariantsCanFail, EachOfThem) {
     for (const char* seed : {"seed 1: ", "seed 2: "}) {
       EXPECT_TRUE(prints(seed + name + ": ")) << plant.bug << " is not seen: " << printed();
     }
-    EXPECT_TRUE(prints(plant.prints)) << plant.prints << " is not said: " << printed();
+    EXPECT_TRUE(prints(plant.prints)) << plant.prints << " is not reported: " << printed();
     EXPECT_TRUE(prints("again: ergocast simulate ")) << printed();
     EXPECT_TRUE(prints("--seeds 2")) << printed();
   }
@@ -269,7 +269,7 @@ TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
   EXPECT_EQ(places, std::ssize(planted));
 }
 
-TEST_F(InvariantsCanFail, AMissionWhoseProcessDiesIsOneThatFailed) {
+TEST_F(InvariantsCanFail, AMissionWhoseProcessCrashesIsOneThatFailed) {
   EXPECT_EQ(run_plant({}, "an agent crashes"), 4);
   EXPECT_TRUE(prints("seed 1: ")) << printed();
   EXPECT_TRUE(prints("SIGABRT")) << printed();

@@ -159,7 +159,7 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
     const std::string name = to_string(reason);
     const auto plant = plants.find(reason);
     if (plant == plants.end()) {
-      ADD_FAILURE() << "nobody says what is refused as: " << name;
+      ADD_FAILURE() << "no test covers what is refused as: " << name;
       continue;
     }
     EXPECT_EQ(refused(name), 0) << name;

@@ -77,7 +77,7 @@ std::vector<Lie> lies_of_the_summary() {
        }},
       {"left or was evicted at tick 5", 2,
        [=](const fs::path& run) { call_it_a_run(run, agent("active_until", 5)); }},
-      {"covered did not count for a while", 2,
+      {"did not count for a while", 2,
        [=](const fs::path& run) { call_it_a_run(run, agent("coverage_switched_at", 7)); }},
       {"another program than ergocast-sim", 2,
        [](const fs::path& run) {
@@ -93,8 +93,7 @@ std::vector<Lie> lies_of_the_summary() {
        [](const fs::path& run) { edit_summary(run, [](Json& s) { s["ticks"] = 49; }); }},
       {"summary.json, /scenario_hash", 1,
        [](const fs::path& run) { edit_summary(run, [](Json& s) { s["scenario_hash"] = "0"; }); }},
-      {"so nothing is known of restarts", 0,
-       [](const fs::path& run) { fs::remove(run / "summary.json"); }},
+      {"so restarts are unknown", 0, [](const fs::path& run) { fs::remove(run / "summary.json"); }},
       {"another kind of processor", 1,
        [](const fs::path& run) {
          edit_summary(run, [](Json& s) { s["cpu_fma"] = !s["cpu_fma"].get<bool>(); });
@@ -263,7 +262,7 @@ TEST_F(VerifyCanFail, InEachOfItsFindings) {
   write(folder_ / "with_map.textproto", text);
   record({"simulate", folder_ / "with_map.textproto"}, with_map);
   fs::remove(folder_ / "even.csv");
-  expect(with_map, 0, "its maps are gone");
+  expect(with_map, 0, "its maps are missing");
 
   // The file also has the words of --help.
   ASSERT_EQ(ergocast({"verify", "--help"}), 0) << output();

@@ -242,7 +242,7 @@ TEST_F(PageConnections, AStreamThatIsStuckGoesBeforeOlderOnes) {
   for (Client* one : taking) EXPECT_FALSE((one->look(), one->ended()));
 }
 
-TEST_F(PageConnections, AStreamWithoutNewsShowsSignsOfLifeAndEndsInOrder) {
+TEST_F(PageConnections, AStreamWithoutNewDataShowsSignsOfLifeAndEndsInOrder) {
   Client& user = client(kEvents);
   EXPECT_TRUE(gets(user, "news"));
   stream_ = "";

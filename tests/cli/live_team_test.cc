@@ -59,7 +59,7 @@ TEST_F(LiveTeamFrames, ComeOnceAndWithAllThatIsNew) {
 }
 
 // A browser that connects late gets the curve up to that time.
-TEST_F(LiveTeamFrames, BeginWithWhatTheStatusesHaveTold) {
+TEST_F(LiveTeamFrames, BeginWithWhatTheStatusesHaveReported) {
   test::announce(test::small_mission(2));
   LiveTeam live_team(test::kRun, kListening, false);
   for (Tick tick = 0; tick < 3; ++tick) {
@@ -113,7 +113,7 @@ TEST_F(LiveTeamFrames, OfOtherRunsShowNothing) {
   EXPECT_EQ(other.frame(cursor, more), "");
 }
 
-TEST_F(LiveTeamFrames, SayWhetherTheyAreAReplay) {
+TEST_F(LiveTeamFrames, MarkAReplay) {
   for (const bool replay : {false, true}) {
     LiveTeam one(kWatchedRun, kListening, false, replay);
     one.begin(test::small_mission(2), {});

@@ -80,7 +80,7 @@ class RecordedTeam : public ::testing::Test {
   std::string events_;
 };
 
-TEST_F(RecordedTeam, SaysWhenAnAgentWasSilentAndWhatEachKnew) {
+TEST_F(RecordedTeam, ReportsWhenAnAgentWasSilentAndWhatEachKnew) {
   record_ticks(5s, {0, 1});
   record_ticks(5s, {0});
   record_ticks(5s, {0, 1});

@@ -86,7 +86,7 @@ TEST_F(RunRegistry, RunsAreInTheOrderInWhichTheyStarted) {
   EXPECT_EQ(found.runs[0].run, 0xa1U);
 }
 
-TEST_F(RunRegistry, AStaleEntryIsSaidOnceAndRemoved) {
+TEST_F(RunRegistry, AStaleEntryIsReportedOnceAndRemoved) {
   written(example()).reset();
   write(file(), to_json_text(example()));  // without a lock, as a killed process leaves it
   EXPECT_NE(warning().find("run 00000000000000a1 of lake, /home/you/runs/la\nke: its "
@@ -96,7 +96,7 @@ TEST_F(RunRegistry, AStaleEntryIsSaidOnceAndRemoved) {
   EXPECT_TRUE(live_runs().warnings.empty());
 }
 
-TEST_F(RunRegistry, AFileThatIsNoEntryIsSaidAndLeftAlone) {
+TEST_F(RunRegistry, AFileThatIsNoEntryIsReportedAndLeftAlone) {
   written(example()).reset();
   std::string text = to_json_text(example());
   const auto with = [&text](const std::string& part, const std::string& other) {

@@ -43,7 +43,7 @@ TEST(TeamHistory, HasTheColumnsOfTheMetrics) {
                             "age": [6.0, 6.0], "received": [20, 20], "lost": [6, 6]})"));
 }
 
-TEST(TeamHistory, SaysNothingOfAgentsThatHaveSaidNothing) {
+TEST(TeamHistory, LeavesOutAgentsThatHaveSentNothing) {
   TeamPicture picture = picture_at(0);
   picture.agents.erase(picture.agents.begin(), picture.agents.begin() + 2);
   TeamHistory history;

@@ -36,7 +36,7 @@ class Monitored : public ::testing::Test {
   MonitoredRun run_{kRun, at(0s)};
 };
 
-TEST_F(Monitored, AnAgentThatWasNotHeardYetIsThereForAsLongAsItMayBeSilent) {
+TEST_F(Monitored, AnAgentThatWasNotReceivedYetIsThereForAsLongAsItMayBeSilent) {
   hear_mission(MissionState::kEnded, at(10ms));
   EXPECT_EQ(run_.still_there(at(20ms)), (Names{"agent 0", "agent 1"}))
       << "their last words may come next";
@@ -79,7 +79,7 @@ TEST_F(Monitored, AllVehiclesOfAllDriversStandBeforeTheTeamDoes) {
   EXPECT_EQ(run_.still_there(at(5ms)), Names{"the world"});
 }
 
-TEST_F(Monitored, TellsMissionTimeAndLeavesOutWhatDoesNotCount) {
+TEST_F(Monitored, ReportsMissionTimeAndLeavesOutWhatDoesNotCount) {
   EXPECT_EQ(run_.mission_time(40), "tick 40") << "no mission is known";
   auto part = mission_part(0, MissionState::kRunning, roster_of(2));
   part.holds = {{10, 30}};

@@ -58,7 +58,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-TEST(TeamTable, SaysWhoBlocksAnAgentOnceItLasts) {
+TEST(TeamTable, ShowsWhichBodyBlocksAnAgentOnceItLasts) {
   AgentRow row = row_of(0, Condition::kOk);
   row.status->blocked_by = 3;
   row.blocked_s = 0.9;
@@ -71,23 +71,17 @@ TEST(TeamTable, SaysWhoBlocksAnAgentOnceItLasts) {
   EXPECT_EQ(condition_text(row), "silent 0 s");
 }
 
-TEST(TeamTable, SaysEverythingInLinesThatFit) {
+TEST(TeamTable, ShowsEverythingInLinesThatFit) {
   EXPECT_EQ(
       team_table(running_team(), false),
       "quadrimodal_corners, run 0000000000001234, running, tick 599999 of 1000000 (60 %), t = "
-      "59999.9 s\n"
-      "2 of 3 agents alive, phi^2 0.00123 (median), unauthenticated\n"
-      "\n"
-      "coordinator  alive  life 000000  tick 599999  on base\n"
-      "world        silent 3 s  life 000000  tick 599990\n"
-      "logger       not heard\n"
-      "\n"
-      " id  state       host      life     tick   phi^2 stale s lag ms lost drops restarts  "
-      "refused\n"
-      "  2  silent 4 s  robot-12  abcdef 599999 0.00123    12.3    1.2    0     0        0  tag 3 "
-      "range 1\n"
-      "  0  ok          robot-12  abcdef 599999 0.00123    12.3    1.2    0     0        1\n"
-      "127  ok          robot-12  abcdef 599999 0.00123    12.3    1.2    0     0        0\n");
+      "59999.9 s\n2 of 3 agents alive, phi^2 0.00123 (median), unauthenticated\n\ncoordinator  "
+      "alive  life 000000  tick 599999  on base\nworld        silent 3 s  life 000000  tick "
+      "599990\nlogger       no message\n\n id  state       host      life     tick   phi^2 stale s "
+      "lag ms lost drops restarts  refused\n  2  silent 4 s  robot-12  abcdef 599999 0.00123    "
+      "12.3    1.2    0     0        0  tag 3 range 1\n  0  ok          robot-12  abcdef 599999 "
+      "0.00123    12.3    1.2    0     0        1\n127  ok          robot-12  abcdef 599999 "
+      "0.00123    12.3    1.2    0     0        0\n");
   for (const std::string& line : lines_of(team_table(running_team(), false))) {
     EXPECT_LE(line.size(), 100u) << line;
   }
@@ -120,7 +114,7 @@ TEST(TeamTable, ColourChangesNothingButColour) {
   EXPECT_EQ(coloured, team_table(running_team(), false));
 }
 
-TEST(TeamTable, NamesWhomAnAgentWaitsFor) {
+TEST(TeamTable, NamesTheProcessThatAnAgentWaitsFor) {
   AgentRow row = row_of(1, Condition::kWaiting);
   row.status->waiting_for = 3;
   EXPECT_EQ(condition_text(row), "waiting for 3");
@@ -128,7 +122,7 @@ TEST(TeamTable, NamesWhomAnAgentWaitsFor) {
   EXPECT_EQ(condition_text(row), "waiting for world");
 }
 
-TEST(TeamTable, OfALongHostNameOrANeverHeardAgentStaysAligned) {
+TEST(TeamTable, OfALongHostNameOrANeverReceivedAgentStaysAligned) {
   TeamPicture picture = running_team();
   picture.agents[0].status->host = std::string(63, 'h');
   picture.agents[1].status->host = "über-träge-robotermaschine";

@@ -124,7 +124,7 @@ TEST_F(TeamViewTest, IsCompleteOnceTheMissionAndEveryMemberAreKnown) {
   EXPECT_TRUE(view_.complete());
 }
 
-TEST_F(TeamViewTest, WhoSaysNothingIsLateThenSilentAndStandsFirst) {
+TEST_F(TeamViewTest, AnAgentWithoutMessagesIsLateThenSilentAndStandsFirst) {
   hear_mission(at(0s));
   for (const auto time : {0s, 1s, 2s, 3s}) hear_all(at(time), 0, time > 0s ? 2 : kUnassigned);
   EXPECT_EQ(condition(2, at(900ms)), Condition::kOk);
@@ -139,7 +139,7 @@ TEST_F(TeamViewTest, WhoSaysNothingIsLateThenSilentAndStandsFirst) {
   EXPECT_TRUE(picture.trouble);
 }
 
-TEST_F(TeamViewTest, AMemberThatWasNeverHeardIsSilentSinceWeListen) {
+TEST_F(TeamViewTest, AMemberThatWasNeverReceivedIsSilentSinceWeListen) {
   hear_mission(at(0s));
   hear_all(at(2s), 0, 3);
   EXPECT_EQ(condition(3, at(2900ms)), Condition::kUnheard);
@@ -148,19 +148,19 @@ TEST_F(TeamViewTest, AMemberThatWasNeverHeardIsSilentSinceWeListen) {
   EXPECT_EQ(row(3, at(3500ms)).silent_s, 3.5);
 }
 
-TEST_F(TeamViewTest, AReplayKeepsNobodyAlive) {
+TEST_F(TeamViewTest, AReplayKeepsNoProcessAlive) {
   hear_mission(at(0s));
   give(view_, status(1, 7), at(0s));
   for (int i = 1; i < 10; ++i) give(view_, status(1, 7), at(i * 1s));
   EXPECT_EQ(row(1, at(9s)).silent_s, 9);
 }
 
-TEST_F(TeamViewTest, WhoWaitsAndStandsStillIsNamedWithWhomItWaitsFor) {
+TEST_F(TeamViewTest, AnAgentThatWaitsIsNamedWithTheProcessThatItWaitsFor) {
   hear_mission(at(0s));
   AgentStatus waiting = status(1, 1, 5);
   waiting.waiting_for = 3;
   give(view_, waiting, at(0s));
-  EXPECT_EQ(condition(1, at(0s)), Condition::kOk) << "in lockstep everybody waits now and then";
+  EXPECT_EQ(condition(1, at(0s)), Condition::kOk) << "in lockstep every agent waits now and then";
   waiting.header.sequence = 2;
   give(view_, waiting, at(800ms));
   EXPECT_EQ(condition(1, at(800ms)), Condition::kWaiting);
@@ -186,7 +186,7 @@ TEST_F(TeamViewTest, ASlowLoopIsLate) {
   EXPECT_EQ(condition(1, at(0s)), Condition::kLate);
 }
 
-TEST_F(TeamViewRealtime, WhoIsHalfASecondBehindTheWorldIsLate) {
+TEST_F(TeamViewRealtime, AnAgentHalfASecondBehindTheWorldIsLate) {
   hear_mission(at(0s));
   // dt 0.1 s at twice the speed: ten ticks are half a second, and one is on its way.
   give(view_, world_state(51, {{1, 1, 0}}), at(0s));
@@ -196,7 +196,7 @@ TEST_F(TeamViewRealtime, WhoIsHalfASecondBehindTheWorldIsLate) {
   EXPECT_EQ(condition(1, at(0s)), Condition::kLate);
 }
 
-TEST_F(TeamViewTest, ARestartedAgentIsOneRowThatCountsItsFormerLives) {
+TEST_F(TeamViewTest, ARestartedAgentIsOneRowThatCountsItsFormerIncarnations) {
   std::vector<RosterEntry> roster = roster_of(4);
   roster[1].active_until = 20;
   roster.push_back({{1, 71}, 20, 30});
@@ -213,7 +213,7 @@ TEST_F(TeamViewTest, ARestartedAgentIsOneRowThatCountsItsFormerLives) {
   EXPECT_EQ(row(0, at(0s)).restarts, 0);
 }
 
-TEST_F(TeamViewTest, WhoHasLeftForGoodIsGoneAndMissing) {
+TEST_F(TeamViewTest, AnAgentThatHasLeftForGoodIsGoneAndMissing) {
   std::vector<RosterEntry> roster = roster_of(4);
   roster[2].active_until = 20;
   hear_mission(at(0s), roster);
@@ -247,7 +247,7 @@ TEST_F(TeamViewTest, AProcessThatFallsSilentIsTrouble) {
   }
 }
 
-TEST_F(TeamViewTest, BeforeTheStartNobodyMissesTheWorldNorALoggerThatIsNotWaitedFor) {
+TEST_F(TeamViewTest, BeforeTheStartAMissingWorldOrOptionalLoggerIsNoTrouble) {
   hear_mission(at(0s), roster_of(4), 0, MissionState::kWaiting);
   give(view_, coordinator_at(0), at(3s));
   for (AgentId id = 0; id < 4; ++id) give(view_, status(id, 1), at(3s));
@@ -268,7 +268,7 @@ TEST_F(TeamViewTest, WithoutACoordinatorTheAgentsThemselvesAreTheTeam) {
   EXPECT_TRUE(view_.picture(at(3s)).trouble) << "no coordinator";
 }
 
-TEST_F(TeamViewTest, TheMetricIsTheMedianOfWhoKnowsOne) {
+TEST_F(TeamViewTest, TheMetricIsTheMedianOfAgentsThatKnowOne) {
   hear_mission(at(0s));
   EXPECT_EQ(view_.picture(at(0s)).ergodic_metric, std::nullopt);
   for (AgentId id = 0; id < 4; ++id) {
@@ -280,7 +280,7 @@ TEST_F(TeamViewTest, TheMetricIsTheMedianOfWhoKnowsOne) {
   EXPECT_EQ(view_.picture(at(0s)).ergodic_metric, 2);
 }
 
-TEST_F(TeamViewTest, IsOverWhenTheCoordinatorOrEverybodySaysSo) {
+TEST_F(TeamViewTest, IsOverWhenTheCoordinatorOrAllAgentsReportIt) {
   hear_mission(at(0s));
   for (AgentId id = 0; id < 4; ++id) {
     EXPECT_FALSE(view_.over());

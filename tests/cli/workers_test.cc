@@ -21,7 +21,7 @@ int answer(std::uint64_t job) {
   return 10 * static_cast<int>(job);
 }
 
-TEST(Workers, LoseAJobThatHangsOrDiesAndNoOther) {
+TEST(Workers, LoseAJobThatHangsOrCrashesAndNoOther) {
   std::map<std::uint64_t, int> results;
   std::map<std::uint64_t, std::string> lost;
   Jobs jobs =
@@ -35,7 +35,7 @@ TEST(Workers, LoseAJobThatHangsOrDiesAndNoOther) {
   work_in_processes(jobs, signals);
   EXPECT_EQ(results, (std::map<std::uint64_t, int>{{0, 0}, {2, 20}, {4, 40}, {5, 50}}));
   EXPECT_EQ(lost, (std::map<std::uint64_t, std::string>{{1, "no end after 1 s of processor time"},
-                                                        {3, "its process died of SIGKILL"}}));
+                                                        {3, "its process was killed by SIGKILL"}}));
 }
 
 }  // namespace

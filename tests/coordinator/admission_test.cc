@@ -24,7 +24,7 @@ TEST(CoordinatorAdmits, EachAgentUnderTheNumberItAsksFor) {
   EXPECT_TRUE(coordinator.roster()[0].active_at(0));
 }
 
-TEST(CoordinatorAdmits, WhoeverDoesNotCareUnderTheLowestFreeNumber) {
+TEST(CoordinatorAdmits, AnAgentWithoutAWishUnderTheLowestFreeNumber) {
   Coordinator coordinator = coordinator_of(small_mission(3));
   give(coordinator, hello_of(1), at(0s));
   give(coordinator, hello_of(kUnassigned, 71), at(0s));
@@ -49,7 +49,7 @@ TEST(CoordinatorAdmits, BeyondThePlanUnderTheNextNumberUpToTheLimit) {
   }
 }
 
-TEST(CoordinatorAdmits, NobodyUnderANumberThatDoesNotExist) {
+TEST(CoordinatorAdmits, NoAgentUnderANumberThatDoesNotExist) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   for (const AgentId id : {kMaxAgents, kMaxAgents + 70, -2, -70}) {
     give(coordinator, hello_of(id, 71), at(0s));
@@ -57,7 +57,7 @@ TEST(CoordinatorAdmits, NobodyUnderANumberThatDoesNotExist) {
   EXPECT_TRUE(coordinator.roster().empty());
 }
 
-TEST(CoordinatorAdmits, NobodyWhoIsNotOfThisMission) {
+TEST(CoordinatorAdmits, NoAgentOfAnotherMission) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   Hello foreign = hello_of(0);
   foreign.header.run = kRun + 1;
@@ -75,7 +75,7 @@ TEST(CoordinatorAdmits, OneProcessOnce) {
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }
 
-TEST(CoordinatorAdmits, NotTheYoungerOfTwoWithOneNumberWhileTheElderLives) {
+TEST(CoordinatorAdmits, NotTheYoungerOfTwoWithOneNumberWhileTheElderRuns) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   give(coordinator, hello_of(0), at(0s));
   give(coordinator, hello_of(0, 99), at(1s));
@@ -85,7 +85,7 @@ TEST(CoordinatorAdmits, NotTheYoungerOfTwoWithOneNumberWhileTheElderLives) {
   EXPECT_EQ(coordinator.roster()[0].author, author_of(0));
 }
 
-TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
+TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerIncarnationIsSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, world_where(7, {6, 6}), at(1s));
   give(coordinator, hello_of(0, 99), at(2999ms));
@@ -101,7 +101,7 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
   EXPECT_EQ(entry(99).active_until, -1);
 }
 
-TEST(CoordinatorAdmits, NoMoreLivesOfANumberThanItsLimit) {
+TEST(CoordinatorAdmits, NoMoreIncarnationsOfANumberThanItsLimit) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   Instant now = at(0s);
   for (Incarnation incarnation = 5000; incarnation < 5000 + 2 * kMaxIncarnationsPerAgent;
@@ -115,7 +115,7 @@ TEST(CoordinatorAdmits, NoMoreLivesOfANumberThanItsLimit) {
   EXPECT_EQ(incarnations, kMaxIncarnationsPerAgent);
 }
 
-TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
+TEST(CoordinatorAdmits, NoAgentToATickThatTheTeamHasCovered) {
   // The coordinator did not receive the world's last state, and the world stopped.
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, world_where(7, {6, 6}), at(1s));
@@ -131,7 +131,7 @@ TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
 }
 
 // A container engine restarts a stopped agent within a second and does not pass on its number.
-TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
+TEST(CoordinatorAdmits, AnAgentWithoutAWishAsTheSuccessorOfOneThatFallsSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const auto ask_at = [&](Instant now) {
     give(coordinator, hello_of(kUnassigned, 99), now);
@@ -147,7 +147,7 @@ TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
       }));
 }
 
-TEST(CoordinatorAdmits, WhoeverDoesNotCareOnceAllMembersHaveSpoken) {
+TEST(CoordinatorAdmits, AnAgentWithoutAWishOnceAllMembersHaveSentAStatus) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, hello_of(kUnassigned, 99), at(500ms));
   give(coordinator, status_of(0, 1), at(600ms));
@@ -157,7 +157,7 @@ TEST(CoordinatorAdmits, WhoeverDoesNotCareOnceAllMembersHaveSpoken) {
   EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 99}));
 }
 
-TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
+TEST(CoordinatorAdmits, AReplayedStatusKeepsNoAgentAlive) {
   Coordinator coordinator = coordinator_of(small_mission(1));
   give(coordinator, hello_of(0), at(0s));
   give(coordinator, status_of(0, 5), at(1s));
@@ -176,7 +176,7 @@ std::int64_t newest_sent(Coordinator& coordinator, Instant now) {
   return -1;
 }
 
-TEST(CoordinatorAdmits, NobodyWhoDoesNotKnowTheNewestMissionAndSaysItSoon) {
+TEST(CoordinatorAdmits, NoAgentWithoutTheNewestMissionAndRepeatsItSoon) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   EXPECT_EQ(newest_sent(coordinator, at(0s)), 0);
   give(coordinator, hello_of(0, 71, -1), at(10ms));
@@ -187,7 +187,7 @@ TEST(CoordinatorAdmits, NobodyWhoDoesNotKnowTheNewestMissionAndSaysItSoon) {
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }
 
-TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
+TEST(CoordinatorAdmits, ManyAtOnceThatKnowTheNewestMessage) {
   Coordinator coordinator = coordinator_of(small_mission(20));
   const std::int64_t known = newest_sent(coordinator, at(0s));
   for (AgentId id = 0; id < 20; ++id)
@@ -196,7 +196,7 @@ TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
 }
 
 // An agent waited for the number of a running agent and gave up; its messages were recorded.
-TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
+TEST(CoordinatorAdmits, NoAgentByAHelloFromBeforeTheHolderFellSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const std::int64_t known = newest_sent(coordinator, at(1s));
   give(coordinator, hello_of(0, 99, known), at(1s));
@@ -212,7 +212,7 @@ TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
 }
 
 // On a network with long delays, members fall silent and return faster than any HELLO arrives.
-TEST(CoordinatorAdmits, OthersThoughAMemberFellSilentSinceTheySpoke) {
+TEST(CoordinatorAdmits, OthersThoughAMemberFellSilentSinceTheirHello) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const std::int64_t known = newest_sent(coordinator, at(1s));
   EXPECT_GT(newest_sent(coordinator, at(3400ms)), known) << "a silence is news";
@@ -220,7 +220,7 @@ TEST(CoordinatorAdmits, OthersThoughAMemberFellSilentSinceTheySpoke) {
   EXPECT_EQ(coordinator.roster().size(), 3u);
 }
 
-TEST(CoordinatorAdmits, NobodyBySomethingSaidToItsPredecessor) {
+TEST(CoordinatorAdmits, NoAgentByAMessageToItsPredecessor) {
   announce(small_mission(2));
   Coordinator coordinator({0, 0xc1, "here", kVersion}, announced_plan, Takeover::kMust);
   advance(coordinator, at(0s));
@@ -234,14 +234,14 @@ TEST(CoordinatorAdmits, NobodyBySomethingSaidToItsPredecessor) {
   EXPECT_EQ(coordinator.roster().size(), 3u);
 }
 
-TEST(CoordinatorAdmits, NobodyOnceTheMissionIsOver) {
+TEST(CoordinatorAdmits, NoAgentOnceTheMissionIsOver) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   coordinator.end(false, "enough", at(1s));
   give(coordinator, hello_of(0, 99), at(10s));
   EXPECT_EQ(coordinator.roster().size(), 2u);
 }
 
-TEST(CoordinatorAdmits, ABoundedNumberOfLives) {
+TEST(CoordinatorAdmits, ABoundedNumberOfIncarnations) {
   Coordinator coordinator = coordinator_of(small_mission(1));
   for (Incarnation incarnation = 1; incarnation <= 2000; ++incarnation) {
     give(coordinator, hello_of(0, incarnation), at(std::chrono::seconds(10 * incarnation)));
@@ -249,7 +249,7 @@ TEST(CoordinatorAdmits, ABoundedNumberOfLives) {
   EXPECT_LE(coordinator.roster().size(), 4u * kMaxAgents);
 }
 
-TEST(CoordinatorAdmits, OnlyItsOwnVersionAndItKnowsWhomItTurnedAway) {
+TEST(CoordinatorAdmits, OnlyItsOwnVersionAndItRemembersRefusedHosts) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   Hello hello = hello_of(0);
   hello.version = "9.9.9";
@@ -314,7 +314,7 @@ TEST(CoordinatorAdmits, NoKindThatTheMissionDoesNotHave) {
   EXPECT_TRUE(of_alike.roster().empty());
 }
 
-TEST(CoordinatorAdmits, NobodyToABodyThatIsAnotherVehicleThanItsKinds) {
+TEST(CoordinatorAdmits, NoAgentToABodyThatIsAnotherVehicleThanItsKinds) {
   Mission mission = mission_of_two_kinds();
   mission.speed_limit_mps = 20;
   mission.kinds[1].speed_limit_mps = 10;
@@ -352,11 +352,11 @@ TEST(CoordinatorStarts, WhenTheQuorumIsThereAndNotBefore) {
   give(coordinator, hello_of(3), at(1s));
   const auto sent = only<MissionPart>(advance(coordinator, at(1s)));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-  ASSERT_FALSE(sent.empty()) << "and says so at once";
+  ASSERT_FALSE(sent.empty()) << "and reports it at once";
   EXPECT_EQ(sent[0].state, MissionState::kRunning);
 }
 
-TEST(CoordinatorStarts, DoesNotCountThoseWhoHaveDiedMeanwhile) {
+TEST(CoordinatorStarts, DoesNotCountAgentsThatHaveStoppedMeanwhile) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   give(coordinator, hello_of(0), at(0s));
   give(coordinator, hello_of(1), at(4s));
@@ -367,7 +367,7 @@ TEST(CoordinatorStarts, DoesNotCountThoseWhoHaveDiedMeanwhile) {
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
 }
 
-TEST(CoordinatorStarts, OrFailsByATimeOutThatNamesWhoIsMissing) {
+TEST(CoordinatorStarts, OrFailsByATimeOutThatNamesTheMissingAgents) {
   Mission mission = small_mission(4);
   mission.quorum = 3;
   mission.timing.admission_timeout_s = 20;

@@ -29,7 +29,7 @@ TEST(CoordinatorRepeats, TheWholeMissionOnceASecondOnBothBuses) {
   }
 }
 
-TEST(CoordinatorRepeats, SoonerToWhoeverHasNotHeardButWithoutAFlood) {
+TEST(CoordinatorRepeats, SoonerForAProcessThatLacksTheMissionButWithoutAFlood) {
   Coordinator coordinator = running_coordinator(small_mission(1));
   int missions = 0;
   for (int ms = 1; ms <= 1000; ++ms) {
@@ -181,7 +181,7 @@ Hello question_of_world(Incarnation incarnation, AgentId whom) {
   return {{kRun, kWorld, incarnation, next_sequence(), 0}, whom, "", ""};
 }
 
-TEST(CoordinatorTimeOut, NamesWhomAWorldThatBeginsWaitsFor) {
+TEST(CoordinatorTimeOut, NamesTheAgentForWhichAWorldThatBeginsWaits) {
   for (const bool heard_a_world : {false, true}) {
     Coordinator coordinator = running_coordinator(impatient(3));
     // The former world had the answers of all agents but another one.
@@ -199,7 +199,7 @@ TEST(CoordinatorTimeOut, NamesWhomAWorldThatBeginsWaitsFor) {
   }
 }
 
-TEST(CoordinatorTimeOut, BelievesTheWorldThatHasBegunOnceItSpeaks) {
+TEST(CoordinatorTimeOut, AcceptsTheWorldThatHasBegunOnceItSendsAState) {
   Coordinator coordinator = running_coordinator(impatient(2));
   give(coordinator, question_of_world(kWorldLife, 0), at(0s));
   give(coordinator, world_where(5, {5, 4}), at(500ms));
@@ -244,7 +244,7 @@ std::string blamed(const std::vector<AgentId>& waiting_for) {
   return coordinator.reason().substr(0, coordinator.reason().find(" has"));
 }
 
-TEST(CoordinatorTimeOut, DoesNotBlameWhoWaitsForATeammate) {
+TEST(CoordinatorTimeOut, DoesNotBlameAnAgentThatWaitsForATeammate) {
   EXPECT_EQ(blamed({1, -1}), "agent 1");
   EXPECT_EQ(blamed({-1, 0}), "agent 0");
   EXPECT_EQ(blamed({2, 2, -1}), "agent 2");
@@ -265,7 +265,7 @@ TEST(CoordinatorTimeOut, BlamesTheSilentFirstAndAmongThemTheOneSilentForLongest)
       << coordinator.reason();
 }
 
-TEST(CoordinatorTimeOut, NamesTheWorldIfEverybodyHasAnswered) {
+TEST(CoordinatorTimeOut, NamesTheWorldIfAllAgentsHaveAnswered) {
   Coordinator coordinator = running_coordinator(impatient(2));
   give(coordinator, world_where(5, {5, 5}), at(1s));
   all_alive(coordinator, {-1, -1}, at(10s));
@@ -274,7 +274,7 @@ TEST(CoordinatorTimeOut, NamesTheWorldIfEverybodyHasAnswered) {
       << coordinator.reason();
 }
 
-TEST(CoordinatorTimeOut, EvictsInsteadIfTheScenarioSaysSo) {
+TEST(CoordinatorTimeOut, EvictsInsteadIfTheScenarioChoosesIt) {
   Coordinator coordinator = running_coordinator(impatient(2, OnTimeout::kEvict));
   give(coordinator, world_where(5, {5, 4}), at(1s));
   all_alive(coordinator, {-1, -1}, at(10s));
@@ -317,7 +317,7 @@ TEST(CoordinatorEnds, WhenTheWorldHasReachedTheLastTick) {
   EXPECT_EQ(coordinator.reason(), "mission complete");
 }
 
-TEST(CoordinatorEnds, IgnoresAWorldThatSpeaksOfThePast) {
+TEST(CoordinatorEnds, IgnoresAWorldThatSendsOldTicks) {
   Coordinator coordinator = running_coordinator(impatient(1));
   give(coordinator, world_where(7, {6}), at(1s));
   give(coordinator, world_where(3, {3}), at(2s));
@@ -343,7 +343,7 @@ TEST(CoordinatorEnds, TheFirstEndIsFinal) {
   EXPECT_EQ(coordinator.reason(), "mission complete");
 }
 
-TEST(CoordinatorEnds, TellsEverybodyTenTimesOverASecondAndIsThenDone) {
+TEST(CoordinatorEnds, SendsTheEndTenTimesInASecondAndIsThenDone) {
   Coordinator coordinator = running_coordinator(small_mission(1));
   coordinator.end(true, "agent 3 is late", at(5s));
   int sent = 0;
@@ -360,13 +360,13 @@ TEST(CoordinatorEnds, TellsEverybodyTenTimesOverASecondAndIsThenDone) {
   EXPECT_TRUE(coordinator.finished());
 }
 
-TEST(CoordinatorEnds, WakesUpNoLaterThanItsNextWord) {
+TEST(CoordinatorEnds, WakesUpNoLaterThanItsNextMessage) {
   Coordinator coordinator = coordinator_of(small_mission(1));
   EXPECT_EQ(coordinator.next_wakeup(), Instant{}) << "at once, to begin";
   advance(coordinator, at(10s));
   EXPECT_EQ(coordinator.next_wakeup(), at(10s + 250ms)) << "the team's status";
   give(coordinator, hello_of(0), at(10s));
-  EXPECT_LE(coordinator.next_wakeup(), at(10s)) << "a change is said at once";
+  EXPECT_LE(coordinator.next_wakeup(), at(10s)) << "a change is sent at once";
 }
 
 }  // namespace

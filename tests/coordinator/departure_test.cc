@@ -33,16 +33,16 @@ AgentStatus farewell_of(AgentId id, Tick tick) {
   return status;
 }
 
-TEST(Leaving, AnAgentThatSaysItHasFinishedIsAMemberNoLonger) {
+TEST(Leaving, AnAgentThatReportsItsEndIsAMemberNoLonger) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, world_where(7, {6, 6}), at(100ms));
   give(coordinator, farewell_of(1, 5), at(100ms));
   EXPECT_EQ(entry_of(coordinator, author_of(1)).active_until, 7);
   EXPECT_EQ(entry_of(coordinator, author_of(0)).active_until, -1);
-  EXPECT_TRUE(sent_revision(coordinator, at(100ms))) << "and all are told at once";
+  EXPECT_TRUE(sent_revision(coordinator, at(100ms))) << "and all receive it at once";
 }
 
-TEST(Leaving, ItsLastTickCountsEvenIfTheWorldHasNotSpokenOfItYet) {
+TEST(Leaving, ItsLastTickCountsEvenIfTheWorldHasNotSentItYet) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, world_where(7, {6, 6}), at(100ms));
   give(coordinator, farewell_of(1, 9), at(100ms));
@@ -63,7 +63,7 @@ TEST(Leaving, TheEndOfTheMissionIsNone) {
   EXPECT_EQ(entry_of(coordinator, author_of(1)).active_until, -1);
 }
 
-TEST(Leaving, AFormerLifesFarewellDoesNotConcernItsSuccessor) {
+TEST(Leaving, AFormerIncarnationsFarewellDoesNotConcernItsSuccessor) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, hello_of(1, 99), at(3s));
   give(coordinator, farewell_of(1, 5), at(3s));
@@ -139,7 +139,7 @@ TEST(Forgetting, IsDecidedOnce) {
   EXPECT_EQ(entry_of(coordinator, author_of(1)).since_tick, from);
 }
 
-TEST(Forgetting, IsRevokedFromANamedTickOnWhenTheAgentIsHeardAgain) {
+TEST(Forgetting, IsRevokedFromANamedTickOnWhenTheAgentSendsAgain) {
   for (const Pace pace : {Pace::kRealtime, Pace::kLockstep}) {
     Coordinator coordinator = with_1_forgotten(pace);
     const RosterEntry gone = entry_of(coordinator, author_of(1));
@@ -181,13 +181,13 @@ TEST(Forgetting, IsNotRevokedByATakeover) {
   give(coordinator, flown_by(2000, 9), at(1s));
   only_0_speaks(coordinator, at(2s));
   advance(coordinator, at(2s));
-  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "nothing was heard of it";
+  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "nothing was received of it";
   reports(coordinator, author_of(1), at(3s));
   advance(coordinator, at(3s));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
 }
 
-TEST(Forgetting, NobodyByACoordinatorThatHearsNobody) {
+TEST(Forgetting, NoAgentByACoordinatorThatReceivesNothing) {
   Coordinator coordinator = running_coordinator(forgetful());
   for (int s = 1; s < 60; ++s) advance(coordinator, at(s * 1s));
   for (const AgentId id : {0, 1})
@@ -202,7 +202,7 @@ TEST(Forgetting, NobodyByACoordinatorThatHearsNobody) {
   EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten);
 }
 
-TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
+TEST(Forgetting, SparesAFormerIncarnationWhileItsSuccessorRuns) {
   // The successor takes the former agent's place and continues its work.
   Coordinator coordinator = running_coordinator(forgetful());
   advance(coordinator, at(3s));
@@ -222,7 +222,7 @@ TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
   EXPECT_FALSE(entry_of(coordinator, {1, 99}).forgotten);
 }
 
-TEST(Forgetting, IsNotDoneUnlessThePlanSaysSo) {
+TEST(Forgetting, IsNotDoneUnlessThePlanRequiresIt) {
   Mission mission = forgetful();
   mission.forget_silent_after_s = 0;
   Coordinator coordinator = running_coordinator(mission);

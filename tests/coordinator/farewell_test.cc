@@ -46,7 +46,7 @@ class Farewell : public ::testing::Test {
   Outbox said_;
 };
 
-TEST_F(Farewell, AtOnceWhenAllOthersLeaveWithTheEndSaidOnceMore) {
+TEST_F(Farewell, AtOnceWhenAllOthersLeaveWithTheEndSentOnceMore) {
   agent_leaves(0), agent_leaves(1), world_leaves(), logger_leaves();
   EXPECT_TRUE(leaves_at(at(1001ms)));
   const auto parts = only<MissionPart>(said_);
@@ -54,7 +54,7 @@ TEST_F(Farewell, AtOnceWhenAllOthersLeaveWithTheEndSaidOnceMore) {
   EXPECT_EQ(parts[0].state, MissionState::kEnded);
 }
 
-TEST_F(Farewell, AfterASecondIfAnyOfThemIsNotHeard) {
+TEST_F(Farewell, AfterASecondIfAnyOfThemIsNotReceived) {
   for (const int unheard : {0, 1, 2, 3}) {
     coordinator_ = running_coordinator(mission_);
     give(coordinator_, world_where(7, {6, 6}), at(1s));
@@ -68,7 +68,7 @@ TEST_F(Farewell, AfterASecondIfAnyOfThemIsNotHeard) {
   }
 }
 
-TEST_F(Farewell, AfterASecondIfAnotherWorldOrLoggerSpeaksAfterwards) {
+TEST_F(Farewell, AfterASecondIfAnotherWorldOrLoggerSendsAfterwards) {
   agent_leaves(0), agent_leaves(1), world_leaves(), logger_leaves();
   WorldState successor = world_where(7, {6, 6});
   successor.header.incarnation = kWorldLife + 1;
@@ -84,7 +84,7 @@ TEST_F(Farewell, AfterASecondIfAProcessThatIsNoMemberAsksToJoin) {
   EXPECT_TRUE(leaves_at(at(2s)));
 }
 
-TEST_F(Farewell, AFormerLifeThatIsSilentNeedNotSayAnything) {
+TEST_F(Farewell, AFormerIncarnationThatIsSilentNeedNotSendAnything) {
   coordinator_ = running_coordinator(mission_);
   give(coordinator_, status_of(1, next_sequence()), at(1s));
   give(coordinator_, hello_of(1, 99), at(4s));

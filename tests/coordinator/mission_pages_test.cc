@@ -89,7 +89,7 @@ TEST(LargeTeam, IsAdmittedAndFollowedFromWhatChanges) {
   EXPECT_GE(follower.entry_of(incarnation_of(700))->active_until, 0) << "one part has changed";
 }
 
-TEST(LargeTeam, OfAllItsLivesIsFollowedAlsoByALatecomerUnderLoss) {
+TEST(LargeTeam, WithAllItsIncarnationsIsFollowedAlsoByALatecomerUnderLoss) {
   Mission mission = large_mission();
   mission.timing.pace = Pace::kRealtime;
   mission.timing.admission_timeout_s = 3600;

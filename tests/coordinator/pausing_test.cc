@@ -24,7 +24,7 @@ constexpr Tick kNotice = 40;
 
 Pause pause_after(int changes) { return {{kRun, kOperator, 1, next_sequence(), 0}, changes}; }
 
-TEST(Pausing, CountsTheTicksSinceTheWorldWasHeard) {
+TEST(Pausing, CountsTheTicksSinceTheWorldWasReceived) {
   for (const auto& [since, ticks] : {std::pair{0ms, 0}, {425ms, 8}, {825ms, 16}}) {
     Coordinator coordinator = running_coordinator(realtime_mission(2));
     give(coordinator, world_where(10, {9, 9}), at(1s));
@@ -47,7 +47,7 @@ TEST(Pausing, GoesByTheNewestTickOfAnyAgent) {
   EXPECT_EQ(coordinator.holds()[0].from, 13 + 1 + kNotice);
 }
 
-TEST(Pausing, NeedsAWorldThatIsHeard) {
+TEST(Pausing, NeedsAWorldThatIsReceived) {
   Coordinator coordinator = running_coordinator(realtime_mission(2));
   give(coordinator, pause_after(0), at(1s));
   EXPECT_TRUE(coordinator.holds().empty());
@@ -56,7 +56,7 @@ TEST(Pausing, NeedsAWorldThatIsHeard) {
   EXPECT_TRUE(coordinator.holds().empty());
 }
 
-TEST(Pausing, ARecordingOfAPauseThatNobodyObeyedHasNoEffect) {
+TEST(Pausing, ARecordingOfAPauseThatWasNotObeyedHasNoEffect) {
   Mission mission = realtime_mission(2);
   mission.timing.tick_count = 10000;
   Coordinator coordinator = running_coordinator(mission);
@@ -71,7 +71,7 @@ TEST(Pausing, ARecordingOfAPauseThatNobodyObeyedHasNoEffect) {
     advance(coordinator, at(second * 1s));
   }
   give(coordinator, pause, at(31s));
-  EXPECT_TRUE(coordinator.holds().empty()) << "somebody else chooses the moment";
+  EXPECT_TRUE(coordinator.holds().empty()) << "another process chooses the tick";
   EXPECT_EQ(coordinator.late_commands(), 1);
   pause.header.tick = coordinator.tick();
   give(coordinator, pause, at(31s));

@@ -58,7 +58,7 @@ const MissionPart& sent_by(const Outbox& out) {
 
 // ---- listening ----
 
-TEST(TakeoverNever, SpeaksAtOnce) {
+TEST(TakeoverNever, SendsAtOnce) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   EXPECT_FALSE(only<MissionPart>(advance(coordinator, at(0s))).empty());
   EXPECT_FALSE(coordinator.took_over());
@@ -76,7 +76,7 @@ TEST(TakeoverIfRunning, StartsAMissionOfItsOwnAfterThreeQuartersOfASecondOfSilen
   EXPECT_FALSE(coordinator.took_over());
 }
 
-TEST(TakeoverIfRunning, AgentsThatJoinOrHaveFinishedFlyNothing) {
+TEST(TakeoverIfRunning, AgentsThatJoinOrHaveFinishedAreInNoMission) {
   Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   for (const AgentPhase phase : {AgentPhase::kJoining, AgentPhase::kFinished}) {
@@ -99,7 +99,7 @@ TEST(Takeover, AsksTheAgentsFourTimesASecondOnceItKnowsTheRun) {
   for (int ms = 250; ms < 2250; ms += 10) {
     for (const Outgoing& outgoing : advance(coordinator, at(ms * 1ms))) {
       const auto* question = std::get_if<Hello>(&outgoing.message);
-      ASSERT_NE(question, nullptr) << "it has nothing else to say";
+      ASSERT_NE(question, nullptr) << "it has nothing else to send";
       EXPECT_EQ(outgoing.bus, Bus::kSwarm);
       EXPECT_EQ(question->header.run, kRun);
       EXPECT_EQ(question->header.sender, kCoordinator);
@@ -110,7 +110,7 @@ TEST(Takeover, AsksTheAgentsFourTimesASecondOnceItKnowsTheRun) {
   EXPECT_EQ(questions, 8);
 }
 
-TEST(Takeover, OfAGivenRunAsksBeforeItHearsAnybody) {
+TEST(Takeover, OfAGivenRunAsksBeforeItReceivesAnything) {
   Coordinator coordinator = successor(Takeover::kMust, kRun);
   EXPECT_EQ(only<Hello>(advance(coordinator, at(0s))).size(), 1u);
   AgentStatus foreign = status_of(0, 1);
@@ -119,7 +119,7 @@ TEST(Takeover, OfAGivenRunAsksBeforeItHearsAnybody) {
   EXPECT_EQ(coordinator.run(), kRun);
 }
 
-TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
+TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndReportsOnlyWhy) {
   Coordinator coordinator = successor(Takeover::kMust, 0, {});
   for (int second = 0; second < 30; ++second) {
     EXPECT_TRUE(advance(coordinator, at(second * 1s)).empty());
@@ -128,7 +128,7 @@ TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
   EXPECT_TRUE(advance(coordinator, at(30s)).empty());
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
-  EXPECT_EQ(coordinator.reason(), "no agent on this URL knows a mission that could be taken over");
+  EXPECT_EQ(coordinator.reason(), "no agent on this URL knows a mission to take over");
 }
 
 TEST(TakeoverIfRunning, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
@@ -157,7 +157,7 @@ TEST(TakeoverIfRunning, LeavesAMissionToTheCoordinatorThatLeadsIt) {
   give(coordinator, alive(kCoordinatorLife), at(100ms));
   give(coordinator, memory_of(3), at(100ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(700ms))).empty())
-      << "and says nothing to its team";
+      << "and sends nothing to its team";
   EXPECT_TRUE(coordinator.finished());
   EXPECT_TRUE(coordinator.left());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
@@ -183,7 +183,7 @@ TEST(TakeoverIfRunning, AfterTheEndOfALeadersMissionStartsItsOwn) {
   EXPECT_EQ(sent_by(advance(coordinator, at(750ms))).header.run, kSuccessorLife);
 }
 
-TEST(TakeoverMust, TakesOverFromALivingOneToo) {
+TEST(TakeoverMust, TakesOverFromARunningOneToo) {
   Coordinator coordinator = successor(Takeover::kMust);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
@@ -195,7 +195,7 @@ TEST(TakeoverMust, TakesOverFromALivingOneToo) {
 
 // ---- what it takes over ----
 
-TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
+TEST(Takeover, AdoptsTheNewestThatAnyProcessRemembers) {
   auto roster = roster_of(3);
   roster[0].active_until = 6;
   roster[0].forgotten = true;
@@ -246,7 +246,7 @@ WorldState world_by(std::int64_t revision) {
   return world;
 }
 
-TEST(Takeover, WaitsForTheRevisionThatTheWorldFliesBy) {
+TEST(Takeover, WaitsForTheRevisionThatTheWorldUses) {
   Coordinator coordinator = that_lacks_the_newest(world_by(13));
   MissionPart newest = memory_of(13);
   newest.holds = {{2, -1}};
@@ -271,7 +271,7 @@ TEST(Takeover, WaitsForTheRevisionOfWhichItHasAPart) {
   EXPECT_EQ(coordinator.holds(), part.holds);
 }
 
-TEST(Takeover, GoesOnWithoutARevisionThatNobodyHasWhole) {
+TEST(Takeover, GoesOnWithoutARevisionThatNoProcessHasWhole) {
   Coordinator coordinator = that_lacks_the_newest(world_by(13));
   advance(coordinator, at(2900ms));
   EXPECT_FALSE(coordinator.took_over());
@@ -320,8 +320,8 @@ TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
     EXPECT_TRUE(coordinator.finished());
     EXPECT_EQ(coordinator.state(), MissionState::kFailed);
     EXPECT_EQ(coordinator.reason(),
-              "run 0000000000001234 of another plan (small) is flying on this "
-              "URL: choose another URL, or wait for its end");
+              "run 0000000000001234 of another plan (small) is running on this URL: choose another "
+              "URL, or wait for its end");
   }
 }
 
@@ -333,7 +333,7 @@ TEST(Takeover, OfAMissionThatWaitsStartsItWhenTheQuorumIsThere) {
   EXPECT_EQ(sent_by(advance(coordinator, at(1s))).state, MissionState::kRunning);
 }
 
-TEST(Takeover, OfAMissionThatIsOverSaysSoForASecondAndIsDone) {
+TEST(Takeover, OfAMissionThatIsOverSendsItsEndForASecondAndIsDone) {
   Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 0, MissionState::kEnded));
   EXPECT_EQ(sent_by(advance(coordinator, at(1100ms))).state, MissionState::kEnded);
   EXPECT_FALSE(coordinator.finished());
@@ -343,7 +343,7 @@ TEST(Takeover, OfAMissionThatIsOverSaysSoForASecondAndIsDone) {
 
 // ---- afterwards ----
 
-TEST(TookOver, EverybodyHasTimeToSpeakAndTheTickHasItsTimeAnew) {
+TEST(TookOver, AllAgentsHaveTimeToSendAndTheTickHasItsTimeAnew) {
   Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 7));
   for (const RosterEntry& entry : coordinator.roster()) {
     EXPECT_EQ(coordinator.member_state(entry, at(3999ms)), MemberState::kAlive);
@@ -364,7 +364,7 @@ TEST(TookOver, AnAgentItDoesNotKnowComesBackUnderItsIncarnation) {
   EXPECT_EQ(coordinator.roster()[1].active_from, 12);
 }
 
-TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
+TEST(TookOver, KnowsTheTickBeforeTheWorldSendsAgain) {
   // It knows the tick from the world's message during the search, or from the predecessor's last
   // one.
   for (const Tick remembered : {12, 3}) {
@@ -418,7 +418,7 @@ TEST(TookOver, EndsTheMissionAtItsLastTickLikeItsPredecessor) {
 
 // ---- the one that was taken over ----
 
-TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAWord) {
+TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAMessage) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   advance(coordinator, at(1s));
   MissionPart newer = memory_of(1000);
@@ -430,7 +430,7 @@ TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAWord) {
   EXPECT_TRUE(advance(coordinator, at(3s)).empty()) << "the mission is not its to end";
 }
 
-TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
+TEST(TakenOver, ACoordinatorUsesANewerRevisionThanARepeatedOne) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   advance(coordinator, at(1s));
   MissionPart repeated = memory_of(1000);
@@ -452,7 +452,7 @@ TEST(TakenOver, ACoordinatorAdoptsTheEndOfAPauseThatOnlyItsPredecessorHasNamed) 
   EXPECT_EQ(coordinator.holds(), repeated.holds) << "agents may have gone by it";
 }
 
-TEST(TakenOver, ACoordinatorSpeaksLouderThanWhatTheWorldAloneHasHeardOfTheDead) {
+TEST(TakenOver, ACoordinatorUsesANewerRevisionThanTheWorldHasReceived) {
   Coordinator coordinator = taken_over(memory_of(3));
   const std::int64_t before = sent_by(advance(coordinator, at(2s))).revision;
   WorldState world = world_where(0, {0, 0});
@@ -490,7 +490,7 @@ TEST(TakenOver, ARecordedSignOfLifeIsNone) {
   EXPECT_FALSE(coordinator.finished());
 }
 
-TEST(TakenOver, ItsOwnOrOlderWordsComingBackDoNotScareACoordinator) {
+TEST(TakenOver, ACoordinatorIgnoresItsOwnAndOlderMessages) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   MissionPart echo = memory_of(1000);
   echo.header.incarnation = kCoordinatorLife;

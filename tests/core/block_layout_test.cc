@@ -227,7 +227,7 @@ TEST(RareModes, HighOnesAreWeighedByTheTimeThatTheyCover) {
 
 // ---- forecasts ----
 
-TEST(RareModes, WhatIsReckonedNeedsNoTellingBitForBit) {
+TEST(RareModes, WhatIsReckonedNeedNotBeSentBitForBit) {
   for (const int modes_z : {1, 2}) {
     const Mission rare = mission_with(12, 12, modes_z, 4);
     Mission usual = rare;

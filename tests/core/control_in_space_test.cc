@@ -111,7 +111,7 @@ TEST(TeamInSpace, CoversTheBoxAndNeverLeavesIt) {
 }
 
 /// The same team above the ground of a box and on the ground alone.
-TEST(TeamInAPlane, FliesAsInABoxWithOneModeAlongZBitForBit) {
+TEST(TeamInAPlane, MovesAsInABoxWithOneModeAlongZBitForBit) {
   Mission high = pushed(space_mission());
   high.basis.modes_z = 1;
   high.target_coefficients = high.target_coefficients.head(high.basis.mode_count()).eval();

@@ -343,7 +343,7 @@ TEST(RelativeEpsilon, KeepsTheInputAsTheResidualShrinksWhereAnAbsoluteOneThrottl
   EXPECT_LT(speed(Regularization::kAbsolute, 1e-4, 0x1p-20), 1e-2);
 }
 
-TEST(AbsoluteEpsilon, IsWhatTheScenarioSays) {
+TEST(AbsoluteEpsilon, IsTheValueOfTheScenario) {
   Mission mission = uneven_mission();
   mission.law.epsilon = 1.5e-3;
   Controller controller(mission);
@@ -389,7 +389,7 @@ TEST(Command, PushesTwoOfAPairInOppositeWays) {
     EXPECT_NE(pushed(2, tick, true), pushed(0, tick, true));
     EXPECT_NE(pushed(1, tick, false), -pushed(0, tick, false));
     EXPECT_EQ(pushed(2, tick, true), pushed(2, tick, false))
-        << "the first of a pair is nobody's mirror";
+        << "the first of a pair mirrors no other";
   }
 }
 

@@ -145,7 +145,7 @@ TEST(CoverageTable, WithoutGainsItHoldsTheSame) {
   }
 }
 
-TEST(CoverageTable, SaysWhetherAMessageWasNews) {
+TEST(CoverageTable, ReportsWhetherAMessageWasNew) {
   CoverageTable table = table_of();
   const Contribution older = blocks_of({1, 5}, 3)[0], newer = blocks_of({1, 5}, 4)[0];
   EXPECT_EQ(table.merge(older, kManySteps), Merge::kNewer);
@@ -165,7 +165,7 @@ TEST(CoverageTable, EachBlockIsMergedByItself) {
   EXPECT_EQ(table.steps_held({1, 5}), 3) << "the fewest of its blocks";
 }
 
-TEST(CoverageTable, LivesOfOneAgentAreRowsOfTheirOwn) {
+TEST(CoverageTable, IncarnationsOfOneAgentAreRowsOfTheirOwn) {
   CoverageTable table = table_of();
   table.merge(blocks_of({0, 7}, 3)[0], kManySteps);
   table.merge(blocks_of({0, 9}, 2)[0], kManySteps);
@@ -215,7 +215,7 @@ TEST(CoverageTable, AverageWeighsEachRowByTheTimeItCoversBlockByBlock) {
   EXPECT_DOUBLE_EQ(average[0], 1) << "S_00 is the time covered";
 }
 
-TEST(CoverageTable, BlocksThatNobodyHasCoveredAreZero) {
+TEST(CoverageTable, BlocksThatNoAgentHasCoveredAreZero) {
   CoverageTable table = table_of();
   Coefficients average = Coefficients::Constant(225, kNan);
   table.average(average);
@@ -227,7 +227,7 @@ TEST(CoverageTable, BlocksThatNobodyHasCoveredAreZero) {
   EXPECT_NE(average.data()[127], 0);
 }
 
-TEST(CoverageTable, ItsOwnSamplesAndItsOwnWordsAreTheSameThing) {
+TEST(CoverageTable, ItsOwnSamplesAndItsOwnMessagesAreTheSame) {
   // A teammate that receives everything has the same row, bit for bit.
   CoverageTable own = table_of(), teammate = table_of();
   const Author self{3, 33};
@@ -389,7 +389,7 @@ Contribution first_step() {
   return block;
 }
 
-TEST(CoverageTableLimits, SixteenLivesOfAnAgentAndTheOthersAreNotAffected) {
+TEST(CoverageTableLimits, SixteenIncarnationsOfAnAgentAndTheOthersAreNotAffected) {
   CoverageTable table = table_of(2);
   Contribution block = first_step();
   block.header.sender = 3;

@@ -44,7 +44,7 @@ void see_all(Forecast& forecast, int agents, Tick tick, const Mission& mission) 
   for (AgentId id = 0; id < agents; ++id) forecast.see(id, tick, place(id, tick, mission));
 }
 
-TEST(DeadReckoning, RowsAreAsGoodAsIfTheyWereToldEachTickBitForBit) {
+TEST(DeadReckoning, RowsAreAsGoodAsIfTheyWereSentEachTickBitForBit) {
   const Mission mission = mission_of(true);
   const Known often = team_of(4, mission), seldom = team_of(4, mission, 10);
   Forecast by_words(mission, kSelf), by_places(mission, kSelf);

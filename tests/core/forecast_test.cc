@@ -122,7 +122,7 @@ TEST_P(Foreseen, IsTheFormulaInSpaceToo) {
   });
 }
 
-TEST_P(Foreseen, IsAnAverageWhateverAnybodyClaims) {
+TEST_P(Foreseen, IsAnAverageWhateverAnAgentClaims) {
   in_every_history([&](Known known, Dice& dice) {
     for (Contribution& block : known.heard) {
       if (dice.one_in(2)) forge(block, dice);
@@ -153,7 +153,7 @@ Known without_hope_for_1(Known known) {
   return known;
 }
 
-TEST(ForecastCounts, NobodyWhoHasLeftOrIsYetToCome) {
+TEST(ForecastCounts, NoAgentThatHasLeftOrIsYetToCome) {
   const Mission mission = mission_of(false);
   const Known team = team_of(3, mission);
   const Coefficients all = foreseen(team, mission),
@@ -169,7 +169,7 @@ TEST(ForecastCounts, NobodyWhoHasLeftOrIsYetToCome) {
   }
 }
 
-TEST(ForecastCounts, OfOneNumberTheNewestLifeOnly) {
+TEST(ForecastCounts, OfOneNumberTheNewestIncarnationOnly) {
   const Mission mission = mission_of(false);
   const Known team = team_of(3, mission);
   // The order of the incarnations' numbers is random, so both orders are tested.
@@ -184,7 +184,7 @@ TEST(ForecastCounts, OfOneNumberTheNewestLifeOnly) {
   }
 }
 
-TEST(ForecastCounts, NobodyWhoIsForgotten) {
+TEST(ForecastCounts, NoAgentThatIsForgotten) {
   const Mission mission = mission_of(false);
   Known team = team_of(3, mission), known = team;
   known.forgotten = {{1, 1}};
@@ -192,7 +192,7 @@ TEST(ForecastCounts, NobodyWhoIsForgotten) {
   EXPECT_EQ(foreseen(known, mission), foreseen(team, mission));
 }
 
-TEST(ForecastCounts, NoFormerLifeOfOurOwn) {
+TEST(ForecastCounts, NoFormerIncarnationOfOurOwn) {
   const Mission mission = mission_of(false);
   Known known = team_of(3, mission);
   const Author former{0, 5};
@@ -218,7 +218,7 @@ std::vector<Contribution*> last_words_of_1(Known& known) {
   return last;
 }
 
-TEST(ForecastCounts, NobodyWhoseGainsAreImpossible) {
+TEST(ForecastCounts, NoAgentWhoseGainsAreImpossible) {
   const Mission mission = mission_of(false);
   Known known = team_of(3, mission);
   const std::vector<Contribution*> last = last_words_of_1(known);
@@ -248,7 +248,7 @@ TEST(ForecastCounts, AGainThatIsJustPossible) {
   EXPECT_EQ(foreseen(known, mission)[3], foreseen(without_hope_for_1(known), mission)[3]);
 }
 
-TEST(ForecastCounts, WhoHasBeenSilentForTooLongInTheTeamsNumberOnly) {
+TEST(ForecastCounts, AgentsThatHaveBeenSilentForTooLongInTheTeamsNumberOnly) {
   Mission mission = mission_of(false);
   mission.law.anticipation *= 2;  // beyond the age of the last block of agent 1
   Known known = team_of(3, mission);
@@ -289,7 +289,7 @@ TEST(ForecastCounts, NoPeriodThatThePlanDoesNotAllow) {
   }
 }
 
-TEST(ForecastCounts, ABlockThatSaysItIsFromTheFutureAsOneOfNow) {
+TEST(ForecastCounts, ABlockThatClaimsTheFutureAsOneOfNow) {
   const Mission mission = mission_of(false);
   const Known now = team_of(3, mission);
   for (const Tick later : {Tick{1}, Tick{30}, Tick{1} << 48}) {

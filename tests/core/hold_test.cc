@@ -48,7 +48,7 @@ TEST(Holds, MoveTheEnd) {
   EXPECT_GT(tick_after(kTwice, 35), Tick{1} << 60);  // no end is known
 }
 
-TEST(Holds, TellHowManyOfTheirEndsAreNamed) {
+TEST(Holds, CountHowManyOfTheirEndsAreNamed) {
   EXPECT_EQ(named_changes({}), 0);
   EXPECT_EQ(named_changes(std::vector<Hold>{{3, -1}}), 1);
   EXPECT_EQ(named_changes(std::vector<Hold>{{3, 4}}), 2);

@@ -184,7 +184,7 @@ TEST(Kinds, DriveOnlyBodiesThatMoveAsTheirs) {
   EXPECT_FALSE(can_drive(mission, 0, 2));
 }
 
-TEST(Kinds, AMissionSaysNoImpossibleOnes) {
+TEST(Kinds, AMissionHasNoImpossibleOnes) {
   EXPECT_TRUE(within_limits(mission_of(true)));
   const auto refused = [](auto spoil) {
     Mission mission = mission_of(true);

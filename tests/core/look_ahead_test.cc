@@ -216,7 +216,7 @@ TEST(Horizon, IsNoneWithoutAnticipation) {
   EXPECT_EQ(LookAhead(mission).horizon_s(4, 0), 0);
 }
 
-TEST(Horizon, EndsWithThePlanOnlyIfTheScenarioSaysSo) {
+TEST(Horizon, EndsWithThePlanOnlyIfTheScenarioChoosesIt) {
   Mission mission = uniform();
   const double full_s = LookAhead(mission).horizon_s(4, 0);
   EXPECT_EQ(LookAhead(mission).horizon_s(4, 5999), full_s);
@@ -283,7 +283,7 @@ TEST(Weight, BelievesARarerPeriodOfHighModesIfThePlanHasIt) {
   EXPECT_EQ(look_ahead.weight_s(1, 5, 41, kPeriod), 0) << "of the first block";
 }
 
-TEST(Weight, OfWhoHasBeenSilentForLongIsNone) {
+TEST(Weight, OfAnAgentThatHasBeenSilentForLongIsNone) {
   const LookAhead look_ahead = telling_each(kPeriod);
   // The horizon is the longer: 30 s.
   EXPECT_NEAR(look_ahead.weight_s(30, 5, 300, kPeriod), 60.5, 1e-12);

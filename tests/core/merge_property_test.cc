@@ -191,7 +191,7 @@ TEST(MergeProperty, AddsUpInTheOrderOfAuthorsWhateverTheOrderOfArrival) {
   });
 }
 
-TEST(MergeProperty, WhatIsPassedOnIsWhatWasSaid) {
+TEST(MergeProperty, WhatIsPassedOnIsWhatWasSent) {
   in_every_history([](const auto& sent, Dice& dice) {
     CoverageTable relay = table_after(part_of(sent, dice)), far = empty_table();
     pass_on(relay, far);

@@ -178,7 +178,7 @@ TEST(Potential, IsTheMetricThatTheTeamForeseesLessWhatEachAddsToItself) {
   }
 }
 
-TEST(Potential, FallsByWhatItsSlopeSaysWhenEachAgentTakesAStepAlongMinusB) {
+TEST(Potential, FallsByWhatItsSlopePredictsWhenEachAgentTakesAStepAlongMinusB) {
   constexpr double kStep_m = 1e-4;
   for (std::uint64_t seed = 1; seed <= kTeams; ++seed) {
     const FreshTeam team(seed);

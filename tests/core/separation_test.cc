@@ -126,7 +126,7 @@ TEST(Separation, HoldsUnderRandomDisturbances) {
 
 const std::vector<Neighbour> kFar = {{1, {900, 500, 0}, 40}, {2, {500, 900, 0}, 40}};
 
-TEST(Separation, ChangesNoBitOfACommandWithNobodyNear) {
+TEST(Separation, ChangesNoBitOfACommandWithNoBodyNear) {
   SeparationFilter filter(team_mission(), 0);
   const Mover self{0, 3, {500, 500, 0}, 40};
   for (const Eigen::Vector3d& v : {Eigen::Vector3d(0.1, 0.7, 0), {-40, 0, 0}, {300, -200, 0}}) {
@@ -152,7 +152,7 @@ TEST(Separation, StandsIfANeighbourIsUnknownOrMayBeAnywhereAround) {
   EXPECT_EQ(safe.by, 2);
 }
 
-TEST(Separation, SaysWhoBlocks) {
+TEST(Separation, ReportsWhichBodyBlocks) {
   SeparationFilter filter(team_mission(), 0);
   const Mover self{0, 3, {500, 500, 0}, 40};
   std::vector<Neighbour> others;  // all around

@@ -38,7 +38,7 @@ Mission with_a_wall(Mission mission) {
   return mission;
 }
 
-TEST(Station, RestsFromTheReserveOnWhoHasOne) {
+TEST(Station, AnAgentRestsThereFromItsReserveOn) {
   Mission mission = with_station();
   EXPECT_EQ(rest_from(mission, 2), 800);
   EXPECT_FALSE(rests(mission, 2, 799));
@@ -49,7 +49,7 @@ TEST(Station, RestsFromTheReserveOnWhoHasOne) {
   EXPECT_EQ(rest_from(mission, 0), 999);
 }
 
-TEST(Station, SaysAllOnceMoreBeforeItRests) {
+TEST(Station, AnAgentSendsAllOnceMoreBeforeItRests) {
   const Mission mission = with_station();
   Tick tick = 780;
   while (tick < 799) {

@@ -61,7 +61,7 @@ TEST(Vehicle, BrakesWithinItsBrakingPath) {
   EXPECT_NEAR(longest_braking_path_m(motion), 20 * 20 / (2 * 5.0), 1e-9);
 }
 
-TEST(Vehicle, TurnsByNoMoreThanItsRateAndFliesNoSlowerThanItMust) {
+TEST(Vehicle, TurnsByNoMoreThanItsRateAndMovesNoSlowerThanItMust) {
   for (const VehicleLimits& kind : {unicycle(1), unicycle(40), wings(0.35), wings(4)}) {
     const Motion motion = motion_in(kind);
     Drawn draw;
@@ -138,7 +138,7 @@ TEST(Vehicle, WithWingsBeginsWithItsLoiterCircleInTheDomain) {
   }
 }
 
-TEST(Vehicle, LeavesTheStraightWayOfItsAnchorByNoMoreThanItSays) {
+TEST(Vehicle, LeavesTheStraightWayOfItsAnchorByNoMoreThanItsBound) {
   for (const VehicleLimits& kind : {unicycle(1), unicycle(5), wings(1), wings(5, 15)}) {
     const Motion motion = motion_in(kind);
     Drawn draw;

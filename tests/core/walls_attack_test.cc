@@ -117,7 +117,7 @@ TEST(WallFilter, KeepsPointsOutThatKeepNoClearance) {
   EXPECT_GE(spare_m(Attack(in_maze({}, 0))), 0);
 }
 
-TEST(WallFilter, KeepsOutWhoBrakes) {
+TEST(WallFilter, KeepsOutVehiclesThatBrake) {
   for (const double limit_mps2 : {5.0, 40.0}) {
     Attack attack(in_maze(inertia(limit_mps2)));
     EXPECT_GE(spare_m(attack), 0) << limit_mps2;
@@ -126,7 +126,7 @@ TEST(WallFilter, KeepsOutWhoBrakes) {
   }
 }
 
-TEST(WallFilter, KeepsOutWhoTurnsSlowly) {
+TEST(WallFilter, KeepsOutVehiclesThatTurnSlowly) {
   for (const VehicleLimits& kind : {unicycle(1), unicycle(10)}) {
     Attack attack(in_maze(kind));
     EXPECT_GE(spare_m(attack), 0);
@@ -153,7 +153,7 @@ Mission with_distance(double clearance_m) {
   return mission;
 }
 
-TEST(WallFilter, KeepsOutWhoIsNotWhereItIsSaidToBe) {
+TEST(WallFilter, KeepsOutVehiclesThatAreNotWhereTheyAreReported) {
   Mission mission = with_distance(3);
   mission.separation.position_error_m = 1.2;
   Attack attack(mission);
@@ -162,7 +162,7 @@ TEST(WallFilter, KeepsOutWhoIsNotWhereItIsSaidToBe) {
   EXPECT_LT(spare_m(attack), -0.5);
 }
 
-TEST(WallFilter, KeepsOutWhoHoldsItsCommands) {
+TEST(WallFilter, KeepsOutVehiclesThatHoldTheirCommands) {
   Attack attack(with_distance(7));
   attack.hold_ticks = attack.reported_hold_ticks = 3;
   EXPECT_GE(spare_m(attack), 0);
@@ -170,7 +170,7 @@ TEST(WallFilter, KeepsOutWhoHoldsItsCommands) {
   EXPECT_LT(spare_m(attack), -1);
 }
 
-TEST(WallFilter, KeepsOutWhoIsPushed) {
+TEST(WallFilter, KeepsOutVehiclesThatArePushed) {
   Mission mission = with_distance(3);
   mission.separation.disturbance_m = 0.4;
   mission.disturbance_intensity = 1;

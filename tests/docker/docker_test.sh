@@ -124,7 +124,7 @@ in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order() {
   docker network connect team_default "$(one agent)"
   becomes says coordinator 'agent [0-3] .* is alive at tick [1-9]'
   compose stop
-  says coordinator 'mission ended .*: the coordinator was told to stop' || complain 'not ended in order'
+  says coordinator 'mission ended .*: a signal stopped the coordinator' || complain 'not ended in order'
   expect test -s "$ERGOCAST_RUNS"/*/report.html
   stop_team
 }
@@ -144,7 +144,7 @@ a_team_with_keys_flies_and_who_has_none_is_told() {
   becomes recorded 10000
   expect docker exec "$(one coordinator)" ergocast status
   ! docker run --rm --network team_default ergocast status >"$work/keyless" 2>&1 ||
-    complain 'it flies without its key'
+    complain 'it runs without its key'
   expect grep 'has a mission key' "$work/keyless"
   compose stop
   expect grep -q '"result": "stopped"' "$ERGOCAST_RUNS"/*/summary.json

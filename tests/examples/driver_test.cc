@@ -35,7 +35,7 @@ WorldState state_at(Driver& driver, Instant now) {
   return states.empty() ? WorldState{} : states.front();
 }
 
-TEST(ExampleDriver, SaysEachTickWhereItsRobotsAre) {
+TEST(ExampleDriver, SendsThePlacesOfItsRobotsEachTick) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   const WorldState first = state_at(driver, at(0s));
   EXPECT_EQ(first.header.tick, 0);
@@ -50,7 +50,7 @@ TEST(ExampleDriver, SaysEachTickWhereItsRobotsAre) {
   EXPECT_EQ(second.vehicles[1].answered_tick, 0);
   EXPECT_NEAR(second.vehicles[1].position_m.x(), 200.4, 1e-9);
   EXPECT_EQ(second.vehicles[1].velocity_mps, Eigen::Vector3d(4, 0, 0));
-  EXPECT_EQ(second.vehicles[0].position_m, first.vehicles[0].position_m) << "nobody moved it";
+  EXPECT_EQ(second.vehicles[0].position_m, first.vehicles[0].position_m) << "no driver moved it";
   EXPECT_EQ(second.missed_deadlines, 1);
 }
 
@@ -78,7 +78,7 @@ TEST(ExampleDriver, StopsARobotWhoseCommandsDoNotComeAnyMore) {
   }
 }
 
-TEST(ExampleDriver, ARobotThatOvershootsIsSaidToBeAtTheEdge) {
+TEST(ExampleDriver, ARobotThatOvershootsIsReportedAtTheEdge) {
   Driver driver = running_driver(mission_of(Pace::kRealtime), 50);
   WorldState state = state_at(driver, at(0s));
   for (int tick = 1; tick <= 60; ++tick) {
@@ -112,7 +112,7 @@ TEST(ExampleDriver, HoldsRobotsApart) {
   EXPECT_GT(driver.robot(0).position_m().x(), 169) << "it comes near, and looks for a way around";
 }
 
-TEST(ExampleDriver, WhereADistanceIsKeptSaysWhereARobotThatOvershootsIs) {
+TEST(ExampleDriver, WhereADistanceIsKeptReportsWhereARobotThatOvershootsIs) {
   Driver driver = running_driver(apart());
   WorldState state = state_at(driver, at(0s));
   for (int tick = 1; tick <= 300; ++tick) {
@@ -143,7 +143,7 @@ TEST(ExampleDriver, EndsWithTheMissionAndStopsItsRobots) {
   EXPECT_EQ(driver.reason(), "mission complete");
 }
 
-TEST(ExampleDriver, AStopAtOnceStopsItsRobotsAndItSaysWhereTheyAre) {
+TEST(ExampleDriver, AStopAtOnceStopsItsRobotsAndItReportsTheirPlaces) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   advance(driver, at(0s));
   give(driver, command_of(0, 0, {5, 0, 0}), at(0s));
@@ -247,7 +247,7 @@ WorldState sent_by(Incarnation life, AgentId id, Tick tick) {
   return state;
 }
 
-TEST(DriverOfOneRobot, SaysItsPartOfTheState) {
+TEST(DriverOfOneRobot, SendsItsPartOfTheState) {
   Driver driver = driver_of(1, leased());
   EXPECT_TRUE(advance(driver, at(999ms)).empty()) << "it listens first";
   const WorldState state = state_at(driver, at(1s));
@@ -280,7 +280,7 @@ TEST(DriverOfAllRobots, RefusesRobotsThatAnotherOneDrives) {
   EXPECT_NE(driver.reason().find("robot 1 is driven by another driver already"), std::string::npos);
 }
 
-TEST(DriverOfOneRobot, WhoDrivesItAlreadyGoesOn) {
+TEST(DriverOfOneRobot, ADriverThatRunsAlreadyGoesOn) {
   Driver driver = driver_of(1, leased());
   for (int tick = 0; tick < 12; ++tick) state_at(driver, at(1s + tick * 100ms));
   give(driver, sent_by(1, 1, 5), at(2200ms));

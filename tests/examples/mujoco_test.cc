@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Of, RobotsInPhysics, testing::Values(0, 1), [](const au
   return std::string(kTeams[static_cast<std::size_t>(test.param)].scenario);
 });
 
-TEST_P(RobotsInPhysics, TouchNobodyWhereTheyCrowd) {
+TEST_P(RobotsInPhysics, HaveNoContactsWhereTheyCrowd) {
   constexpr double kDuration_s = 30;
   Mission free = mission_of(team(), 1, kDuration_s);
   free.separation = {};
@@ -82,7 +82,7 @@ TEST_P(RobotsInPhysics, TouchNobodyWhereTheyCrowd) {
   Mission prompt = mission_of(team(), 1, kDuration_s);
   prompt.separation.response_s = 0;
   const Contacts late = reported_outcome_of(team(), prompt, "lag ignored").contacts;
-  EXPECT_GE(late.robots, 50) << "the check is worth nothing if no lag touches anybody";
+  EXPECT_GE(late.robots, 50) << "the check is worth nothing if no lag touches a robot";
   EXPECT_GE(late.walls, 1);
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     const Outcome outcome =
@@ -95,13 +95,13 @@ TEST_P(RobotsInPhysics, TouchNobodyWhereTheyCrowd) {
   }
 }
 
-TEST_P(RobotsInPhysics, EqualMissionsFlyAlike) {
+TEST_P(RobotsInPhysics, EqualMissionsMoveAlike) {
   const Mission mission = mission_of(team(), 5, 3);
   EXPECT_EQ(outcome_of(team(), mission).trajectory, outcome_of(team(), mission).trajectory);
 }
 
 /// T = lag + dt/2: the distance that a robot still moves after a command to stop, in seconds at V.
-TEST_P(RobotsInPhysics, FollowAsLateAsTheirScenarioSays) {
+TEST_P(RobotsInPhysics, FollowAsLateAsTheirScenarioStates) {
   const Mission mission = mission_of(team(), 1, 10);
   MujocoPhysics physics(mission, team().design);
   physics.place(3, {2, 3, 0}, {0, 0, 0});
@@ -162,7 +162,7 @@ TEST(RobotsOfPhysics, AreStoppedByAWallThatTheyAreDrivenInto) {
   EXPECT_GE(physics.contacts().walls, 5);
 }
 
-TEST(RobotsOfPhysics, RefuseMissionsThatTheyCannotFly) {
+TEST(RobotsOfPhysics, RefuseMissionsThatTheyCannotRun) {
   const auto problem_of = [](const Mission& mission) {
     const auto made = mujoco_physics(kDiscs)(mission);
     const auto* problem = std::get_if<std::string>(&made);
@@ -184,7 +184,7 @@ TEST(RobotsOfPhysics, RefuseMissionsThatTheyCannotFly) {
   EXPECT_NE(problem_of(other).find("less than a robot's radius"), std::string::npos);
   other = mission;
   other.starts_m.resize(129);
-  EXPECT_NE(problem_of(other).find("fly fewer"), std::string::npos);
+  EXPECT_NE(problem_of(other).find("use fewer"), std::string::npos);
 }
 
 }  // namespace

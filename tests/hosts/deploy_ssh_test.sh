@@ -102,7 +102,7 @@ use_scenario 10000000 "$2" --keys "$work/our team's"
 eventually recorded 1000
 eventually all_running
 ask() { ip netns exec 10.0.0.11 "$bin/ergocast" status --lcm-url 'udpm://239.255.76.67:7667?ttl=1' "$@" >"$work/said" 2>&1; }
-if ask; then fail 'the team flies without its key'; fi
+if ask; then fail 'the team runs without its key'; fi
 grep -q 'has a mission key' "$work/said" || fail "said: $(cat "$work/said")"
 ask --key-file "$work/our team's.key" || fail "status: $(cat "$work/said")"
 [ "$(cd "$work/home" && find . -name '*.key*' -printf '%p %m\n' | sort)" = "\
@@ -120,4 +120,4 @@ grep -q '"result": "stopped"' "$work/home/10.0.0.1/ergocast/quadrimodal_corners/
   fail 'the missions share a folder'
 "$script" collect "$work/collected"
 [ -z "$(find "$work/collected" -name '*.key*')" ] || fail 'keys were collected'
-echo 'the printed script flies, shows, stops and collects'
+echo 'the printed script runs, shows, stops and collects'

@@ -80,7 +80,7 @@ class DoctorOnHosts : public OnHosts {
   std::map<int, std::filesystem::path> logs_;
 };
 
-TEST_F(DoctorOnHosts, TwoThatHearEachOtherAreToldSo) {
+TEST_F(DoctorOnHosts, TwoThatReceiveEachOtherAreReported) {
   const auto [one, two] = both();
   for (const auto& [answer, other] : {std::pair(one, "host-1"), std::pair(two, "host-0")}) {
     EXPECT_EQ(answer.exit_code, 0) << answer.report.dump(1);
@@ -95,7 +95,7 @@ TEST_F(DoctorOnHosts, TwoThatHearEachOtherAreToldSo) {
   }
 }
 
-TEST_F(DoctorOnHosts, AOneWayPartitionIsSeenByTheSideThatHears) {
+TEST_F(DoctorOnHosts, AOneWayPartitionIsSeenByTheSideThatReceives) {
   lan_->block(0, 1);
   const auto [one, two] = both();
   EXPECT_EQ(one.exit_code, 1);
@@ -201,7 +201,8 @@ TEST_F(DoctorOnHosts, ATunnelIsAnInterfaceToo) {
   lan_->route_multicast(0, "tun0");
   const Answer answer = alone(0, 1);
   EXPECT_EQ(answer.exit_code, 1);
-  EXPECT_EQ(answer.of("interface")["found"], "tun0 has no carrier") << "nobody holds its other end";
+  EXPECT_EQ(answer.of("interface")["found"], "tun0 has no carrier")
+      << "its other end is not connected";
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST_F(Fragments, DoNothingToATeam) {
   expect_nothing_happens(mission);
 }
 
-TEST_F(Fragments, DoNothingToATeamWhoseKernelHasNoFilters) {
+TEST_F(Fragments, HaveNoEffectOnATeamWhoseKernelHasNoFilters) {
   take_socket_filters_away();
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
   send_to_everybody();
@@ -124,7 +124,7 @@ TEST_F(Fragments, AreDroppedByTheRule) {
   EXPECT_TRUE(eventually([&] { return dropped() == sent; })) << dropped();
 }
 
-TEST_F(Fragments, TheDoctorSaysWhetherARuleDropsThem) {
+TEST_F(Fragments, TheDoctorReportsWhetherARuleDropsThem) {
   if (!is_root()) GTEST_SKIP() << "needs root";
   const auto finding = [this] {
     ergocast({"doctor", "--json", "--lcm-url", kUrl});

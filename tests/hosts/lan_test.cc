@@ -74,7 +74,7 @@ class ThreeHosts : public OnHosts {
   std::deque<Radio> radios_;
 };
 
-TEST_F(ThreeHosts, HearEachOtherUntilACableIsPulled) {
+TEST_F(ThreeHosts, ReceiveEachOtherUntilACableIsPulled) {
   for (const int host : {0, 1, 2}) EXPECT_EQ(hearers(host), "012");
   lan_->unplug(2);
   EXPECT_EQ(hearers(0), "01");
@@ -116,7 +116,7 @@ TEST_F(ThreeHosts, CountPacketsAndFragments) {
   EXPECT_EQ(lan_->fragments(), 4);
 }
 
-TEST_F(ThreeHosts, SpeakWhereTheRouteLeads) {
+TEST_F(ThreeHosts, SendWhereTheRouteLeads) {
   lan_->add_interface(2);
   lan_->route_multicast(2, "eth1");
   EXPECT_EQ(hearers(2), "") << "not even itself, because it listens to eth0";

@@ -30,7 +30,7 @@ TEST_F(Loss, InRealTimeDoesNotKeepTheMissionFromItsEnd) {
   EXPECT_EQ(summary()["agents"].size(), 4U);
 }
 
-TEST_F(Loss, InRealTimeLeavesNobodyBehindByMoreThanTheAnnouncedPeriods) {
+TEST_F(Loss, InRealTimeLeavesNoAgentBehindByMoreThanTheAnnouncedPeriods) {
   constexpr int kPeriodTicks = 5;
   // A digest may be a mission second old, and its author sends contributions in between.
   constexpr std::int64_t kTolerated = 2 * kPeriodTicks + 10 + kPeriodTicks;

@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Hosts, CutOffHost, ::testing::Values(0, 2), [](const au
   return host.param == 0 ? "WithAgents" : "WithAgentsAndTheCoordinator";
 });
 
-TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
+TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenAllAgentsAgreeAgain) {
   start_all_but_agents(mission(kEndless, kRealtime), GetParam());
   start_agents();
   BusObserver with_world = witness_on(1), cut_off = witness_on(2);
@@ -98,7 +98,7 @@ TEST_F(Partition, InAChainOfHostsTheOneBetweenPassesOnWhatTheOthersCover) {
   expect_same_members_to_end_in_order();
 }
 
-TEST_F(Partition, AHostThatIsHeardButDoesNotHearAnotherGetsItsCoverageFromTheThird) {
+TEST_F(Partition, AHostThatDoesNotReceiveAnotherGetsItsCoverageFromTheThird) {
   start(mission(kEndless, kRealtime));
   BusObserver between = witness_on(1);
   ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->printed();
@@ -108,7 +108,7 @@ TEST_F(Partition, AHostThatIsHeardButDoesNotHearAnotherGetsItsCoverageFromTheThi
   expect_same_members_to_end_in_order();
 }
 
-TEST_F(Partition, InLockstepEverybodyWaitsForACutOffHostAndNotABitChanges) {
+TEST_F(Partition, InLockstepAllWaitForACutOffHostAndNotABitChanges) {
   start(mission(kEndless));
   BusObserver observer = witness_on(1);
   ASSERT_TRUE(recorded(30000)) << coordinator_->printed();
@@ -135,7 +135,7 @@ TEST_F(Partition, AnAgentThatIsCutOffWhenTheMissionEndsDoesNotWaitForEver) {
   }
   for (Program* agent : {agents_[2], agents_[3]}) {
     EXPECT_EQ(wait_for(agent->child), 4) << agent->printed();
-    EXPECT_TRUE(agent->prints("neither the world nor the coordinator can be heard"))
+    EXPECT_TRUE(agent->prints("nothing arrives from the world or the coordinator"))
         << agent->printed();
   }
 }

@@ -36,7 +36,7 @@ TEST_F(Takeover, AWorldOnAnotherHostGoesOnWhereTheAgentsWere) {
   expect_all_to_go_on_and_end_when_told();
 }
 
-TEST_F(Takeover, TheSuccessorsOfADeadHostsAgentsGetBackWhatThoseHadCovered) {
+TEST_F(Takeover, TheSuccessorsOfALostHostsAgentsGetBackWhatThoseHadCovered) {
   start(mission(kEndless, kRealtime));
   BusObserver observer = witness_on(1);
   const auto knows = [&](AgentId who, const Author& whose) {

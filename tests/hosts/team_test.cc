@@ -22,7 +22,7 @@ class Team : public TeamOnHosts {
   }
 };
 
-TEST_F(Team, InLockstepFliesTheMissionAsItIsSimulated) {
+TEST_F(Team, InLockstepRunsTheMissionAsItIsSimulated) {
   const auto file = mission("200");
   start_with_nameless_agents(file);
   expect_all_to_end();
@@ -32,7 +32,7 @@ TEST_F(Team, InLockstepFliesTheMissionAsItIsSimulated) {
             (std::vector<std::string>{"host-0", "host-1", "host-2", "host-2"}));
 }
 
-TEST_F(Team, InRealTimeFliesTheMissionToItsEnd) {
+TEST_F(Team, InRealTimeRunsTheMissionToItsEnd) {
   start_with_nameless_agents(mission("50", kRealtime));
   expect_all_to_end();
   EXPECT_EQ(summary()["result"], "done") << summary()["reason"];

@@ -56,14 +56,14 @@ TEST_F(WrongNetwork, AnAgentWithATtlOfZeroIsMissed) {
   expect_agent_2_to_be_missing();
 }
 
-TEST_F(WrongNetwork, AnAgentWithoutAMulticastRouteSaysWhatIsWrong) {
+TEST_F(WrongNetwork, AnAgentWithoutAMulticastRouteReportsWhatIsWrong) {
   lan_->route_multicast(2, "");
   Program& agent = agent_on(2, 0);
   EXPECT_EQ(wait_for(agent.child), 3) << agent.printed();
   EXPECT_TRUE(agent.prints("ip route add 224.0.0.0/4")) << agent.printed();
 }
 
-TEST_F(WrongNetwork, AnAgentWhoseFirewallDropsOneBusSaysWhich) {
+TEST_F(WrongNetwork, AnAgentWhoseFirewallDropsOneBusReportsWhich) {
   const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(url_));
   {
     const auto there = lan_->visit(2);

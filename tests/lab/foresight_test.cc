@@ -74,7 +74,7 @@ TEST_P(LockstepForesight, IsTheSameWhateverHappensToMessages) {
   EXPECT_GT(figures_.faults.reordered, 1000);
 }
 
-TEST_P(LockstepForesight, IsTheSameWhoeverCannotHearWhomForAWhile) {
+TEST_P(LockstepForesight, IsTheSameWhicheverAgentsCannotReceiveEachOtherForAWhile) {
   Faults faults;
   faults.loss = 0.3;
   faults.partitions_per_s = 2;

@@ -191,7 +191,7 @@ TEST_F(InvariantsTest, RelaysAnswerDigests) {
   EXPECT_EQ(violated(), "a relay answers a digest");
 }
 
-TEST_F(InvariantsTest, DigestsSayWhatIsHeld) {
+TEST_F(InvariantsTest, DigestsListWhatIsHeld) {
   CoverageTable table(mission_.basis, 0.1);
   cover(table, kOne, 20);
   const TableView one = holder(table, c_one_);
@@ -204,7 +204,7 @@ TEST_F(InvariantsTest, DigestsSayWhatIsHeld) {
   EXPECT_EQ(violated(), "");
   digest.entries[0].steps = 21;
   team_.sent(1, {Bus::kSwarm, digest}, &one);
-  EXPECT_EQ(violated(), "a digest says what is held");
+  EXPECT_EQ(violated(), "a digest lists what is held");
 }
 
 TEST_F(InvariantsTest, DamagedMessagesAreRefusedAndOthersAreNot) {
@@ -327,21 +327,21 @@ TEST_F(InvariantsTest, HonestMessagesAreNotRefused) {
   EXPECT_EQ(violated(), "no honest message is refused");
 }
 
-TEST_F(InvariantsTest, NobodyEndsBeforeTheMission) {
+TEST_F(InvariantsTest, NoAgentEndsBeforeTheMission) {
   team_.finished(1, kOne, "mission complete", true);
   EXPECT_EQ(violated(), "");
   team_.finished(1, kOne, "lonely", false);
   EXPECT_EQ(violated(), "no agent ends before the mission");
 }
 
-TEST_F(InvariantsTest, NobodyAsksForThePast) {
+TEST_F(InvariantsTest, NoProcessAsksForThePast) {
   team_.wakeup(1, "agent 0", false);
   EXPECT_EQ(violated(), "");
   team_.wakeup(1, "agent 0", true);
-  EXPECT_EQ(violated(), "nobody asks to be woken in the past");
+  EXPECT_EQ(violated(), "no process asks to be woken in the past");
 }
 
-TEST_F(InvariantsTest, EverybodyLearnsEveryRow) {
+TEST_F(InvariantsTest, EveryAgentLearnsEveryRow) {
   CoverageTable one(mission_.basis, 0.1), two(mission_.basis, 0.1);
   for (CoverageTable* table : {&one, &two}) cover(*table, kTwo, 20);
   cover(one, kLeft, 10);
@@ -350,7 +350,7 @@ TEST_F(InvariantsTest, EverybodyLearnsEveryRow) {
   EXPECT_EQ(violated(), "");
   cover(one, kLeft, 1);
   team_.recovered(2, {holder(one, c_one_), holder(two, c_two_, kTwo)});
-  EXPECT_EQ(violated(), "everybody learns every row");
+  EXPECT_EQ(violated(), "every agent learns every row");
 }
 
 TEST_F(InvariantsTest, ViewsAgreeWithinTheirStaleness) {
@@ -366,11 +366,11 @@ TEST_F(InvariantsTest, ViewsAgreeWithinTheirStaleness) {
   EXPECT_GT(team_.largest_view_error(), 0);
 }
 
-TEST_F(InvariantsTest, EverybodyIsBack) {
+TEST_F(InvariantsTest, EveryProcessIsBack) {
   TableView outside;
   outside.self = kOne;
   team_.recovered(1, {outside});
-  EXPECT_EQ(violated(), "everybody is back in the mission");
+  EXPECT_EQ(violated(), "every process is back in the mission");
 }
 
 TEST_F(InvariantsTest, RelaysStopOnceAllKnowAll) {
@@ -403,7 +403,7 @@ TEST_F(InvariantsTest, TheMissionEndsWell) {
     return violated_by(team);
   };
   EXPECT_EQ(sent("", "", 100, 0.1), "");
-  EXPECT_EQ(sent("agent 1", "", 100, 0.1), "everybody ends");
+  EXPECT_EQ(sent("agent 1", "", 100, 0.1), "every process ends");
   EXPECT_EQ(sent("", "bad luck", 100, 0.1), "the mission does not fail");
   EXPECT_EQ(sent("", "", 99, 0.1), "the mission reaches its last tick");
   EXPECT_EQ(sent("", "", 100, 0.1, 0), "the record has every tick");

@@ -86,7 +86,7 @@ bool never_missed(const Heard& heard) {
   return heard.role == Role::kLogger && !(type == kTypes<WorldState> && heard.bus == Bus::kWorld);
 }
 
-TEST(Laboratory, MissesEachMessageThatSomebodyDoesNotSubscribeTo) {
+TEST(Laboratory, MissesEachMessageThatARoleDoesNotSubscribeTo) {
   const Scenario real_time = team(Pace::kRealtime);
   // The time-out is no excuse: all are back long before.
   const Scenario crowded =
@@ -133,7 +133,7 @@ TEST(RadioRange, IsNoFault) {
 }
 
 // A chain of four that hardly move, in which no agent receives the next but one.
-TEST(RadioRange, ExcusesNobodyFromPassingOnWhatItHears) {
+TEST(RadioRange, ExcusesNoAgentFromPassingOnWhatItReceives) {
   const auto chain = std::get<Scenario>(Scenario::parse(R"(
     domain { size_x_m: 100 size_y_m: 100 }
     target { uniform_weight: 1 }
@@ -156,7 +156,7 @@ Scenario evicting() {
               "admission_timeout_s: 3600 lockstep_timeout_s: 3 on_timeout: EVICT");
 }
 
-TEST(Eviction, OfWhoWasAwayIsNoFault) {
+TEST(Eviction, OfAnAgentThatWasAwayIsNoFault) {
   int evicted = 0;
   for (std::uint64_t seed = 1; seed <= 80; ++seed) {
     Faults faults;
@@ -191,7 +191,7 @@ TEST(Eviction, IsJudgedByWhatWasWrongWhenItHappened) {
 
 // In these runs all agents were evicted before the coordinator was to be killed. They had ended,
 // and no other process could have sent the mission to its successor.
-TEST(Eviction, OfTheLastSparesTheCoordinatorWhoAloneKnowsTheMissionThen) {
+TEST(Eviction, OfTheLastSparesTheCoordinatorThatAloneKnowsTheMissionThen) {
   for (const std::uint64_t seed : {751, 4022}) {
     const TrialResult result = run_trial(evicting(), seed, lab::drawn(seed));
     EXPECT_EQ(problem(result), "") << seed;
@@ -200,16 +200,16 @@ TEST(Eviction, OfTheLastSparesTheCoordinatorWhoAloneKnowsTheMissionThen) {
 }
 
 // In this run the coordinator was to be killed while no agent knew the mission.
-TEST(Eviction, LeavesTheCoordinatorAloneWhileNobodyElseKnowsTheMission) {
+TEST(Eviction, LeavesTheCoordinatorAloneWhileNoOtherProcessKnowsTheMission) {
   EXPECT_EQ(problem(run_trial(evicting(), 558, lab::drawn(558))), "");
 }
 
-TEST(Eviction, OfWhoWasThereIs) {
+TEST(Eviction, OfAnAgentThatWasThereIsAFault) {
   const Heard states{Role::kAgent, Bus::kWorld, Message(WorldState()).index()};
   EXPECT_EQ(broken(run_trial(evicting(), 1, {}, without(states))), Invariant::kNoEarlyEnd);
 }
 
-TEST(TimeOut, OfAnAdmissionIsAFaultUnlessSomebodyWasAway) {
+TEST(TimeOut, OfAnAdmissionIsAFaultUnlessAProcessWasAway) {
   const Heard hellos{Role::kCoordinator, Bus::kSwarm, Message(Hello()).index()};
   Faults deaf;
   deaf.loss = 1;
@@ -222,7 +222,7 @@ TEST(TimeOut, OfAnAdmissionIsAFaultUnlessSomebodyWasAway) {
   }
 }
 
-TEST(TimeOut, OfATickIsAFaultIfNobodyWasAway) {
+TEST(TimeOut, OfATickIsAFaultIfNoProcessWasAway) {
   const Heard states{Role::kAgent, Bus::kWorld, Message(WorldState()).index()};
   Faults harmless;  // nothing that could hold up a tick for ten seconds
   harmless.duplication = 0.3;

@@ -48,7 +48,7 @@ TEST(Laboratory, TheSameSeedGivesTheSameMission) {
   EXPECT_NE(run_trial(lab::drawn(1), 1).trajectory, run_trial(lab::drawn(2), 2).trajectory);
 }
 
-TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
+TEST(Laboratory, TheViewErrorIsOfAgentsThatReachedTheEnd) {
   Faults faults;
   faults.loss = 0.3;
   for (const double share : {0.6, 1.0}) {
@@ -56,7 +56,7 @@ TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
     const TriedTeam tried = run_trial(faults, 1);
     EXPECT_EQ(tried.problem(), "");
     EXPECT_GT(tried.result.figures.view_error, 0)
-        << "what was said last, at different ticks, is not all";
+        << "the last reports, at different ticks, are not all";
     EXPECT_LT(tried.result.figures.view_error, 0.1);
   }
 }

@@ -131,7 +131,7 @@ TEST(MessageLoss, EveryKindAtOnceChangesNoTrajectory) {
   EXPECT_EQ(outcome.trajectory, lossless());
 }
 
-TEST(MessageLoss, LosingTheLastStateOnceHurtsNobody) {
+TEST(MessageLoss, LosingTheLastStateOnceDoesNoHarm) {
   // The record is complete with the 192nd row, which is acknowledged at once.
   const std::string text = with(kScenario, "duration_s: 20", "duration_s: 19.2");
   for (const int node : {0, kAgents, kAgents + 2}) {  // an agent, the coordinator, the logger
@@ -148,7 +148,7 @@ TEST(MessageLoss, LosingTheLastStateOnceHurtsNobody) {
   }
 }
 
-TEST(MessageLoss, ALoggerThatIsNeverHeardHoldsUpNobody) {
+TEST(MessageLoss, ALoggerThatIsNeverReceivedHoldsUpNoProcess) {
   const Outcome outcome = simulated(
       [](const Message& message, int) { return std::holds_alternative<RecordAck>(message); });
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
@@ -169,7 +169,7 @@ TEST(MessageLoss, HowOftenAgentsBroadcastDoesNotShowWhereTheyReckon) {
   }
 }
 
-TEST(MessageLoss, NorInATeamWhoseWorldSpeaksInParts) {
+TEST(MessageLoss, NorInATeamWhoseWorldSendsItsStateInParts) {
   std::string large = with(kScenario, "agents {", "agents { random_count: 15");
   large =
       with(with(large, "x: 12 modes_y: 12", "x: 4 modes_y: 4"), "duration_s: 20", "duration_s: 5");
@@ -236,14 +236,14 @@ bool is_command_of(const Message& message, AgentId agent) {
   return command != nullptr && command->header.sender == agent;
 }
 
-TEST(MessageLoss, AnAgentThatIsNeverHeardIsNamedAndFailsTheMission) {
+TEST(MessageLoss, AnAgentThatIsNeverReceivedIsNamedAndFailsTheMission) {
   const Outcome outcome = simulated([](const Message& m, int) { return is_command_of(m, 2); });
   EXPECT_EQ(outcome.state, MissionState::kFailed);
   EXPECT_NE(outcome.reason.find("agent 2 has not answered tick 0"), std::string::npos)
       << outcome.reason;
 }
 
-TEST(MessageLoss, OrIsEvictedIfTheScenarioSaysSo) {
+TEST(MessageLoss, OrIsEvictedIfTheScenarioChoosesIt) {
   const std::string evicting =
       with(kScenario, "lockstep_timeout_s: 10", "lockstep_timeout_s: 10 on_timeout: EVICT");
   const Outcome outcome =
@@ -255,7 +255,7 @@ TEST(MessageLoss, OrIsEvictedIfTheScenarioSaysSo) {
       << outcome.trajectory.substr(outcome.trajectory.size() - 400);
 }
 
-TEST(MessageLoss, WhoCannotHearATeammateIsNotBlamedForIt) {
+TEST(MessageLoss, AnAgentThatCannotReceiveATeammateIsNotBlamed) {
   const Outcome outcome = simulated([](const Message& message, int to) {
     const auto* block = std::get_if<Contribution>(&message);
     return block != nullptr && block->header.sender == 1 && to == 0;

@@ -324,7 +324,7 @@ class MovedScenario : public ::testing::TestWithParam<std::tuple<Kind, int>> {
 /// of how far the domain was moved.
 double tolerance_of(Kind kind) { return kind == Kind::kPlane || kind == Kind::kBox ? 1e-9 : 1e-8; }
 
-TEST_P(MovedScenario, HasTheSameTargetAndFliesTheSameWay) {
+TEST_P(MovedScenario, HasTheSameTargetAndTheSamePaths) {
   const proto::Scenario scenario = draw_.scenario();
   const Mission here = mission_of(scenario), there = mission_of(Move(draw_.away_m())(scenario));
   EXPECT_LE((here.target_coefficients - there.target_coefficients).cwiseAbs().maxCoeff(), 1e-12);

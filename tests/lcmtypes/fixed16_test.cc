@@ -78,7 +78,7 @@ class Author16 {
   CoverageTable table_;
 };
 
-TEST(Fixed16, IsWithinHalfAUnitOfTheExactAverageHoweverLongItFlies) {
+TEST(Fixed16, IsWithinHalfAUnitOfTheExactAverageHoweverLongTheMission) {
   for (const Tick ticks : {1, 10, 1000, 4999}) {
     Author16 author(1);
     CoverageTable heard = rounded_table();

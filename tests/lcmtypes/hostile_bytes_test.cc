@@ -171,7 +171,7 @@ TEST(Codec, SecondControlCharactersAreRefusedInUtf8AndOtherCharactersAreNot) {
   }
 }
 
-TEST(Codec, WhatWeSayOurselvesMeansNothingToATerminal) {
+TEST(Codec, TextThatWeSendMeansNothingToATerminal) {
   const Stop sent{header_of_sender(kOperator), true,
                   "a\x1b[2J b\xC2\x9B"
                   "2J \xC3\xA9 \x9B"};
@@ -345,7 +345,7 @@ TEST(Codec, CountsThatOnlyOverflowAreRefused) {
 
 // A jump in a sender's numbering makes others count losses that never happened. Their statuses must
 // still be accepted.
-TEST(Codec, MoreLossesThanThereCanBeAreSaidAsTheMostThatIsAccepted) {
+TEST(Codec, MoreLossesThanThereCanBeAreSentAsTheMostThatIsAccepted) {
   AgentStatus status = agent_status();
   status.contributions_lost = std::int64_t{1} << 57;
   EXPECT_EQ(decoded_as<AgentStatus>(encoded(status)).contributions_lost, std::int64_t{1} << 48);

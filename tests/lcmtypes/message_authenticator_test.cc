@@ -71,7 +71,7 @@ TEST(MessageAuthenticator, FingerprintsAreEqualForEqualKeysOnly) {
   MissionKey half = key_of(1);
   half.coordinator = key_of(2).coordinator;
   EXPECT_NE(MessageAuthenticator(half).fingerprint(), kMemberAuthenticator.fingerprint())
-      << "obeys somebody else";
+      << "obeys another sender";
 }
 
 TEST(MessageAuthenticator, WhatHasNoKeyOrAnotherIsRefusedByName) {
@@ -114,7 +114,7 @@ TEST(MessageAuthenticator, ARepeatUnderAnotherNameIsRefused) {
             "accepted");
 }
 
-TEST(MessageAuthenticator, AMemberCannotSpeakForTheCoordinator) {
+TEST(MessageAuthenticator, AMemberCannotSendInTheNameOfTheCoordinator) {
   for (const Message& message : every_message()) {
     if (!is_signed(message)) continue;
     const std::string& channel = channel_of(message);

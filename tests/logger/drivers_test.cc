@@ -30,7 +30,7 @@ WorldState part_of(AgentId id, int robots, Tick tick) {
   return state;
 }
 
-TEST(RecordOfDrivers, JoinsWhatTheySay) {
+TEST(RecordOfDrivers, JoinsTheirStates) {
   Record record(driven(3));
   for (Tick tick = 0; tick < 10; ++tick) {
     for (const AgentId id : {2, 0, 1}) record.deliver(part_of(id, 3, tick), at(tick * 100ms));
@@ -43,7 +43,7 @@ TEST(RecordOfDrivers, JoinsWhatTheySay) {
   EXPECT_EQ(number(rows[5], 4), 501);
 }
 
-TEST(RecordOfDrivers, HasTheOthersRowsWhereOneIsNotHeard) {
+TEST(RecordOfDrivers, HasTheOthersRowsWhereOneIsNotReceived) {
   Record record(driven(3));
   for (Tick tick = 0; tick < 40; ++tick) {
     for (const AgentId id : {2, 0, 1}) {

@@ -37,7 +37,7 @@ class LastWords : public ::testing::Test {
   Outbox said_;
 };
 
-TEST_F(LastWords, AtOnceWhenAllOthersHaveLeftAndItSaysSoToTheCoordinator) {
+TEST_F(LastWords, AtOnceWhenAllOthersHaveLeftAndItReportsThatToTheCoordinator) {
   record_until(2), mission_ends(), agent_leaves();
   EXPECT_FALSE(left());
   world_leaves(2);
@@ -62,7 +62,7 @@ TEST_F(LastWords, TheLastRowIsAcknowledgedAtOnce) {
   EXPECT_EQ(acks(record_.deliver(state_of(2), at(1s))), (std::vector<Tick>{1}));
 }
 
-TEST_F(LastWords, AfterASecondIfAnyOfThemIsNotHeard) {
+TEST_F(LastWords, AfterASecondIfAnyOfThemIsNotReceived) {
   for (const int unheard : {0, 1, 2}) {
     Record record(mission_);
     for (Tick tick = 0; tick <= 2; ++tick) record.deliver(state_of(tick), at(1s));

@@ -84,7 +84,7 @@ TEST(FullDisk, InRealTimeTheRecordGoesOnWhereTheTeamIsAndCountsTheGap) {
   EXPECT_EQ(record.recorder.facts().gaps, 5100 - ticks);
 }
 
-TEST(Statuses, OfNoMoreLivesThanThereCanBeAreKept) {
+TEST(Statuses, OfNoMoreIncarnationsThanThereCanBeAreKept) {
   Record record(long_mission(Pace::kLockstep));
   const auto receive = [&](Incarnation life, std::int64_t sequence) {
     AgentStatus status = status_of(1, sequence);

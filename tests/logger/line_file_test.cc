@@ -86,7 +86,7 @@ TEST_F(LineFileTest, TriesByItselfOnceSixtyFourKilobytesWait) {
   EXPECT_EQ(fs::file_size(file_), 2 * 65536U);
 }
 
-TEST_F(LineFileTest, ThatCannotBeOpenedIsBadAndSaysWhy) {
+TEST_F(LineFileTest, ThatCannotBeOpenedIsBadAndReportsWhy) {
   LineFile lines;
   lines.open("/nowhere/at/all.csv");
   EXPECT_FALSE(lines);

@@ -116,7 +116,7 @@ TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
 
 // ---- acknowledgements ----
 
-TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
+TEST(Acknowledgement, FirstReportsThatTheRecordIsReady) {
   std::ostringstream trajectory, metrics;
   announce(small_mission(1));
   Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
@@ -177,7 +177,7 @@ TEST(Gap, InLockstepARecorderThatWasCutOffAndGivenUpComesBackAndCountsTheRowsItL
   const Outbox sent = record.deliver(state_of(501), back);
   ASSERT_EQ(acks(sent).size(), 1U);
   EXPECT_NE(header_of(sent.front().message).incarnation, kLoggerLife)
-      << "as somebody whom it takes back";
+      << "as a logger that it takes back";
   record.deliver(state_of(502), back + seconds(1));
   record.deliver(state_of(503), back + seconds(2));
   EXPECT_EQ(number(record.trajectory_rows().back(), 0), 502);
@@ -264,7 +264,7 @@ TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   EXPECT_EQ(facts.ergodic_metric.size(), 4u);
 }
 
-TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
+TEST(Metrics, CountWhatTheNewestStatusOfEachAgentReports) {
   Record record(small_mission(3));
   const auto report = [](AgentId id, std::int64_t sequence, double metric, double staleness,
                          std::int64_t received, std::int64_t lost) {
@@ -369,7 +369,7 @@ TEST(RecordEnd, ComesASecondAfterTheLastTickSoThatLastStatusesCount) {
   EXPECT_EQ(record.recorder.next_wakeup(), Instant::max());
 }
 
-TEST(RecordEnd, SaysThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
+TEST(RecordEnd, ReportsThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
   Record record(small_mission(1));
   for (Tick tick = 0; tick <= 7; ++tick) record.deliver(state_of(tick));
   record.deliver(mission_part(1, MissionState::kFailed, roster_of(1), "agent 0 is late"), at(5s));
@@ -398,7 +398,7 @@ TEST(RecordEnd, AStopAtOnceEndsItWithTheStopsReason) {
   }
 }
 
-TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
+TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNoMessagesArrive) {
   Record record(realtime_mission());  // 10 s
   for (const Tick tick : {0, 1, 40}) record.deliver(state_of(tick), at(4s));
   advance(record.recorder, at(40s));  // 6 s after tick 40, and 30 s more
@@ -411,7 +411,7 @@ TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   EXPECT_STREQ(record.recorder.result(), "stopped");
   EXPECT_EQ(
       record.recorder.reason(),
-      "neither the world nor the coordinator can be heard, and the mission must be over by now");
+      "nothing arrives from the world or the coordinator, and the mission must be over by now");
   EXPECT_EQ(record.trajectory_rows().size(), 1u);
 }
 

@@ -90,7 +90,7 @@ class Resume : public testing::Test {
 
 // ---- the same record as without a kill ----
 
-TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
+TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatWasNotStopped) {
   Mission mission = small_mission(3);
   mission.separation.distance_m = 1;
   mission.speed_limit_mps = 20;
@@ -203,13 +203,13 @@ TEST_F(Resume, WhatIsNotRepeatedWithinHalfASecondIsAGap) {
   EXPECT_EQ(resumed.recorder.next_row(), 31);
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
   advance(resumed.recorder, at(30s));
-  EXPECT_EQ(resumed.recorder.next_row(), 31) << "32 came after the first that was heard";
+  EXPECT_EQ(resumed.recorder.next_row(), 31) << "32 came after the first that was received";
   resumed.deliver(state_of(32), at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 34);
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
 }
 
-TEST_F(Resume, AGapEndsAtTheFirstStateHeardEvenIfTheNextIsMissing) {
+TEST_F(Resume, AGapEndsAtTheFirstStateReceivedEvenIfTheNextIsMissing) {
   Record resumed(small_mission(1), ten_rows());
   for (const Tick tick : {30, 32}) resumed.deliver(state_of(tick), at(10s));
   advance(resumed.recorder, at(30s));
@@ -276,7 +276,7 @@ TEST_F(Resume, ANewWorldMayLeaveAGapBeforeItsFirstState) {
   advance(record.recorder, at(10499ms));
   EXPECT_EQ(record.recorder.next_row(), 10);
   advance(record.recorder, at(14s));
-  EXPECT_EQ(record.recorder.next_row(), 15) << "16 is repeated by the world that said 17";
+  EXPECT_EQ(record.recorder.next_row(), 15) << "16 is repeated by the world that sent 17";
   EXPECT_EQ(record.recorder.facts().gaps, 4);
 }
 
@@ -407,7 +407,7 @@ TEST_F(Resume, KnowsTheMetricInCosinesWithoutARowMore) {
   mission.basis.free_domain = true;
   mission.basis.table_hash = std::get<ModesTable>(table_of(mission))->hash;
   Record lived(mission);
-  EXPECT_TRUE(std::isnan(lived.recorder.facts().cosine_metric_last)) << "nobody has moved yet";
+  EXPECT_TRUE(std::isnan(lived.recorder.facts().cosine_metric_last)) << "no agent has moved yet";
   for (Tick tick = 0; tick <= 100; ++tick) lived.deliver(state_of(tick));
   const double metric = lived.recorder.facts().cosine_metric_last;
   EXPECT_GT(metric, 0);

@@ -51,7 +51,7 @@ nlohmann::ordered_json goal_after_a_tick(double goal_ergodic_metric) {
   return summary.contains("goal") ? summary["goal"] : nlohmann::ordered_json();
 }
 
-TEST(Summary, SaysWhetherTheGoalIsReachedIfThereIsOne) {
+TEST(Summary, ReportsWhetherTheGoalIsReachedIfThereIsOne) {
   EXPECT_TRUE(goal_after_a_tick(0).is_null());
   EXPECT_EQ(goal_after_a_tick(1e6)["reached"], true);
   EXPECT_EQ(goal_after_a_tick(1e-6)["reached"], false);
@@ -59,7 +59,7 @@ TEST(Summary, SaysWhetherTheGoalIsReachedIfThereIsOne) {
 }
 
 /// The second of two agents answers from tick 10 on.
-TEST(Summary, SaysHowMuchADistanceHasCost) {
+TEST(Summary, ReportsHowMuchADistanceHasCost) {
   Mission mission = small_mission(2);
   mission.speed_limit_mps = 40;
   mission.separation.distance_m = 30;
@@ -89,7 +89,7 @@ TEST(Summary, SaysHowMuchADistanceHasCost) {
   }
 }
 
-TEST(Summary, SaysNothingOfWhatIsNotKnown) {
+TEST(Summary, LeavesOutWhatIsNotKnown) {
   std::ostringstream trajectory, metrics;
   announce(small_mission(1));
   const Recorder recorder(kRun, kLoggerLife, trajectory, metrics);

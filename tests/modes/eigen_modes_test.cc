@@ -81,7 +81,7 @@ TEST(EigenModes, AreOrthogonalAndBegunByTheConstant) {
 }
 
 // The lowest mode distinguishes the two rooms, and is almost constant in each.
-TEST(EigenModes, TellRoomsApartFirst) {
+TEST(EigenModes, DistinguishRoomsFirst) {
   const FreeGrid grid = test::grid_of(test::square(), test::sees_through_the_door);
   const auto modes = eigen_modes(grid, 4);
   ASSERT_TRUE(modes);

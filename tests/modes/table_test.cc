@@ -179,7 +179,7 @@ TEST(TableFile, ThatIsCutOrOverwrittenAfterwardsHarmsNoReader) {
   EXPECT_TRUE(std::ranges::equal(read->file, table->file));
 }
 
-TEST(TableFile, ThatNobodyCanChangeIsShared) {
+TEST(TableFile, ThatCannotBeChangedIsShared) {
   const std::string name = "sealed-table";
   const int sealed = memfd_create(name.c_str(), MFD_ALLOW_SEALING);
   ASSERT_GE(sealed, 0);
@@ -207,7 +207,7 @@ TEST(TableFile, ThatIsNoneIsNamed) {
   }
 }
 
-TEST(TableFile, ThatCannotBeWrittenIsSaid) {
+TEST(TableFile, ThatCannotBeWrittenIsReported) {
   const ModesTable table = std::get<ModesTable>(decoded(good()));
   const auto problem = save_table(*table, "/nowhere/at/all");
   ASSERT_TRUE(problem);

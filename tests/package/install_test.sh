@@ -14,7 +14,7 @@ check_contents() {
   [ "$(dpkg-deb --ctrl-tarfile "$deb" | tar -xO ./conffiles)" = /etc/ergocast/ergocast.env ] ||
     fail 'the settings are no conffile'
   for field in Package Version Architecture Maintainer Description Section Depends; do
-    [ -n "$(dpkg-deb -f "$deb" $field)" ] || fail "the package says no $field"
+    [ -n "$(dpkg-deb -f "$deb" $field)" ] || fail "the package has no $field"
   done
   case $(dpkg-deb -f "$deb" Depends) in
     *libcpp-httplib*) ;;
@@ -101,4 +101,4 @@ expect_file etc/ergocast/ergocast.env
 in_root dpkg --purge ergocast >/dev/null
 left=$(files_of_system | grep -i ergocast || true)
 [ -z "$left" ] || fail "purged, and there still is: $left"
-echo 'the package installs, flies and goes'
+echo 'the package installs, runs and goes'

@@ -40,7 +40,7 @@ END
   offline bash /tmp/test/team >"$work/said" 2>&1 || { cat "$work/said"; fail 'the team'; }
   grep -q 'mission complete' "$work/embedded" || { cat "$work/said" "$work/embedded"; fail 'embedded'; }
   offline ergocast simulate quadrimodal_corners --duration 20 --out /tmp/test/simulated >/dev/null || fail simulate
-  cmp "$work/simulated/trajectory.csv" "$work/flown/trajectory.csv" || fail 'the embedded agent flies another law'
+  cmp "$work/simulated/trajectory.csv" "$work/flown/trajectory.csv" || fail 'the embedded agent runs another law'
 }
 
 check_python() {

@@ -219,7 +219,7 @@ check_mission_with_keys() {
   outsider_says() { there journalctl -o cat -u outsider | grep -q 'a team with a --key-file is on this URL'; }
   eventually outsider_says
   there systemctl stop outsider
-  ! there ergocast status --lcm-url "$url" >"$work/said" 2>&1 || fail 'the team flies without its key'
+  ! there ergocast status --lcm-url "$url" >"$work/said" 2>&1 || fail 'the team runs without its key'
   grep -q 'has a mission key' "$work/said" || fail "status: $(cat "$work/said")"
   there ergocast status --lcm-url "$url" --key-file /etc/ergocast/mission.key >"$work/said" 2>&1 ||
     fail "status: $(cat "$work/said")"

@@ -56,7 +56,7 @@ TEST(Fig1b, TheOthersLeaveHalfWayTowardsAPeak) {
   }
 }
 
-TEST(Fig1b, NobodyLeavesInTheFirstMinute) {
+TEST(Fig1b, NoAgentLeavesInTheFirstMinute) {
   PaperTeam team(shipped_mission("paper_fig1b"));
   team.run_until(60, [&team] {
     for (std::size_t i = 0; i < team.size(); ++i) {

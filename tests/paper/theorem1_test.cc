@@ -96,7 +96,7 @@ TEST_P(FromEverySet, EverySeedEscapesFromASigmaOfOneWithinTenMinutes) {
   EXPECT_GT(studies::least_probability(kSeeds, kError), 0.979);
 }
 
-TEST_P(FromEverySet, NearTheSetTimesAreDistributedAsTheLinearisedRecursionSays) {
+TEST_P(FromEverySet, NearTheSetTimesAreDistributedAsTheLinearisedRecursionPredicts) {
   constexpr double kNear_m = 0.5, kUntil_s = 200;
   const Mission mission = paper_from(start(), 1e-2);
   const auto steps = studies::linearised(mission, 2000);

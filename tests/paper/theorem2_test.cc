@@ -82,7 +82,7 @@ TEST(Theorem2, MeanSquareStaysUnderTheBoundWithAndWithoutEdges) {
   }
 }
 
-TEST(Theorem2, ReflectionMovesNobodyAwayFromACentreInside) {
+TEST(Theorem2, ReflectionMovesNoAgentAwayFromACentreInside) {
   Mission mission = loud(200);
   for (mission.seed = 1; mission.seed <= 20; ++mission.seed) {
     PaperTeam team(mission, Edges::kNone);
@@ -108,7 +108,7 @@ TEST(Theorem2, BoundIsMetExactlyWhereAStepForgetsThePast) {
   EXPECT_LE(sum, limits.high);
   EXPECT_NEAR((2 + 1 / unit_m2) * unit_m2, mean_square_bound_m2(mission, 0), 1e-12);
   EXPECT_GT(limits.low / (kSeeds * (2 + 1 / unit_m2)), 0.92)
-      << "the limits are too wide to say anything";
+      << "the limits are too wide to mean anything";
 }
 
 // An input in one direction uses up the first summand, and in small steps noise uses only half of

@@ -60,7 +60,7 @@ class OneBus : public OwnHost {
   std::vector<std::string> heard_;
 };
 
-TEST_F(OneBus, HearsNoOtherGroupAtItsPort) {
+TEST_F(OneBus, ReceivesNoOtherGroupAtItsPort) {
   const LcmUrl there = url("udpm://239.255.76.68:24700?ttl=0");
   const auto our_ear = reader(here_), their_ear = reader(there);
   const auto our_mouth = writer(here_), their_mouth = writer(there);
@@ -76,7 +76,7 @@ TEST_F(OneBus, HearsNoOtherGroupAtItsPort) {
   EXPECT_EQ(std::count(heard_.begin(), heard_.end(), channel_of(hello())), 0);
 }
 
-TEST_F(OneBus, HearsNothingThatIsSentToThisHostAlone) {
+TEST_F(OneBus, ReceivesNothingThatIsSentToThisHostAlone) {
   const auto ear = reader(here_);
   std::vector<std::byte> bytes;
   encode(stop(), bytes);
@@ -89,7 +89,7 @@ TEST_F(OneBus, HearsNothingThatIsSentToThisHostAlone) {
   EXPECT_EQ(heard_, std::vector<std::string>{channel_of(hello())});
 }
 
-TEST_F(OneBus, IsSharedByManyWhoAllHearEverything) {
+TEST_F(OneBus, IsSharedByManyProcessesThatAllReceiveEverything) {
   std::vector<std::unique_ptr<BusReader>> ears;
   for (int i = 0; i < 5; ++i) ears.push_back(reader(here_));
   const auto one = writer(here_), other = writer(here_);

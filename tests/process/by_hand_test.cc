@@ -28,7 +28,7 @@ class StartedByHand : public ByHand {
   }
 };
 
-TEST_F(StartedByHand, AnAgentThatIsToldToLeaveIsReportedAndNotWaitedFor) {
+TEST_F(StartedByHand, AnAgentThatASignalStopsIsReportedAndNotWaitedFor) {
   Program& coordinator = begin_mission(endless_pair());
   BusObserver observer(kUrl);
   ASSERT_TRUE(observer.observes([&] { return observer.answered(observer.member(0)) > 0; }));
@@ -65,7 +65,7 @@ TEST_F(StartedByHand, ASecondCoordinatorLeavesALeaderAloneThatHasNoAgentsYet) {
   EXPECT_TRUE(second.prints("is led by the coordinator on ")) << second.printed();
 }
 
-TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOverWhenItIsToldTo) {
+TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOverWithResume) {
   const auto file = endless_pair();
   Program& first = begin_mission(file);
   Program& second = hand("ergocast-coordinator", {file, "--resume"});
@@ -87,11 +87,11 @@ TEST_F(StartedByHand, ACoordinatorTakesTheMissionOfALauncherOver) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
-TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
+TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNoTeam) {
   begin_mission(endless_pair());
   Program& other = hand("ergocast-coordinator", {scenario_file("paper_fig2b")});
   EXPECT_EQ(wait_for(other.child), 4) << other.printed();
-  EXPECT_TRUE(other.prints("is flying on this URL: choose another URL")) << other.printed();
+  EXPECT_TRUE(other.prints("is running on this URL: choose another URL")) << other.printed();
   EXPECT_TRUE(moves_on());
 }
 

@@ -57,7 +57,7 @@ TEST_F(DatagramFilter, PassesOnOurMessagesUnderOurNamesOnly) {
   }
 }
 
-TEST_F(DatagramFilter, PassesOnReplaysOnlyToThoseWhoAskForThem) {
+TEST_F(DatagramFilter, PassesOnReplaysOnlyToProcessesThatAskForThem) {
   for (const bool asks : {false, true}) {
     ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, {}, asks));
     for (const Message& message : every_message()) {
@@ -88,13 +88,13 @@ TEST_F(DatagramFilter, InAFloodPassesOnAllThatIsNew) {
     for (std::int64_t later = 1; later < 50; ++later) {
       EXPECT_TRUE(passes(stamped(message, 0x700000001, 100 + later))) << channel_of(message);
       EXPECT_TRUE(passes(stamped(message, 2, later))) << channel_of(message);
-      EXPECT_TRUE(passes(stamped(message, 4, later))) << "a life that nobody repeats";
+      EXPECT_TRUE(passes(stamped(message, 4, later))) << "an incarnation that is not repeated";
       EXPECT_TRUE(passes(stamped(message, 3, 5000000000 + later)));
     }
   }
 }
 
-TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
+TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfTheRepeats) {
   const std::vector<Repeated> flooded = {{0x700000001, 100}, {2, 100}};
   ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, flooded));
   for (const Message& message : every_message()) {
@@ -120,7 +120,7 @@ TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
     EXPECT_TRUE(passes(stamped(command(), 2, 100))) << "after the flood";
 }
 
-TEST_F(DatagramFilter, HasRoomForAsManyLivesAsATeamHas) {
+TEST_F(DatagramFilter, HasRoomForAsManyIncarnationsAsATeamHas) {
   std::vector<Repeated> flooded;
   for (Incarnation life = 1; life <= 144; ++life) flooded.push_back({life, 100});
   ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, flooded));

@@ -21,7 +21,7 @@ class DrivenRobots : public ByHand {
   }
 };
 
-TEST_F(DrivenRobots, FlyAWholeMissionWhoseRecordIsComplete) {
+TEST_F(DrivenRobots, RunAWholeMissionWhoseRecordIsComplete) {
   std::filesystem::create_directory(out());
   Program& logger = hand("ergocast-logger", {"--out", out()});
   Program& driver = hand("ergocast-example-driver");
@@ -35,7 +35,7 @@ TEST_F(DrivenRobots, FlyAWholeMissionWhoseRecordIsComplete) {
   EXPECT_EQ(summary()["ticks"], 300);
 }
 
-TEST_F(DrivenRobots, StandStillAtOnceWhenTheyAreToldToStop) {
+TEST_F(DrivenRobots, StandStillAtOnceAfterAStop) {
   std::filesystem::create_directory(out());
   Program& logger = hand("ergocast-logger", {"--out", out()});
   Program& driver = hand("ergocast-example-driver");
@@ -128,7 +128,7 @@ class RobotsWithTheirOwnDrivers : public ByHand {
   }
 };
 
-TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver) {
+TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotReceivedAndRefuseASecondDriver) {
   std::filesystem::create_directory(out());
   Program& logger = hand("ergocast-logger", {"--out", out()});
   std::vector<Program*> drivers;
@@ -145,9 +145,9 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver)
   EXPECT_TRUE(drivers[2]->child.running()) << drivers[2]->printed();
 
   drivers[2]->child.send(SIGKILL);
-  EXPECT_TRUE(eventually_all({0, 1, 3}, false)) << "nobody echoes for robot 2: the lease is over";
+  EXPECT_TRUE(eventually_all({0, 1, 3}, false)) << "no beacon echoes robot 2: the lease is over";
   hand("ergocast-example-driver", {"--id", "2"});
-  EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << "all are heard again";
+  EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << "all are received again";
 
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   EXPECT_EQ(wait_for(logger.child), 0) << logger.printed();
@@ -157,7 +157,7 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver)
 
 // A foreign sender repeats agent 1's messages with another position, and echoes messages that no
 // process has sent.
-TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsOutOfOrderAndFromTheFuture) {
+TEST_F(RobotsWithTheirOwnDrivers, GoOnBesideBeaconsOutOfOrderAndFromTheFuture) {
   std::filesystem::create_directory(out());
   hand("ergocast-logger", {"--out", out()});
   Program& first = hand("ergocast-agent", {"--id", "0"});
@@ -183,7 +183,7 @@ TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsOutOfOrderAndFromTheFuture) 
   EXPECT_TRUE(eventually([&] {
     early.header.sequence += 3;  // soon newer than the newest of agent 1
     stranger.send(Bus::kSwarm, early);
-    return first.printed().find("answers to one that this agent has not sent yet") !=
+    return first.printed().find("answers one that this agent has not sent yet") !=
            std::string::npos;
   })) << first.printed();
   EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << first.printed();

@@ -42,7 +42,7 @@ TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
   EXPECT_EQ(summary()["restarts"], 0);
 }
 
-TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
+TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatReportsIt) {
   // A buffer too small for the messages that arrive while it is stopped.
   Child mission =
       launch_held(scenario("duration_s: 20 lockstep_timeout_s: 10"),
@@ -51,7 +51,7 @@ TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
   release();
   // The world continues without it after its time-out, to the end.
   ASSERT_TRUE(logs("coordinator", "mission ended")) << printed();
-  EXPECT_NE(log_of("sim").find("going on without"), std::string::npos);
+  EXPECT_NE(log_of("sim").find("goes on without it"), std::string::npos);
   signal_to({"ergocast-logger"}, SIGCONT);
   EXPECT_EQ(wait_for(mission), 4) << printed();
   EXPECT_EQ(summary()["record_complete"], false);
@@ -77,7 +77,7 @@ TEST_F(Fault, HangingAgentIsNamedByTheTimeOut) {
   EXPECT_NE(reason.find("agent 3 has not answered tick"), std::string::npos) << reason;
 }
 
-TEST_F(Fault, YoungerOfTwoAgentsWithOneIdStopsAndSaysWhy) {
+TEST_F(Fault, YoungerOfTwoAgentsWithOneIdStopsAndReportsWhy) {
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
   EXPECT_EQ(run("ergocast-agent", {"--id", "0", "--lcm-url", kUrl}), 4);
   EXPECT_NE(output().find("agent 0 is already running on"), std::string::npos) << output();

@@ -61,7 +61,7 @@ TEST_F(Flood, OfDatagramsLongerThanOursCostsNoMemory) {
   EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
-TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
+TEST_F(Flood, NamesOfForeignChannelsCostNoMemory) {
   constexpr long kGrowth_kb = 2000;
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
   const pid_t who[] = {pids(agent(0)).front(), pids({"ergocast-logger"}).front()};
@@ -125,7 +125,7 @@ class Babble : public Flood {
   }
 };
 
-TEST_F(Babble, AnAgentThatSaysAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamFliesOn) {
+TEST_F(Babble, AnAgentThatSendsAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamGoesOn) {
   Child mission = launch_endless(scenario(), {"--realtime=1", "--lcm-url", kUrl});
   for (const auto& agent : agents()) EXPECT_EQ(agent["refused"]["rate"], 0) << agent;
   RateOffender rate_offender(kUrl, true);
@@ -133,7 +133,7 @@ TEST_F(Babble, AnAgentThatSaysAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamFlie
   signal_to(agent(3), SIGSTOP);
   ASSERT_TRUE(eventually([&] {
     rate_offender.exceed_rate();
-    return log_of("agent-0").find("agent 3 babbles") != std::string::npos;
+    return log_of("agent-0").find("agent 3 sends more than eight times") != std::string::npos;
   })) << log_of("agent-0");
   for (const auto& agent : agents()) {
     if (agent["id"] == 3) continue;
@@ -187,7 +187,7 @@ class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const 
 
 /// Without detection every repeat would be accepted: neither the world nor the coordinator has a
 /// budget. The speed of the machine only affects the duration.
-TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
+TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamGoesOn) {
   constexpr std::int64_t kEnough = 50000;
   constexpr std::size_t kAtOnce = 200;  // every 5 ms at the most: 40 000 a second
   Child mission =

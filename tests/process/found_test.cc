@@ -133,7 +133,7 @@ TEST_F(Found, AnEmergencyOfARunThatCannotBeTakenStopsTheOthers) {
   text.replace(at, text.find('"', at) - at, "9.9.9");
   std::ofstream(file) << text;  // the same file: its lock stays
   EXPECT_EQ(ergocast({"stop", "--now"}), 2);
-  EXPECT_TRUE(printed("is flown by ergocast 9.9.9, this is ")) << output();
+  EXPECT_TRUE(printed("was started with ergocast 9.9.9, this is ")) << output();
   EXPECT_EQ(wait_for(second), 0);
   EXPECT_TRUE(first.running());
   first.send(SIGINT);
@@ -161,7 +161,7 @@ TEST_F(Found, ItsProcessesAreNamedWithTheirIds) {
   EXPECT_EQ(wait_for(run), 0);
 }
 
-TEST_F(Found, HelpSaysWhereACommandLooks) {
+TEST_F(Found, HelpNamesWhereACommandLooks) {
   for (const char* command : {"status", "watch", "stop", "pause", "resume"}) {
     EXPECT_EQ(ergocast({command, "--help"}), 0);
     EXPECT_TRUE(printed("default: that of your live run on this host")) << command << output();
@@ -169,7 +169,7 @@ TEST_F(Found, HelpSaysWhereACommandLooks) {
   }
 }
 
-TEST_F(Found, ARunThatWasKilledIsSaidAndNotTaken) {
+TEST_F(Found, ARunThatWasKilledIsReportedAndNotTaken) {
   Child run = start_mission("one");
   run.send(SIGKILL);
   wait_for(run);
@@ -189,7 +189,7 @@ TEST_F(Found, ARunOfAnotherVersionIsNotTaken) {
   text.replace(at, text.find('"', at) - at, "9.9.9");
   std::ofstream(file) << text;  // the same file: its lock stays
   EXPECT_EQ(ergocast({"stop"}), 2);
-  EXPECT_TRUE(printed("is flown by ergocast 9.9.9, this is ")) << output();
+  EXPECT_TRUE(printed("was started with ergocast 9.9.9, this is ")) << output();
   EXPECT_TRUE(run.running());
   run.send(SIGINT);
   EXPECT_EQ(wait_for(run), 0);

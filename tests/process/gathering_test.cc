@@ -40,7 +40,7 @@ class Gathers : public OwnHost {
 
 TEST_F(Gathers, OnAllBusesButTheWorlds) {
   transport_->let_gather({1h, 10});
-  EXPECT_TRUE(is_woken_by(Bus::kSwarm)) << "nothing has been heard before";
+  EXPECT_TRUE(is_woken_by(Bus::kSwarm)) << "nothing has been received before";
   for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
     send(bus);
     EXPECT_FALSE(is_woken());

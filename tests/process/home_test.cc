@@ -17,7 +17,7 @@ class AgentsWithAStation : public RunningMission {
   }
 };
 
-TEST_F(AgentsWithAStation, RestAtHomeAsStatusAndSummarySay) {
+TEST_F(AgentsWithAStation, RestAtHomeAsStatusAndSummaryReport) {
   // They rest from tick 2000 of 10^8 on.
   const auto file = scenario(
       "", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } reserve_s: 9999800 }\n");

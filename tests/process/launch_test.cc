@@ -31,7 +31,7 @@ class Launch : public RunningMission {
   }
 };
 
-TEST_F(Launch, WithoutTheFolderOfLogsADeadAgentComesBackAndLogsNowhere) {
+TEST_F(Launch, WithoutTheFolderOfLogsAStoppedAgentComesBackAndLogsNowhere) {
   Child mission = launch_endless(scenario());
   fs::remove_all(out() / "log");
   kill_next(agent(2));
@@ -41,21 +41,21 @@ TEST_F(Launch, WithoutTheFolderOfLogsADeadAgentComesBackAndLogsNowhere) {
   EXPECT_FALSE(fs::exists(out() / "log"));
 }
 
-TEST_F(Launch, WithoutARoomForOneMoreFileADeadAgentComesBackOnceThereIs) {
+TEST_F(Launch, WithoutRoomForOneMoreFileAStoppedAgentComesBackOnceThereIs) {
   Child mission = launch_endless(scenario());
   rlimit former{};
   ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, nullptr, &former), 0);
   const rlimit none{3, former.rlim_max};
   ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, &none, nullptr), 0);
   kill_next(agent(2));
-  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << printed();
+  ASSERT_TRUE(comes_to_say("agent-2: will be started as soon as possible")) << printed();
   EXPECT_TRUE(printed("could not be executed")) << printed();
   ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, &former, nullptr), 0);
   EXPECT_TRUE(moves_on()) << printed();
   end(mission, 1);
 }
 
-TEST_F(Launch, WithoutRoomForOneMoreProcessADeadAgentComesBackOnceThereIs) {
+TEST_F(Launch, WithoutRoomForOneMoreProcessAStoppedAgentComesBackOnceThereIs) {
   const fs::path full = folder_ / "full";
   setenv("LD_PRELOAD", ERGOCAST_NO_MORE_PROCESSES, 1);
   setenv("ERGOCAST_TEST_NO_MORE_PROCESSES", full.c_str(), 1);
@@ -84,13 +84,13 @@ class OwnPrograms : public Launch {
   fs::path agent_program() const { return programs() / "ergocast-agent"; }
 };
 
-TEST_F(OwnPrograms, AreReplacedWhileAnAgentDiesAndItComesBackWithTheNewOne) {
+TEST_F(OwnPrograms, AreReplacedWhileAnAgentCrashesAndItComesBackWithTheNewOne) {
   Child mission = launch_endless(scenario());
   const fs::path real = fs::read_symlink(agent_program());
   fs::remove(agent_program());
   std::ofstream(agent_program()) << "half of a program";
   kill_next(agent(2));
-  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << printed();
+  ASSERT_TRUE(comes_to_say("agent-2: will be started as soon as possible")) << printed();
   ASSERT_TRUE(logs("agent-2", "cannot be executed: Permission denied", 2)) << printed();
   fs::remove(agent_program());
   fs::create_symlink(real, agent_program());
@@ -106,7 +106,7 @@ TEST_F(OwnPrograms, ThatAreGoneForGoodFailTheMission) {
   EXPECT_EQ(summary()["reason"], "agent-2 could not be started again") << printed();
 }
 
-TEST_F(Launch, WhileTheRouteIsAwayTheDeadAreWaitedForAndNoRestartIsCounted) {
+TEST_F(Launch, WhileTheRouteIsAwayStoppedProcessesAreWaitedForAndNoRestartIsCounted) {
   Child mission = launch_endless(scenario());
   ASSERT_EQ(std::system("ip route del 224.0.0.0/4 dev lo"), 0);
   kill_next(agent(1));
@@ -137,7 +137,7 @@ class DamagedRecord : public Launch {
   }
 };
 
-TEST_F(DamagedRecord, GoesOnInAFreshSegmentWithoutWhatCannotBeRead) {
+TEST_F(DamagedRecord, GoesOnInANewSegmentWithoutWhatCannotBeRead) {
   Child mission = launch_endless(scenario());
   while_the_logger_is_dead(mission, [this] {
     std::string rows = text_of(out() / "trajectory.csv");
@@ -145,7 +145,7 @@ TEST_F(DamagedRecord, GoesOnInAFreshSegmentWithoutWhatCannotBeRead) {
     write("trajectory.csv", rows);
   });
   ASSERT_TRUE(moves_on()) << printed();
-  EXPECT_TRUE(logs("logger", "goes on in a fresh segment")) << log_of("logger");
+  EXPECT_TRUE(logs("logger", "goes on in a new segment")) << log_of("logger");
   while_the_logger_is_dead(mission, [this] { write("trajectory-001.csv", ""); });
   ASSERT_TRUE(moves_on()) << printed();
   while_the_logger_is_dead(mission, [this] { fs::remove(out() / "metrics-002.csv"); });

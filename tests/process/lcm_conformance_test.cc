@@ -124,7 +124,7 @@ TEST_F(Conformance, WeReadEveryMessageThatLcmPublishes) {
   EXPECT_EQ(ours_->kernel_drops(), 0);
 }
 
-TEST_F(Conformance, EachHearsWhatItSubscribesToAndNothingElseCounts) {
+TEST_F(Conformance, EachReceivesWhatItSubscribesToAndNothingElseCounts) {
   std::map<Bus, Heard> heard;
   const auto some = open({kTypes<Hello, Contribution>, 0, kTypes<Command>}, &heard);
   Outbox outbox;

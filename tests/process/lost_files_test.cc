@@ -126,7 +126,7 @@ TEST_F(LostFiles, WithoutTheKeyFileTheKilledComeBackWithTheKey) {
   EXPECT_EQ(summary()["restarts"], 4) << printed();
 }
 
-TEST_F(LostFiles, WithoutTheRunDirectoryTheTeamGoesOnAndTheRunSaysWhatIsMissing) {
+TEST_F(LostFiles, WithoutTheRunDirectoryTheTeamGoesOnAndTheRunReportsWhatIsMissing) {
   Child mission = launch_endless(scenario(), {"--realtime=5"});
   fs::remove_all(out());
   kill_next({"ergocast-logger"});
@@ -137,7 +137,7 @@ TEST_F(LostFiles, WithoutTheRunDirectoryTheTeamGoesOnAndTheRunSaysWhatIsMissing)
   EXPECT_TRUE(printed("summary.json: No such file or directory")) << printed();
 }
 
-TEST_F(LostFiles, WhatSomebodyWroteIntoALogControlsNoTerminal) {
+TEST_F(LostFiles, TextInALogControlsNoTerminal) {
   Child mission = launch_endless(scenario());
   std::ofstream(out() / "log" / "agent-1.log") << "\x1b[31m red \xff\n";
   restart(agent(1), "agent-1");

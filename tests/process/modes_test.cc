@@ -94,7 +94,7 @@ TEST_F(TablesOfModes, SixtyFourAgentsOfAHostShareIt) {
   end(mission);
 }
 
-TEST_F(TablesOfModes, WhoComputesAnotherOneStaysOutAndSaysWhatToHandOver) {
+TEST_F(TablesOfModes, AProcessThatComputesAnotherOneStaysOutAndNamesTheFile) {
   const auto other = table_of_another_computer();
   Program& equipped = hand("ergocast-agent", {"--id", "0", "--modes", other});
   Program& bare = hand("ergocast-agent", {"--id", "1"});

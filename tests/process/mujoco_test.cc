@@ -21,7 +21,7 @@ class RobotsInPhysics : public ByHand {
   }
 };
 
-TEST_F(RobotsInPhysics, FlyAWholeMissionInLockstepAndTouchNobody) {
+TEST_F(RobotsInPhysics, RunAWholeMissionInLockstepWithoutContact) {
   std::filesystem::create_directory(out());
   Program& logger = hand("ergocast-logger", {"--out", out()});
   Program& world = hand("ergocast-example-mujoco");
@@ -68,7 +68,7 @@ class RobotsInTheOffice : public RunningMission {
   }
 };
 
-TEST_F(RobotsInTheOffice, ArePausedAndGoOnAndCoverItAndTouchNobody) {
+TEST_F(RobotsInTheOffice, ArePausedAndGoOnAndCoverItWithoutContact) {
   const auto office = std::filesystem::path(ERGOCAST_SOURCE_DIR) / "scenarios/office.textproto";
   Child mission = launch_endless(office, {"--lcm-url", kUrl, "--world", "ergocast-example-mujoco",
                                           "--world-arg=--robots", "--world-arg=discs"});
@@ -87,7 +87,7 @@ TEST_F(RobotsInTheOffice, ArePausedAndGoOnAndCoverItAndTouchNobody) {
   EXPECT_NE(output().find("another program than ergocast-sim"), std::string::npos) << output();
 }
 
-TEST_F(RobotsInTheOffice, HaveTheLagThatTheWorldIsToldOf) {
+TEST_F(RobotsInTheOffice, TheWorldTakesTheLagFromWorldArg) {
   EXPECT_EQ(ergocast({"run", "office", "--world", "ergocast-example-mujoco", "--world-arg=--lag",
                       "--world-arg=9", "--out", out()}),
             4);

@@ -113,9 +113,9 @@ TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
   EXPECT_EQ(ergocast({"report", out()}), 0) << output();
 }
 
-TEST_F(PauseCommand, SaysWhyThereIsNothingToPause) {
+TEST_F(PauseCommand, ReportsWhyThereIsNothingToPause) {
   EXPECT_EQ(send_command("pause"), 4);
-  EXPECT_TRUE(answered("nobody of any run")) << output();
+  EXPECT_TRUE(answered("no message of any run")) << output();
 }
 
 }  // namespace

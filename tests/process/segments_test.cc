@@ -89,7 +89,7 @@ TEST_F(Segments, TheEventLogBeginsWithTheFirstFreeNumber) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "events-001.lcm"));
 }
 
-TEST_F(Segments, ALoggerThatHearsOfNoMissionLeavesTheRecordAsItWas) {
+TEST_F(Segments, ALoggerThatReceivesNoMissionLeavesTheRecordAsItWas) {
   split("40,", "40,");
   const std::string summary_before = text_of(out() / "summary.json");
   Child logger = start("ergocast-logger", {"--out", out(), "--resume", "--lcm-url",

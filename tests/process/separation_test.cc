@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Paces, CrowdRun, ::testing::Values("--lockstep", "--rea
                            return pace.index == 0 ? "Lockstep" : "Realtime";
                          });
 
-TEST_P(CrowdRun, KeepsItsDistanceAndSaysWhatThatCost) {
+TEST_P(CrowdRun, KeepsItsDistanceAndReportsWhatThatCost) {
   ASSERT_EQ(ergocast({"run", scenario_file("crowded_team"), GetParam(), "--duration", "20", "--out",
                       out()}),
             0)
@@ -70,7 +70,7 @@ class CheckedScenario : public OwnHost {
   bool printed(const std::string& part) const { return output().find(part) != std::string::npos; }
 };
 
-TEST_F(CheckedScenario, SaysWhatBodiesThatFollowLateKeep) {
+TEST_F(CheckedScenario, ReportsTheDistanceThatBodiesThatFollowLateKeep) {
   const std::string late = "separation.response_s=0.25";
   ASSERT_EQ(ergocast({"check", scenario_file("crowded_team"), "--set", late}), 0) << output();
   EXPECT_TRUE(

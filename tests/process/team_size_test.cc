@@ -22,7 +22,7 @@ TEST_F(TeamSize, TwoKnowWhatTheOtherCovered) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
-TEST_F(TeamSize, TwoSayInRealTimeThatTheyHoldEachOthersCoverage) {
+TEST_F(TeamSize, TwoReportInRealTimeThatTheyHoldEachOthersCoverage) {
   Child mission = launch_endless(scenario(), {"--agents", "2", "--realtime=5", "--lcm-url", kUrl});
   BusObserver observer(kUrl);
   for (const AgentId id : {0, 1}) {
@@ -35,7 +35,7 @@ TEST_F(TeamSize, TwoSayInRealTimeThatTheyHoldEachOthersCoverage) {
   EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
-TEST_F(TeamSize, HowOftenSeventeenBroadcastDoesNotShowInWhatTheyFly) {
+TEST_F(TeamSize, HowOftenSeventeenBroadcastDoesNotChangeTheirPaths) {
   ASSERT_EQ(ergocast({"run", scenario("broadcast_period_ticks: 23"), "--agents", "17", "--duration",
                       "5", "--out", out()}),
             0)
@@ -48,7 +48,7 @@ TEST_F(TeamSize, HowOftenSeventeenBroadcastDoesNotShowInWhatTheyFly) {
   EXPECT_TRUE(text_of(out() / "trajectory.csv") == text_of(each_tick / "trajectory.csv"));
 }
 
-TEST_F(TeamSize, OneNeedsNobody) {
+TEST_F(TeamSize, OneNeedsNoOther) {
   ASSERT_EQ(ergocast({"run", scenario(), "--agents", "1", "--duration", "100", "--out", out()}), 0)
       << output();
   EXPECT_EQ(summary()["result"], "done");

@@ -61,7 +61,7 @@ TEST_F(Waiting, ForAnotherProcessEndsAtOnceToo) {
   expect_parts(printed, {"/ergocast-agent --id none", "exited with code 2 while the test waited"});
 }
 
-TEST_F(Waiting, ForAProgramsWordsEndsWithIt) {
+TEST_F(Waiting, ForAProgramsOutputEndsWithIt) {
   hand("ergocast-agent");
   Program& told = hand("ergocast", {"doctor", "--help"});
   expect_parts(failures_of([&] { return told.prints("what it never prints"); }),

@@ -122,7 +122,7 @@ TEST_F(Report, HasOnePageThatLoadsNothing) {
   }
 }
 
-TEST_F(Report, HasWhatTheSummarySaysAndNoTextEndsTheData) {
+TEST_F(Report, HasTheValuesOfTheSummaryAndNoTextEndsTheData) {
   record(2, 1000);
   mission.name = kHostile;
   const std::string hostile = R"(</script><script>alert(\"x\")</script><!-- & ']]>\u0001)";
@@ -141,7 +141,7 @@ TEST_F(Report, HasWhatTheSummarySaysAndNoTextEndsTheData) {
   EXPECT_EQ(found["mission"]["seed"], "18446744073709551615");
 }
 
-TEST_F(Report, SaysHowLargeBodiesAreAndWhoGoesHomeWhen) {
+TEST_F(Report, HasTheSizesOfBodiesAndWhenAgentsGoHome) {
   mission.starts_m.assign(2, {500, 500, 0});
   record(2, 1000);
   ASSERT_EQ(report(), std::nullopt);

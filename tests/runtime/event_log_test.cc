@@ -249,9 +249,10 @@ TEST_F(EventLogReaderTest, ReadsCompressedSegmentsAsTheyAre) {
     fs::resize_file(packed, size);
     const std::string read = read_back(folder_);
     EXPECT_NE(read.find(packed.string() + ", byte "), std::string::npos) << read;
-    EXPECT_NE(read.find(": damaged; what stands before is sound: `zstd -dc events-000.lcm.zst | "
-                        "head -c "),
-              std::string::npos)
+    EXPECT_NE(
+        read.find(
+            ": damaged; everything before it is sound: `zstd -dc events-000.lcm.zst | head -c "),
+        std::string::npos)
         << read;
     EXPECT_EQ(read.find("E F"), std::string::npos) << read;
   }
@@ -273,7 +274,8 @@ TEST_F(EventLogReaderTest, NamesFileByteAndRemedyOfDamage) {
   };
   spoil(129, 0);
   const std::string place = segment(0).string() + ", byte 129: ";
-  const std::string remedy = "; what stands before is sound: `truncate -s 129` on a copy keeps it";
+  const std::string remedy =
+      "; everything before it is sound: `truncate -s 129` on a copy keeps it";
   EXPECT_EQ(read_back(folder_), "A " + place + "no event of LCM's log format" + remedy);
   spoil(129, '\xED');
   EXPECT_EQ(read_back(folder_), "A B C ");
@@ -282,7 +284,7 @@ TEST_F(EventLogReaderTest, NamesFileByteAndRemedyOfDamage) {
             "A " + place + "an event longer than any message of Ergocast" + remedy);
 }
 
-TEST_F(EventLogReaderTest, SaysWhatIsMissing) {
+TEST_F(EventLogReaderTest, NamesWhatIsMissing) {
   EXPECT_NE(read_back(folder_).find("has no event log"), std::string::npos);
   EXPECT_NE(read_back(folder_ / "none").find("name a run directory"), std::string::npos);
   write({"A", "B", "C", "D", "E"});

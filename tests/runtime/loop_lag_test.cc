@@ -25,7 +25,7 @@ TEST(LoopLag, IsHowMuchTooLateTheLoopWokeUp) {
   EXPECT_DOUBLE_EQ(lag.take_s(), 0.25);
 }
 
-TEST(LoopLag, IsNoneForWhoIsWokenBeforeItsTime) {
+TEST(LoopLag, IsZeroForALoopThatIsWokenBeforeItsTime) {
   LoopLag lag;
   lag.woke(at(10s), at(1s));
   lag.done(at(1s));

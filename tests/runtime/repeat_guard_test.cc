@@ -36,14 +36,14 @@ class Guarded : public ::testing::Test {
   RepeatGuard guard_{Bus::kSwarm};
 };
 
-TEST_F(Guarded, NewsAreNeverAFlood) {
+TEST_F(Guarded, NewMessagesAreNeverAFlood) {
   for (int i = 0; i < 100 * RepeatGuard::kMostRepeats; ++i) {
     EXPECT_FALSE(receive(sent(3, 7, i), at(1s)));
   }
   EXPECT_TRUE(guard_.flooded().empty());
 }
 
-TEST_F(Guarded, FewerRepeatsThanAFloodHasAreHeardForEver) {
+TEST_F(Guarded, FewerRepeatsThanAFloodHasAreAlwaysReceived) {
   receive(sent(3, 7, 5), at(1s));
   for (int second = 2; second < 100; ++second) {
     EXPECT_FALSE(
@@ -51,13 +51,13 @@ TEST_F(Guarded, FewerRepeatsThanAFloodHasAreHeardForEver) {
   }
 }
 
-TEST_F(Guarded, AFloodIsCutAtTheNewestThatIsKnownOfWhoIsRepeated) {
+TEST_F(Guarded, AFloodIsCutAtTheNewestMessageOfTheRepeatedSender) {
   receive(sent(3, 7, 5), at(1s));
   receive(sent(3, 7, 90), at(1s));
   receive(sent(kWorld, 8, 1000), at(1s));
   EXPECT_TRUE(flood(sent(3, 7, 5), RepeatGuard::kMostRepeats, at(1s)));
   EXPECT_EQ(dropped_up_to(7), 90);
-  EXPECT_EQ(dropped_up_to(8), -1) << "nobody repeats the world";
+  EXPECT_EQ(dropped_up_to(8), -1) << "the world is not repeated";
 }
 
 TEST_F(Guarded, AFloodThatLastsIsCutAtEverNewerSequencesAndItsEndOpensAgain) {
@@ -76,10 +76,10 @@ TEST_F(Guarded, AFloodThatLastsIsCutAtEverNewerSequencesAndItsEndOpensAgain) {
   EXPECT_FALSE(receive(sent(3, 7, 9), at(2900ms)));
   EXPECT_TRUE(receive(sent(3, 7, 10), at(3010ms)));
   EXPECT_TRUE(guard_.flooded().empty());
-  EXPECT_FALSE(receive(sent(3, 7, 11), at(5000ms))) << "told once";
+  EXPECT_FALSE(receive(sent(3, 7, 11), at(5000ms))) << "reported once";
 }
 
-TEST_F(Guarded, RemembersNoMoreLivesThanItsLimit) {
+TEST_F(Guarded, RemembersNoMoreIncarnationsThanItsLimit) {
   const int many = static_cast<int>(RepeatGuard::kMaxIncarnations) + 50;
   for (int life = 1; life <= many; ++life)
     receive(sent(0, static_cast<Incarnation>(life), 1), at(1s));

@@ -36,7 +36,7 @@ TEST(Assign, SetsNumbersWordsTruthValuesAndListedFields) {
   EXPECT_EQ(good(kSmall, with("agents.random_count", "3")).mission().starts_m.size(), 4U);
 }
 
-TEST(Assign, IsWhatTheFileWouldHaveSaid) {
+TEST(Assign, EqualsTheSameFieldInTheFile) {
   EXPECT_EQ(plan_of(good(kSmall, with("law.u_max_mps", "7"))),
             plan_of(good(small_with("u_max_mps: 5", "u_max_mps: 7"))));
 }
@@ -81,7 +81,7 @@ TEST(Assign, RefusesValuesThatTheFieldDoesNotTakeAndBlamesTheFlag) {
   EXPECT_TRUE(has(problem_of("law.epsilon", ""), "--vary law.epsilon=: "));
 }
 
-TEST(Assign, RefusesWhatAnotherFlagSays) {
+TEST(Assign, RefusesWhatAnotherFlagSets) {
   const auto printed = [](const std::string& path, const std::string& value,
                           const std::function<void(Overrides&)>& set) {
     Overrides overrides = with(path, value);
@@ -89,22 +89,22 @@ TEST(Assign, RefusesWhatAnotherFlagSays) {
     return joined(problems_of(kSmall, overrides));
   };
   EXPECT_EQ(printed("seed", "3", [](Overrides& o) { o.seed = 4; }),
-            "--vary seed=3: --seed says it too (leave out one of them)\n");
+            "--vary seed=3: --seed sets it too (leave out one of them)\n");
   EXPECT_TRUE(has(printed("time.duration_s", "3", [](Overrides& o) { o.duration_s = 4; }),
-                  "--duration says it too"));
+                  "--duration sets it too"));
   EXPECT_TRUE(has(printed("time.pace", "REALTIME", [](Overrides& o) { o.pace = Pace::kLockstep; }),
-                  "--lockstep says it too"));
+                  "--lockstep sets it too"));
   EXPECT_TRUE(has(printed("time.realtime_factor", "3",
                           [](Overrides& o) {
                             o.pace = Pace::kRealtime;
                             o.realtime_factor = 1;
                           }),
-                  "--realtime says it too"));
+                  "--realtime sets it too"));
   EXPECT_TRUE(has(printed("agents.random_count", "3", [](Overrides& o) { o.agents = 4; }),
-                  "--agents says it too"));
+                  "--agents sets it too"));
   EXPECT_TRUE(
       has(printed("law.epsilon", "3", [](Overrides& o) { o.fields.push_back(o.fields.front()); }),
-          "--vary law.epsilon=3 says it too"));
+          "--vary law.epsilon=3 sets it too"));
 }
 
 TEST(WithSeed, IsTheScenarioReadWithThatSeed) {

@@ -61,7 +61,7 @@ TEST_F(MapTarget, ThreeKindsOfFilesOfOneMapAreOneTarget) {
   EXPECT_LT(csv[1], -0.1);   // and towards the north
 }
 
-TEST_F(MapTarget, FirstRowSaysWhichWayIsNorth) {
+TEST_F(MapTarget, FirstRowDefinesWhichWayIsNorth) {
   write("north.csv", "1,2,0\n5,0,1\n0,0,3\n");
   write("south.csv", "0,0,3\n5,0,1\n1,2,0\n");
   const Coefficients mu = mu_of(map_of("north.csv"));

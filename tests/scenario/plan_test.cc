@@ -127,7 +127,7 @@ TEST(Conversion, KnowsEveryFieldOfAScenario) {
 
 // Rules between fields are in two places: a plan that the reader accepts can be written as a
 // scenario, which gives the same mission.
-TEST(HostilePlan, WithAnyBitFlippedIsRefusedOrOfAMissionThatAScenarioSays) {
+TEST(HostilePlan, WithAnyBitFlippedIsRefusedOrOfAMissionThatAScenarioCanDescribe) {
   Bytes plan = plan_of(good(R"(
     name: "small"
     domain { size_x_m: 101 size_y_m: 52 origin_x_m: 1 }

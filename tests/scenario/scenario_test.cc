@@ -99,10 +99,10 @@ TEST(Defaults, OnlyTheRecommendedLawLooksAhead) {
     EXPECT_EQ(good(small_with("law {", other)).mission().law.anticipation, 0) << other;
   }
   const ControlLaw law = good(small_with("law {", "law { anticipation: 0")).mission().law;
-  EXPECT_EQ(law.epsilon, 0.2) << "a relative one, where nobody looks ahead";
+  EXPECT_EQ(law.epsilon, 0.2) << "a relative one, where no agent looks ahead";
 }
 
-TEST(Defaults, WhoIsNotReckonedTellsEachTickWhatItCovered) {
+TEST(Defaults, AgentsWithoutDeadReckoningBroadcastEachTick) {
   for (const char* fields : {"law { anticipation: 0", "agents { dead_reckoning: false",
                              "law { perturbation: CONSTANT", "law { regularization: ABSOLUTE"}) {
     const std::string block(fields, std::string_view(fields).find('{') + 1);

@@ -161,7 +161,7 @@ TEST(Space, APlaneRefusesEachFieldOfABox) {
 
 // With one mode along z the field has no part along z: only noise and contraction move an agent up
 // and down, and x and y are those of the plane. (A forecast's horizon counts the box's height.)
-TEST(Space, AFlatBoxFliesItsPlaneTwinsTrajectory) {
+TEST(Space, AFlatBoxHasThePlanesTrajectory) {
   const std::string plane = R"(
 domain { size_x_m: 100 size_y_m: 50 }
 target {

@@ -13,7 +13,7 @@ using namespace test;
 
 constexpr auto kPatience = 3s;
 
-TEST(RecordWindow, AnAcknowledgementThatSaysNothingNewIsNoProgress) {
+TEST(RecordWindow, AnAcknowledgementOfNothingNewIsNoProgress) {
   RecordWindow record;
   record.start(at(0s));
   record.acknowledge(ack_of(5), at(1s));

@@ -41,7 +41,7 @@ TEST(WorldKeepsBodiesApart, WhateverTheirAgentsCommand) {
   }
 }
 
-TEST(WorldKeepsBodiesApart, ByTheMissionsWordOnly) {
+TEST(WorldKeepsBodiesApart, OnlyIfTheMissionRequiresIt) {
   for (const bool guard : {true, false}) {
     Mission mission = apart(2, Pace::kRealtime);
     mission.timing.command_hold_s = 0;
@@ -100,13 +100,13 @@ World asking(const Mission& mission) {
   return world;
 }
 
-TEST(RestartedWorld, KnowsTheBodiesOfThoseWhoHaveLeft) {
+TEST(RestartedWorld, KnowsTheBodiesOfAgentsThatHaveLeft) {
   World world = asking(apart(3, Pace::kLockstep));
   for (const Tick tick : {8, 9}) {
     give(world, answer(0, tick, 300), at(1ms));
     give(world, answer(1, tick, 340), at(1ms));
   }
-  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "nobody has said where agent 2 stands";
+  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "no answer has the place of agent 2";
   EXPECT_EQ(only<Hello>(advance(world, at(150ms))).size(), 1u) << "it asks again";
   give(world, state_before(9, 0), at(151ms), 0);
   const WorldState state = state_after(world, at(152ms));
@@ -129,7 +129,7 @@ TEST(RestartedWorld, GoesOnFromTheNewestStateThatAnyAgentKnows) {
 }
 
 /// Answers of two ticks are of two times, at which distances differed.
-TEST(RestartedWorld, InRealTimePutsAllWhereOneStateSaysAndLetsThemStand) {
+TEST(RestartedWorld, InRealTimePutsAllWhereOneStateHasThemAndLetsThemStand) {
   World world = asking(apart(3, Pace::kRealtime));
   give(world, state_before(7, 0), at(1ms), 0);
   give(world, state_before(8, 4), at(1ms), 1);
@@ -171,7 +171,7 @@ TEST(RestartedWorld, TakesPlacesAndVelocitiesAmongWallsFromAState) {
   for (const AgentId id : {0, 1}) {
     for (const Tick tick : {7, 8}) give(world, answer(id, tick, 300), at(1ms));
   }
-  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "nobody has said where all were";
+  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "no answer has all places";
   give(world, before, at(3ms), 0);
   const WorldState state = state_after(world, at(4ms));
   EXPECT_EQ(state.header.tick, 8);

@@ -50,7 +50,7 @@ TEST(WorldRefuses, TheCommandsOfAnEvictedAgentWhichStandsStill) {
   give(world, command_of(1, 1, {5, 5, 0}), at(0s));
   give(world, command_of(0, 1, {1, 0, 0}), at(0s));
   const WorldState state = state_after(world, at(0s));
-  EXPECT_EQ(state.header.tick, 2) << "nobody waits for it any more";
+  EXPECT_EQ(state.header.tick, 2) << "no process waits for it any more";
   EXPECT_EQ(applied(state, 1), Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(place(state, 1), mission.starts_m[1] + Eigen::Vector3d(1, 0, 0) * 0.1);
 }
@@ -70,7 +70,7 @@ TEST(WorldRefuses, TheAnswerThatAnAgentGaveBeforeItWasEvicted) {
   EXPECT_EQ(place(state, 1), mission.starts_m[1]);
 }
 
-TEST(WorldRefuses, TheFormerLifeOfARestartedAgentWhichGoesOnFromItsPlace) {
+TEST(WorldRefuses, TheFormerIncarnationOfARestartedAgentWhichGoesOnFromItsPlace) {
   const Mission mission = small_mission(1);
   World world = running_world(mission);
   advance(world, at(0s));
@@ -91,7 +91,7 @@ TEST(WorldRefuses, TheFormerLifeOfARestartedAgentWhichGoesOnFromItsPlace) {
   EXPECT_EQ(place(state), Eigen::Vector3d(101, 501, 0));
 }
 
-TEST(WorldRefuses, ToRunOnWithNobodyLeft) {
+TEST(WorldRefuses, ToRunOnWithNoAgentLeft) {
   World world = running_world(small_mission(2));
   advance(world, at(0s));
   std::vector<RosterEntry> roster = roster_of(2);
@@ -133,7 +133,7 @@ TEST(WorldAdmits, ALateAgentAtItsOwnStart) {
   EXPECT_TRUE(advance(world, at(1ms)).empty()) << "the tick is the newcomer's too";
   const WorldState again = state_after(world, at(20ms));
   EXPECT_EQ(again.header.tick, 0);
-  EXPECT_EQ(again.roster_revision, 0) << "a tick is flown by one roster";
+  EXPECT_EQ(again.roster_revision, 0) << "a tick has one roster";
   ASSERT_EQ(again.vehicle_count, 2) << "which has to see where it is";
   EXPECT_EQ(place(again, 1), mission.starts_m[1]);
   give(world, command_of(1, 0, {0, 0, 0}), at(20ms));

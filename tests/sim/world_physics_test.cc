@@ -39,7 +39,7 @@ World sluggish_world(const Mission& mission) {
   return world;
 }
 
-TEST(WorldWithPhysics, SaysWhereThePhysicsPutsBodies) {
+TEST(WorldWithPhysics, SendsWhereThePhysicsPutsBodies) {
   World world = sluggish_world(small_mission(2));
   const Eigen::Vector3d start_m = place(state_after(world, at(0s)), 1);
   give(world, command_of(0, 0, {0, 0, 0}), at(1ms));
@@ -51,7 +51,7 @@ TEST(WorldWithPhysics, SaysWhereThePhysicsPutsBodies) {
   EXPECT_EQ(applied(state, 0), Eigen::Vector3d(0, 0, 0));
 }
 
-TEST(WorldWithPhysics, AgentsThatKeepNoDistanceHearOfPlacesInTheDomainAlone) {
+TEST(WorldWithPhysics, AgentsThatKeepNoDistanceReceiveOnlyPlacesInTheDomain) {
   for (const double distance_m : {0.0, 30.0}) {
     Mission mission = small_mission(2);
     mission.speed_limit_mps = 5000;
@@ -76,7 +76,7 @@ TEST(WorldWithPhysics, AMemberThatJoinsIsPlaced) {
   EXPECT_EQ(applied(state, 2), Eigen::Vector3d(1, 0, 0));
 }
 
-TEST(WorldWithPhysics, AStopAtOnceLetsThePhysicsSayWhereBodiesRollTo) {
+TEST(WorldWithPhysics, AfterAStopAtOnceThePhysicsStillMovesBodies) {
   World world = sluggish_world(small_mission(2));
   state_after(world, at(0s));
   for (AgentId id = 0; id < 2; ++id) give(world, command_of(id, 0, {8, 0, 0}), at(1ms));

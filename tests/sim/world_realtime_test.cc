@@ -99,7 +99,7 @@ TEST(WorldInRealTime, MakesUpForSmallDelaysWithoutLosingATick) {
   EXPECT_EQ(world.skipped_ticks(), 0);
 }
 
-TEST(WorldInRealTime, WaitsForTheLoggersFirstWordWithoutSpinning) {
+TEST(WorldInRealTime, WaitsForTheLoggersFirstMessageWithoutSpinning) {
   Mission mission = realtime_mission();
   mission.wait_for_logger = true;
   World world = running_world(mission);

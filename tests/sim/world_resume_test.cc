@@ -156,7 +156,7 @@ World asking_world(const Mission& mission) {
   return world;
 }
 
-TEST(WorldAsks, TenTimesASecondAndMovesNobodyMeanwhile) {
+TEST(WorldAsks, TenTimesASecondAndMovesNoVehicleMeanwhile) {
   World world = asking_world(small_mission(2));
   nobody_has_moved(world, 1, at(0s));
   int questions = 0;
@@ -185,12 +185,12 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
   EXPECT_EQ(states[0].header.tick, 9);
   EXPECT_EQ(place(states[0], 0), Eigen::Vector3d(301, 401, 0));
   EXPECT_EQ(applied(states[0], 0), Eigen::Vector3d(1, 0, 0)) << "in the step that led here";
-  EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
+  EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "no process knows better";
 }
 
 // Each agent may be the only one that received the former world's last tick, and no other process
 // knows its position.
-TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
+TEST(WorldAsks, InLockstepUntilAllAgentsHaveAnswered) {
   World world = asking_world(small_mission(2));
   for (const Tick tick : {8, 9})
     give(world, command_from(0, tick, {300, 400, 0}, {1, 0, 0}), at(0s));
@@ -217,7 +217,7 @@ TEST(WorldAsks, WithTheNumberOfTheFirstThatHasNotAnswered) {
   EXPECT_EQ(asked_for(at(400ms)), 2);
 }
 
-TEST(WorldAsks, InLockstepNobodyWhoHasLeftTheRosterMeanwhile) {
+TEST(WorldAsks, InLockstepNoAgentThatHasLeftTheRosterMeanwhile) {
   World world = asking_world(small_mission(2));
   for (const Tick tick : {8, 9})
     give(world, command_from(0, tick, {300, 400, 0}, {1, 0, 0}), at(0s));
@@ -268,7 +268,7 @@ TEST(WorldAsks, OneOfTwoCommandsIsHalfAnAnswer) {
 }
 
 /// An agent that has answered only tick 0 first sends a command without a tick.
-TEST(WorldAsks, HalfAnAnswerDoesNotSayThatThereIsNone) {
+TEST(WorldAsks, HalfAnAnswerDoesNotMeanThatThereIsNone) {
   const auto halves = [](AgentId id, Tick last, std::int64_t sequence) {
     std::vector<Command> sent = {command_from(id, -1, {0, 0, 0}, {0, 0, 0}),
                                  command_from(id, last, {700, 500, 0}, {0, 10, 0})};
@@ -291,7 +291,7 @@ TEST(WorldAsks, HalfAnAnswerDoesNotSayThatThereIsNone) {
   }
 }
 
-TEST(WorldAsks, NobodyWhoAnswersSomebodyElse) {
+TEST(WorldAsks, NoAgentThatAnswersAnotherProcess) {
   World world = asking_world(small_mission(1));
   for (const Incarnation asked_by : {Incarnation{0}, kWorldLife - 1}) {
     for (const Tick tick : {4, 5}) {
@@ -300,14 +300,13 @@ TEST(WorldAsks, NobodyWhoAnswersSomebodyElse) {
       give(world, recording, at(0s));
     }
   }
-  EXPECT_TRUE(states_after(world, at(1ms)).empty())
-      << "what was said before does not say where it is";
+  EXPECT_TRUE(states_after(world, at(1ms)).empty()) << "earlier answers do not have its place";
   for (const Tick tick : {8, 9})
     give(world, command_from(0, tick, {301, 401, 0}, {0, 1, 0}), at(1s));
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 9);
 }
 
-TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {
+TEST(WorldAsks, ForNoTicksOrPlacesThatCannotBe) {
   const Mission mission = small_mission(1);
   World world = asking_world(mission);
   give(world, command_from(0, mission.timing.tick_count + 1, {300, 400, 0}, {0, 0, 0}), at(0s));
@@ -315,7 +314,7 @@ TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {
   Command stranger = command_from(0, 50, {300, 400, 0}, {0, 0, 0});
   stranger.header.incarnation = 99;
   give(world, stranger, at(0s));
-  EXPECT_TRUE(states_after(world, at(2s)).empty()) << "nobody has answered";
+  EXPECT_TRUE(states_after(world, at(2s)).empty()) << "no agent has answered";
   nobody_has_moved(world, 1, at(3s));
   const WorldState state = state_after(world, at(3s));
   EXPECT_EQ(state.header.tick, 0);
@@ -335,7 +334,7 @@ TEST(WorldAsks, NotTheRosterForATickBeyondThePlan) {
 
 // ---- real time ----
 
-TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
+TEST(WorldResumesInRealTime, AVehicleThatIsBehindHasGoneOnWithItsHeldCommand) {
   for (const double hold_s : {10.0, 0.1}) {
     Mission mission = small_mission(2);
     mission.timing.pace = Pace::kRealtime;
@@ -374,7 +373,7 @@ TEST(WorldWithoutAMission, AsksForItAfterASecondAndAHalfIfItKnowsTheRun) {
   }
 }
 
-TEST(WorldWithoutAMission, WaitsForTheFirstItHearsOfIfItKnowsNoRun) {
+TEST(WorldWithoutAMission, WaitsForTheFirstItReceivesIfItKnowsNoRun) {
   announce(small_mission(1));
   World world(0, kWorldLife);
   for (int second = 0; second < 10; ++second) EXPECT_TRUE(advance(world, at(second * 1s)).empty());
@@ -422,7 +421,7 @@ TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   EXPECT_EQ(world.tick(), 85);
 }
 
-TEST(WorldRecord, WordsOfADeadLoggerSaidAgainDoNotKeepTheTeamWaiting) {
+TEST(WorldRecord, RepeatedMessagesOfAStoppedLoggerDoNotKeepTheTeamWaiting) {
   Mission mission = small_mission(1);
   mission.wait_for_logger = true;
   mission.timing.lockstep_timeout_s = 10;

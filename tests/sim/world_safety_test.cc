@@ -33,7 +33,7 @@ WorldState answered(World& world, Tick tick, const Eigen::Vector3d& first,
 
 // ---- speed limit ----
 
-TEST(WorldSpeedLimit, CutsWhatIsFasterCountsItAndSaysWhatItApplied) {
+TEST(WorldSpeedLimit, CutsWhatIsFasterCountsItAndReportsWhatItApplied) {
   World world = running_world(limited_mission(5));
   advance(world, at(0s));
   WorldState state = answered(world, 0, {6, 8, 0}, {3, 4, 0});
@@ -46,7 +46,7 @@ TEST(WorldSpeedLimit, CutsWhatIsFasterCountsItAndSaysWhatItApplied) {
   EXPECT_EQ(world.clamped_commands(), 3);
 }
 
-TEST(WorldSpeedLimit, IsNoneUnlessTheScenarioSaysOne) {
+TEST(WorldSpeedLimit, IsNoneUnlessTheScenarioSetsOne) {
   World world = running_world(limited_mission(0));
   advance(world, at(0s));
   const WorldState state = answered(world, 0, {6e5, 8e5, 0}, {3, 4, 0});
@@ -102,7 +102,7 @@ TEST(WorldNumbers, CountsTheCommandsThatCannotBeTrue) {
   }
   EXPECT_EQ(world.refused(), 3);
   give(world, command_of(0, 1, {1, 0, 0}), at(0s));
-  EXPECT_EQ(world.refused(), 4) << "a tick that was not said";
+  EXPECT_EQ(world.refused(), 4) << "a tick that was not sent";
   EXPECT_TRUE(advance(world, at(0s)).empty()) << "unanswered";
   give(world, command_of(0, 0, {1, 0, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector3d(1, 0, 0));
@@ -124,7 +124,7 @@ TEST(WorldNumbers, OfAPlaceOutsideTheDomainAWorldThatBeginsTakesNothing) {
 
 // ---- emergency stop ----
 
-TEST(WorldHalt, SetsAllVelocitiesToZeroAtOnceAndSaysSo) {
+TEST(WorldHalt, SetsAllVelocitiesToZeroAtOnceAndReportsIt) {
   for (const Pace pace : {Pace::kLockstep, Pace::kRealtime}) {
     Mission mission = small_mission(2);
     mission.timing.pace = pace;
@@ -141,7 +141,8 @@ TEST(WorldHalt, SetsAllVelocitiesToZeroAtOnceAndSaysSo) {
     }
     for (AgentId id : {0, 1}) give(world, command_of(id, 1, {9, 0, 0}), at(3ms));
     give(world, mission_part(1, MissionState::kEnded, roster_of(2), "later"), at(3ms));
-    EXPECT_EQ(place(state_after(world, at(1s))), place(before)) << "said again, and nobody moves";
+    EXPECT_EQ(place(state_after(world, at(1s))), place(before))
+        << "sent again, and no vehicle moves";
     EXPECT_FALSE(world.finished());
     advance(world, at(2100ms));
     EXPECT_TRUE(world.finished());
@@ -149,7 +150,7 @@ TEST(WorldHalt, SetsAllVelocitiesToZeroAtOnceAndSaysSo) {
   }
 }
 
-TEST(WorldHalt, SaysFirstWhereTheLastStepLed) {
+TEST(WorldHalt, SendsFirstWhereTheLastStepLed) {
   Mission mission = small_mission(1);
   mission.wait_for_logger = true;
   World world = running_world(mission);
@@ -199,7 +200,7 @@ TEST(WorldHalt, AStopInOrderIsTheCoordinatorsToObey) {
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector3d(1, 0, 0)) << "it goes on";
 }
 
-TEST(WorldHalt, AnAgentMayStillSayThatItsVehicleIsToStand) {
+TEST(WorldHalt, AnAgentMayStillCommandItsVehicleToStand) {
   World world = running_world(small_mission(2));
   advance(world, at(0s));
   give(world, command_of(0, 0, {9, 0, 0}), at(0s));

@@ -16,7 +16,7 @@ using namespace test;
 
 // ---- lockstep ----
 
-TEST(WorldInLockstep, SaysNothingUntilTheMissionRunsThenAsksTheTeamAndThenSaysEverybodysStart) {
+TEST(WorldInLockstep, SendsNothingUntilTheMissionRunsThenAsksTheTeamAndThenSendsAllStarts) {
   const Mission mission = small_mission(2);
   World world = world_of(mission);
   EXPECT_TRUE(advance(world, at(0s)).empty());
@@ -47,7 +47,7 @@ TEST(WorldInLockstep, SaysNothingUntilTheMissionRunsThenAsksTheTeamAndThenSaysEv
   }
 }
 
-TEST(WorldInLockstep, IntegratesEachCommandForOneStepAndSaysWhatItApplied) {
+TEST(WorldInLockstep, IntegratesEachCommandForOneStepAndReportsWhatItApplied) {
   const Mission mission = small_mission(2);
   World world = running_world(mission);
   advance(world, at(0s));
@@ -63,7 +63,7 @@ TEST(WorldInLockstep, IntegratesEachCommandForOneStepAndSaysWhatItApplied) {
   EXPECT_EQ(state.vehicles[0].answered_tick, 0);
 }
 
-TEST(WorldInLockstep, RepeatsATickUntilEverybodyHasAnswered) {
+TEST(WorldInLockstep, RepeatsATickUntilAllAgentsHaveAnswered) {
   World world = running_world(small_mission(2));
   const WorldState first = state_after(world, at(0s));
   give(world, command_of(0, 0, {1, 1, 0}), at(1ms));
@@ -132,7 +132,7 @@ TEST(WorldMotion, StaysInTheDomainWhateverIsCommanded) {
   }
 }
 
-TEST(WorldMotion, IsDisturbedOnlyIfTheScenarioSaysSoAndByAFunctionOfTheSeed) {
+TEST(WorldMotion, IsDisturbedOnlyIfTheScenarioSetsItAndByAFunctionOfTheSeed) {
   Mission mission = small_mission(1);
   mission.disturbance_intensity = 3;
   World world = running_world(mission);
@@ -168,7 +168,7 @@ void run_while_it_goes(World& world, Instant now) {
   }
 }
 
-TEST(WorldRecord, WaitsForTheLoggersFirstWord) {
+TEST(WorldRecord, WaitsForTheLoggersFirstMessage) {
   World world = running_world(recorded_mission());
   EXPECT_TRUE(advance(world, at(1s)).empty());
   give(world, ack_of(-1), at(2s));
@@ -206,7 +206,7 @@ TEST(WorldRecord, RepeatsWhatTheLoggerLacks) {
   EXPECT_NEAR(place(states[2]).x(), 102.2, 22 * 0x1p-47);
 }
 
-TEST(WorldRecord, GivesUpASilentLoggerAndSaysSo) {
+TEST(WorldRecord, GivesUpASilentLoggerAndReportsIt) {
   World world = running_world(recorded_mission());
   give(world, ack_of(-1), at(0s));
   run_while_it_goes(world, at(0s));
@@ -247,7 +247,7 @@ TEST(WorldEnd, RepeatsTheLastStateForTwoSecondsAndIsDone) {
   EXPECT_EQ(world.next_wakeup(), Instant::max());
 }
 
-TEST(WorldEnd, ItsLastMessageSaysThatItLeavesOnceTheRecordIsCompleteAndTheMissionOver) {
+TEST(WorldEnd, ItsLastMessageReportsItsEndOnceTheRecordIsCompleteAndTheMissionOver) {
   Mission mission = small_mission(1);
   mission.timing.tick_count = 1;
   World world = running_world(mission);
@@ -264,7 +264,7 @@ TEST(WorldEnd, ItsLastMessageSaysThatItLeavesOnceTheRecordIsCompleteAndTheMissio
   EXPECT_TRUE(advance(world, at(1s)).empty()) << "once";
 }
 
-TEST(WorldEnd, AWorldThatIsToldToStopAloneSaysNothing) {
+TEST(WorldEnd, AWorldThatIsStoppedAloneSendsNothing) {
   World world = running_world(small_mission(1));
   advance(world, at(0s));
   world.stop("SIGTERM");
@@ -276,7 +276,7 @@ TEST(WorldEnd, TheMissionsEndAndItsProcessEndItAtOnce) {
   give(by_mission, mission_part(1, MissionState::kFailed, roster_of(1), "agent 3 is late"), at(0s));
   EXPECT_TRUE(by_mission.finished());
   EXPECT_EQ(by_mission.reason(), "agent 3 is late");
-  EXPECT_TRUE(advance(by_mission, at(1s)).empty()) << "and it moves nobody any more";
+  EXPECT_TRUE(advance(by_mission, at(1s)).empty()) << "and it moves no vehicle any more";
 
   World by_process = running_world(small_mission(1));
   by_process.stop("SIGTERM");
@@ -309,7 +309,7 @@ TEST(WorldEnd, ByItselfOnceNeitherAgentNorCoordinatorCanStillCome) {
   EXPECT_NE(world.reason().find("no agent and no coordinator"), std::string::npos);
 }
 
-TEST(WorldEnd, ByItselfAlsoIfNobodyHasAnsweredWhereTheTeamIs) {
+TEST(WorldEnd, ByItselfAlsoIfNoAgentHasAnsweredWhereTheTeamIs) {
   Mission mission = small_mission(1);
   mission.timing.lockstep_timeout_s = 10;
   World world = world_of(mission);

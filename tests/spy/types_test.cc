@@ -126,7 +126,7 @@ TEST_F(SpyJar, TheMapHasXToTheRightAndYUpwardsAndWalls) {
   }
 }
 
-TEST_F(SpyJar, TheViewSaysTimeAgentsAndMetricAndWhetherTheCoordinatorIsSilent) {
+TEST_F(SpyJar, TheViewShowsTimeAgentsAndMetricAndWhetherTheCoordinatorIsSilent) {
   plan_of("quadrimodal_corners");
   ask({"words", plan_file()});
   const std::string begun = "quadrimodal_corners, 0.5 of 600 s; running, 3 of 4 agents alive, ";

@@ -142,7 +142,7 @@ TEST_F(Spy, PrintsTheCommandOfTheBusThatIsAskedFor) {
       << output();
 }
 
-TEST_F(Spy, SaysThatThereIsNoScreen) {
+TEST_F(Spy, ReportsThatThereIsNoScreen) {
   const std::string display = std::getenv("DISPLAY");
   unsetenv("DISPLAY");
   EXPECT_EQ(ergocast({"spy"}), 3);

@@ -41,7 +41,7 @@ TEST(RareModes, ChangeNoBitWhereAgentsReckon) {
   }
 }
 
-TEST(RareModes, CostLittleWhereAgentsKnowOnlyWhatTheyAreTold) {
+TEST(RareModes, CostLittleWhereAgentsKnowOnlyWhatIsSent) {
   constexpr int kSeeds = 8;
   double log_ratio = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -55,7 +55,7 @@ TEST(RareModes, CostLittleWhereAgentsKnowOnlyWhatTheyAreTold) {
   EXPECT_LE(std::abs(log_ratio), 0.1);
 }
 
-TEST(RareModes, AnIdealTeamDoesNotStandForThemWhereAllElseIsTold) {
+TEST(RareModes, AnIdealTeamDoesNotStandForThemWhereAllElseIsSentEachTick) {
   EXPECT_TRUE(lab::IdealTeam::stands_for(mission_of("quadrimodal_corners", "1", "1", "false", 1)));
   EXPECT_FALSE(lab::IdealTeam::stands_for(mission_of("quadrimodal_corners", "2", "1", "false", 1)));
 }

@@ -68,7 +68,7 @@ TEST(StudyMeasure, EscapeIsTheFirstTimeFartherThanOnePercentOfTheShorterSide) {
   EXPECT_TRUE(std::isnan(measure.figures().escape_time_s[2])) << "there is no such agent";
 }
 
-TEST(StudyMeasure, WhoStaysOnTheManifoldHasNotEscaped) {
+TEST(StudyMeasure, AnAgentThatStaysOnTheManifoldHasNotEscaped) {
   const Mission mission = hand_made();
   StudyMeasure measure(mission);
   measure.position(0, 0, {50, 30, 0});
@@ -166,7 +166,7 @@ TEST(StudyRun, IsTheSameWithMoreAgentsThanOneWorldStateHolds) {
               run_with_messages(encode_plan(scenario.mission())));
 }
 
-TEST(StudyRun, FliesRealTimeMissionsInVirtualTime) {
+TEST(StudyRun, RunsRealTimeMissionsInVirtualTime) {
   const StudyFigures figures = run_study_mission(encode_plan(shipped("faulty_team", 20).mission()));
   EXPECT_TRUE(figures.complete);
   EXPECT_GT(figures.messages, 0);

@@ -235,7 +235,7 @@ TEST(TargetCoefficients, OfACorrelatedBellAreWithinTheirStatedError) {
   }
 }
 
-TEST(TargetCoefficients, AHopelesslyNarrowRidgeSaysThatItIsNotExact) {
+TEST(TargetCoefficients, AHopelesslyNarrowRidgeStatesThatItIsNotExact) {
   // Its width is 1e-5 of its length: no rule on these panels can resolve it, and the stated error
   // shows that.
   const Gaussian ridge = bell(1, 700, 650, 100, 60, 1 - 5e-11);

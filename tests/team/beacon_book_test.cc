@@ -90,7 +90,7 @@ class Team {
   std::int64_t sequence_ = 0;
 };
 
-TEST(BeaconBook, KnowsNobodyAtFirst) {
+TEST(BeaconBook, KnowsNoAgentAtFirst) {
   Team team(3);
   EXPECT_FALSE(team.seen(0, 2, 0).known);
   EXPECT_FALSE(team.book(0).next(1, moment(0))) << "no state has answered a command yet";
@@ -195,7 +195,7 @@ TEST(BeaconBook, CountsTheMoreOfTicksAndTime) {
   EXPECT_EQ(age_at({25, at(1900ms)}), age + 6);
 }
 
-TEST(BeaconBook, WhoIsNotEchoedForTheLeaseMustStand) {
+TEST(BeaconBook, AnAgentWithoutEchoesForTheLeaseMustStand) {
   Team team(3);
   for (Tick tick = 0; tick < 30; ++tick) team.pass(tick);
   EXPECT_TRUE(team.seen(0, 1, 29).known);
@@ -226,7 +226,7 @@ TEST(BeaconBook, AnAgeIsNeverMoreThanTheLease) {
   EXPECT_EQ(team.seen(0, 1, 1000).age_ticks, kLease);
 }
 
-TEST(BeaconBook, DoesNotEchoWhoHasLeft) {
+TEST(BeaconBook, DoesNotEchoAgentsThatHaveLeft) {
   Team team(3);
   for (Tick tick = 0; tick < 10; ++tick) team.pass(tick);
   EXPECT_NE(team.last(0).echoes[1], 0);
@@ -318,7 +318,7 @@ TEST(BeaconBook, ItsNumbersWrapAround) {
   EXPECT_EQ(team.book(0).from_the_future(), 1);
 }
 
-TEST(BeaconBook, SaysMoreRarelyWhereItIsWhileNobodyIsNear) {
+TEST(BeaconBook, SendsMoreRarelyWhileNoAgentIsNear) {
   Team team(2);
   Tick tick = 0;
   const auto sent_in = [&](int ticks) {

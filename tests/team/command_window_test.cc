@@ -48,12 +48,12 @@ TEST(CommandWindow, WantsTheNewestTickUntilItsOwnerTakesPart) {
   window.note(5000, false, at(1s));
   EXPECT_FALSE(window.admits(4999));
   window.note(6000, true, at(2s));
-  EXPECT_FALSE(window.admits(5999)) << "said before it began";
+  EXPECT_FALSE(window.admits(5999)) << "sent before it began";
   window.note(6010, true, at(3s));
-  EXPECT_TRUE(window.admits(6000)) << "said since";
+  EXPECT_TRUE(window.admits(6000)) << "sent since";
 }
 
-TEST(CommandWindow, AdmitsWhatWasSaidWhileItsOwnerStood) {
+TEST(CommandWindow, AdmitsWhatWasSentWhileItsOwnerStood) {
   CommandWindow window;
   window.note(10, true, at(0s));
   window.note(10, true, at(6s));

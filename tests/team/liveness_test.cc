@@ -22,7 +22,7 @@ bool is_new(Liveness& liveness, const Header& from, Bus bus = Bus::kSwarm) {
   return liveness.record(from, bus, at(0s));
 }
 
-TEST(Liveness, OnlyWhatComesLaterIsNews) {
+TEST(Liveness, OnlyLaterMessagesAreNew) {
   Liveness liveness;
   EXPECT_TRUE(is_new(liveness, sent(3, 7, 5)));
   EXPECT_FALSE(is_new(liveness, sent(3, 7, 5)));
@@ -31,7 +31,7 @@ TEST(Liveness, OnlyWhatComesLaterIsNews) {
   EXPECT_FALSE(is_new(liveness, sent(3, 7, 5)));
 }
 
-TEST(Liveness, LivesAndSendersAreToldApart) {
+TEST(Liveness, IncarnationsAndSendersAreDistinguished) {
   Liveness liveness;
   EXPECT_TRUE(is_new(liveness, sent(3, 7, 5)));
   EXPECT_TRUE(is_new(liveness, sent(3, 8, 1)));
@@ -49,7 +49,7 @@ TEST(Liveness, EachBusHasSequencesOfItsOwn) {
   EXPECT_EQ(liveness.newest({4, 7}, Bus::kSwarm), -1);
 }
 
-TEST(Liveness, RemembersNoMoreLivesThanItsLimit) {
+TEST(Liveness, RemembersNoMoreIncarnationsThanItsLimit) {
   Liveness liveness;
   constexpr auto kMost = static_cast<Incarnation>(Liveness::kMaxIncarnations);
   for (Incarnation life = 1; life <= kMost; ++life) {
@@ -63,7 +63,7 @@ TEST(Liveness, RemembersNoMoreLivesThanItsLimit) {
   EXPECT_EQ(liveness.lost({0, kMost + 1}, Bus::kSwarm), 0);
 }
 
-TEST(Liveness, OnlyNewsAreASignOfLife) {
+TEST(Liveness, OnlyNewMessagesAreASignOfLife) {
   Liveness liveness;
   EXPECT_FALSE(liveness.last_sign({3, 7}));
   EXPECT_FALSE(liveness.last_sign_of_kind(3));
@@ -76,7 +76,7 @@ TEST(Liveness, OnlyNewsAreASignOfLife) {
   EXPECT_EQ(liveness.last_sign({3, 7}), at(4s));
 }
 
-TEST(Liveness, KnowsWhenAnyLifeOfAKindWasHeard) {
+TEST(Liveness, KnowsWhenAnyIncarnationOfAKindWasReceived) {
   Liveness liveness;
   liveness.record(sent(kWorld, 7, 5), Bus::kWorld, at(1s));
   liveness.record(sent(kWorld, 8, 1), Bus::kWorld, at(2s));
@@ -89,7 +89,7 @@ TEST(Liveness, KnowsWhenAnyLifeOfAKindWasHeard) {
   EXPECT_FALSE(liveness.last_sign_of_kind(kLogger));
 }
 
-TEST(Liveness, WhoIsPresumedAliveWasNotHeard) {
+TEST(Liveness, ASenderPresumedAliveWasNotReceived) {
   Liveness liveness;
   liveness.presume_alive({3, 7}, at(1s));
   EXPECT_EQ(liveness.last_sign({3, 7}), at(1s));
@@ -98,7 +98,7 @@ TEST(Liveness, WhoIsPresumedAliveWasNotHeard) {
   EXPECT_TRUE(is_new(liveness, sent(3, 7, 1)));
 }
 
-TEST(Liveness, WhoIsPresumedAliveHasAPlaceInAFullTable) {
+TEST(Liveness, ASenderPresumedAliveHasAPlaceInAFullTable) {
   Liveness liveness;
   for (Incarnation life = 1; life <= Liveness::kMaxIncarnations; ++life)
     is_new(liveness, sent(0, life, 1));

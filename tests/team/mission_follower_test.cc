@@ -170,7 +170,7 @@ TEST(MissionFollower, DecodesThePlanOnce) {
   EXPECT_EQ(follower.revision(), 4);
 }
 
-TEST(MissionFollower, SaysThatAPlanIsUnreadable) {
+TEST(MissionFollower, ReportsThatAPlanIsUnreadable) {
   MissionFollower follower;
   EXPECT_FALSE(follower.plan_problem());
   for (std::int64_t revision = 0; revision < 3; ++revision) {
@@ -189,7 +189,7 @@ TEST(MissionFollower, TakesNoPlanButTheOneThatItExpects) {
     EXPECT_TRUE(follower.receive(part_of(1, 0, 1)));
     EXPECT_EQ(follower.mission().has_value(), expected);
     EXPECT_EQ(follower.plan_problem().has_value(), !expected);
-    EXPECT_EQ(follower.plan(), encode_plan(small_mission(1))) << "what was heard";
+    EXPECT_EQ(follower.plan(), encode_plan(small_mission(1))) << "what was received";
   }
 }
 
@@ -207,7 +207,7 @@ TEST(MissionFollower, ARevisionWithAnotherPlanChangesNothing) {
   EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{10, 11, 12, 13}));
   EXPECT_EQ(follower.plan(), encode_plan(small_mission(1)));
   for (int p = 0; p < kParts; ++p) follower.receive(part_of(2, p));
-  EXPECT_EQ(follower.revision(), 2) << "the same number with our plan is heard";
+  EXPECT_EQ(follower.revision(), 2) << "the same number with our plan is accepted";
   EXPECT_EQ(follower.foreign_plans(), 1);
 }
 

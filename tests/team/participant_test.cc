@@ -33,7 +33,7 @@ std::optional<Arrival> accept(Participant& one, const Message& message, Instant 
   return one.accept(message, bus_of(message, one.role()), header_of(message).sender, now);
 }
 
-TEST(Participant, AcceptsWhatItsRoleHearsOnThatBus) {
+TEST(Participant, AcceptsWhatItsRoleReceivesOnThatBus) {
   const Message state = world_state(0, {{1, 1, 0}});
   Participant agent = participant(Role::kAgent);
   EXPECT_TRUE(agent.accept(state, Bus::kWorld, kWorld, at(0s)));
@@ -41,10 +41,10 @@ TEST(Participant, AcceptsWhatItsRoleHearsOnThatBus) {
   EXPECT_FALSE(agent.accept(team_status(1), Bus::kSwarm, kCoordinator, at(0s))) << "not by agents";
   EXPECT_FALSE(participant(Role::kWorld).accept(state, Bus::kWorld, kWorld, at(0s)));
   EXPECT_EQ(agent.received(), 1);
-  EXPECT_EQ(agent.refused(), RefusalCounts{}) << "nobody is to blame";
+  EXPECT_EQ(agent.refused(), RefusalCounts{}) << "no sender is to blame";
 }
 
-TEST(Participant, EveryRoleHearsTheMissionAndOnlyItsOwnTypes) {
+TEST(Participant, EveryRoleReceivesTheMissionAndOnlyItsOwnTypes) {
   for (int role = 0; role < kRoleCount; ++role) {
     Participant one = participant(static_cast<Role>(role));
     EXPECT_TRUE(accept(one, mission_part(0, MissionState::kWaiting, {}))) << role;
@@ -66,7 +66,7 @@ TEST(Participant, RefusesItsOwnEcho) {
   EXPECT_EQ(agent.refused(), RefusalCounts{});
 }
 
-TEST(Participant, WhoNeverSpeaksHasNoEcho) {
+TEST(Participant, AProcessThatNeverSendsHasNoEcho) {
   announce(small_mission(2));
   Participant monitor(Role::kMonitor, {kRun, kUnassigned, 0});
   MissionPart part = mission_part(0, MissionState::kWaiting, {});
@@ -106,7 +106,7 @@ TEST(Participant, CountsAPlanThatIsNotThisRuns) {
   EXPECT_EQ(world.refused(Refusal::kRange), 1);
 }
 
-TEST(Participant, OnlyWhatItsSenderSaysForTheFirstTimeIsFresh) {
+TEST(Participant, OnlyWhatItsSenderSendsForTheFirstTimeIsFresh) {
   Participant agent = participant(Role::kAgent);
   Contribution block;
   block.header = {kRun, 1, incarnation_of(1), 5, 0};
@@ -132,7 +132,7 @@ TEST(Participant, AHelloOfAnAgentIsNoSignOfLife) {
       << "it asks what the team knows, and is to be answered once";
 }
 
-TEST(Participant, WhoWasNotToSpeakYetIsNotSilent) {
+TEST(Participant, AProcessThatNeedNotSendYetIsNotSilent) {
   Participant agent = participant(Role::kAgent);
   EXPECT_TRUE(agent.silent(kWorld, at(10s)));
   EXPECT_FALSE(agent.silent(kWorld, at(12999ms), at(10s)));
@@ -152,7 +152,7 @@ TEST(Participant, KnowsMembersUnderTheirOwnNumbersOnly) {
 
 TEST(Participant, AnAgentIsSilentAfterThreeSeconds) {
   Participant coordinator = participant(Role::kCoordinator);
-  EXPECT_TRUE(coordinator.silent(author_of(1), at(0s))) << "never heard";
+  EXPECT_TRUE(coordinator.silent(author_of(1), at(0s))) << "never received";
   accept(coordinator, status_of(1, 1), at(10s));
   EXPECT_FALSE(coordinator.silent(author_of(1), at(12999ms)));
   EXPECT_TRUE(coordinator.silent(author_of(1), at(13s)));
@@ -162,7 +162,7 @@ TEST(Participant, AnAgentIsSilentAfterThreeSeconds) {
   EXPECT_FALSE(coordinator.silent(author_of(1), at(13s)));
 }
 
-TEST(Participant, ACoordinatorLivesByTeamStatusWhereThatIsHeard) {
+TEST(Participant, ACoordinatorIsAliveByTeamStatusWhereThatIsReceived) {
   Participant monitor = participant(Role::kMonitor);
   accept(monitor, mission_part(0, MissionState::kWaiting, {}), at(10s));
   EXPECT_TRUE(monitor.silent(kCoordinator, at(10s))) << "a teammate may have repeated that";
@@ -171,13 +171,13 @@ TEST(Participant, ACoordinatorLivesByTeamStatusWhereThatIsHeard) {
   EXPECT_TRUE(monitor.silent(kCoordinator, at(11500ms)));
 }
 
-TEST(Participant, ACoordinatorLivesByMissionWhereNothingElseIsHeard) {
+TEST(Participant, ACoordinatorIsAliveByMissionWhereNothingElseIsReceived) {
   Participant agent = participant(Role::kAgent);
   accept(agent, with_sequence(1, mission_part(0, MissionState::kWaiting, {})), at(10s));
   EXPECT_FALSE(agent.silent(kCoordinator, at(15999ms)));
   EXPECT_TRUE(agent.silent(kCoordinator, at(16s)));
   accept(agent, with_sequence(1, mission_part(0, MissionState::kWaiting, {})), at(16s));
-  EXPECT_TRUE(agent.silent(kCoordinator, at(16s))) << "said again by somebody";
+  EXPECT_TRUE(agent.silent(kCoordinator, at(16s))) << "sent again by another sender";
 }
 
 TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
@@ -198,7 +198,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
 Stop stop_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, false, "enough"}; }
 Pause pause_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, 0}; }
 
-TEST(Participant, RefusesACommandThatNamesATickWhichItSaidLongAgo) {
+TEST(Participant, RefusesACommandThatNamesATickWhichItSentLongAgo) {
   for (const Role role :
        {Role::kAgent, Role::kCoordinator, Role::kWorld, Role::kDriver, Role::kLogger}) {
     Participant one = participant(role);
@@ -232,7 +232,7 @@ TEST(Participant, RefusesByMissionACommandFromBeforeItTookPart) {
   EXPECT_FALSE(accept(agent, stop_at(4999), at(1s))) << "its own first tick is no older one";
 }
 
-TEST(Participant, ARefusedCommandTakesNoPlaceAmongTheLiving) {
+TEST(Participant, ARefusedCommandTakesNoPlaceAmongTheSenders) {
   Participant agent = participant(Role::kAgent);
   Outbox out;
   agent.publish(Bus::kSwarm, AgentStatus{}, 1, out);
@@ -253,7 +253,7 @@ Participant in_mission(Role role, MissionState state = MissionState::kRunning) {
   return one;
 }
 
-TEST(Participant, IsCutOffWhenNobodyWhoCouldTellTheEndHasSpokenForLong) {
+TEST(Participant, IsCutOffWhenNoProcessThatCouldReportTheEndHasSentForLong) {
   Participant agent = in_mission(Role::kAgent);
   EXPECT_FALSE(agent.cut_off(3, at(45s))) << "35 s after MISSION";
   EXPECT_TRUE(agent.cut_off(3, at(45001ms)));
@@ -279,7 +279,7 @@ TEST(Participant, IsNotCutOffWithoutARunningMission) {
   EXPECT_FALSE(participant(Role::kAgent).cut_off(-1, at(1000s)));
 }
 
-TEST(Participant, ALoggerThatHearsOnlyARepeatedMissionWaitsAsLong) {
+TEST(Participant, ALoggerThatReceivesOnlyARepeatedMissionWaitsAsLong) {
   Participant logger = in_mission(Role::kLogger);
   EXPECT_FALSE(logger.cut_off(3, at(45s)));
   EXPECT_TRUE(logger.cut_off(3, at(45001ms)));

@@ -19,7 +19,7 @@ RadioRange radio_of(double range_m) {
   return radio;
 }
 
-TEST(RadioRange, ReachesAsFarAsItSaysAndNoFarther) {
+TEST(RadioRange, ReachesAsFarAsItsValueAndNoFarther) {
   const RadioRange radio = radio_of(500);
   EXPECT_TRUE(radio.receives(0, 1)) << "500 m exactly";
   EXPECT_FALSE(radio.receives(0, 2));
@@ -40,7 +40,7 @@ TEST(RadioRange, OfZeroIsNoLimit) {
   EXPECT_TRUE(radio.receives(0, 2));
 }
 
-TEST(RadioRange, HidesNobodyWhosePlaceIsNotKnown) {
+TEST(RadioRange, HidesNoProcessWhosePlaceIsNotKnown) {
   const RadioRange radio = radio_of(1);
   for (const AgentId process : {kCoordinator, kWorld, kLogger, kOperator, kUnassigned, 3}) {
     EXPECT_TRUE(radio.receives(0, process)) << process;

@@ -52,7 +52,7 @@ TEST_F(InputFileTest, IsReadWholeUpToTheLimit) {
   EXPECT_EQ(std::get<FileProblem>(read_whole(file, content.size() - 1)).kind, Kind::kTooLarge);
   EXPECT_NE(std::get<std::string>(read_whole("/proc/self/status", 100000)).find("VmHWM"),
             std::string::npos)
-      << "its size is said to be 0";
+      << "its size is given as 0";
   EXPECT_EQ(std::get<FileProblem>(read_whole("/proc/self/status", 100)).kind, Kind::kTooLarge);
 }
 

@@ -61,7 +61,7 @@ function contracted(c, [M, N, P], axis, weight) {
   return out;
 }
 
-// Of the plane at a share of the way along the axis.
+// Coefficients of the plane at a share of the way along the axis.
 export const planeOf = (c, modes, axis, share) =>
   contracted(c, modes, axis, k => Math.cos(k * Math.PI * share) * (k ? 2 : 1));
 

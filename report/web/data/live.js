@@ -60,7 +60,7 @@ export function addLog(lines) {
 }
 
 // φ² each mission second from all positions; if the page lacks the beginning, or the modes of the free
-// domain, what the agents say.
+// domain, what the agents report.
 function addMetrics(run) {
   const { told } = run,
     every = Math.max(1, Math.round(1 / run.step)),
@@ -87,7 +87,7 @@ function addMetrics(run) {
 const OF_STATUSES = ['spread', 'age', 'received', 'lost'];
 const emptyCurves = () => ({ t: [], phi: [], spread: [], age: [], received: [], lost: [] });
 
-// What the statuses tell, at most MOST_STATUSES of them: then every second one is kept.
+// What the statuses report, at most MOST_STATUSES of them: then every second one is kept.
 function addTold(told, { agents, t_s: t, ergodic_metric: phi }) {
   if (typeof phi !== 'number' || !(t > (told.t[told.t.length - 1] ?? -1))) return;
   const own = agents.map(a => a.ergodic_metric).filter(v => typeof v === 'number'),

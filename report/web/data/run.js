@@ -39,7 +39,7 @@ export class Run {
     this.times = []; // their t
     // In ticks that count.
     this.restFrom = new Map((mission.stations ?? []).map(station => [station.id, station.rest_from]));
-    this.homeFrom = new Map(); // tick from which an agent goes home, where no status says it
+    this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
     this.coverage = new Coverage(this);
     // The modes of the wire begin with those without waves along z.
@@ -113,7 +113,7 @@ export class Run {
     const i = indexAt(this.metrics.t, t);
     return i < 0 ? NaN : this.metrics.phi[i];
   }
-  // What the agents' statuses said last before `t`; null: nothing is known of them.
+  // What the agents' statuses reported last before `t`; null: nothing is known of them.
   teamAt(t) {
     const i = indexAt(this.times, t);
     return i < 0 ? null : this.history[i].team;
@@ -235,7 +235,7 @@ function recordHistory(run, { t, metric, agents, words, phases }) {
   });
 }
 
-// The pauses of which no status tells.
+// The pauses that no status reports.
 function pauses(run) {
   const {
     mission: { dt_s: dt },
@@ -250,7 +250,7 @@ function pauses(run) {
   }));
 }
 
-// What the roster tells of departures and returns.
+// Departures and returns in the roster.
 export function rosterIncidents(entries, dt, end) {
   const incidents = [],
     byId = new Map();
@@ -297,7 +297,7 @@ export function stateOf(run, track, t) {
   const row = run.rowAt(t),
     team = run.teamAt(t),
     said = team?.byId.get(track.id);
-  if (row < track.first) return { kind: 'gone', text: 'not there yet', rank: 5, said };
+  if (row < track.first) return { kind: 'gone', text: 'not joined yet', rank: 5, said };
   if (!track.isMember(row)) return { kind: 'gone', text: 'left', rank: 4, said };
   if (!said || said.state === 'ok') return { ...dutyOf(run, track, row, said), rank: 6, said };
   const kinds = { silent: 'silent', waiting: 'late', late: 'late', 'not heard': 'gone', gone: 'gone' };
@@ -306,7 +306,7 @@ export function stateOf(run, track, t) {
     said.state === 'silent'
       ? `silent ${said.silent_s.toFixed(0)} s`
       : said.state === 'not heard'
-        ? 'not heard yet'
+        ? 'no message yet'
         : said.state === 'waiting' && said.waiting_for
           ? `waits for ${said.waiting_for}`
           : said.state;
@@ -318,7 +318,7 @@ export function stateOf(run, track, t) {
   };
 }
 
-// What an agent does with which all is well. It says so itself, or the plan and its track do.
+// What an agent without trouble does: by its own report, or else by the plan and its track.
 function dutyOf(run, track, row, said) {
   if (run.heldAt(row)) return { kind: 'idle', text: 'paused' };
   const phase =

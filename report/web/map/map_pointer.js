@@ -55,7 +55,7 @@ function agentText(run, agent) {
   return `agent ${agent}: ${stateOf(run, track, S.t).text}, at ${placeText(place)}${motion}`;
 }
 
-// Of a place of the map; null outside of the domain, and in space, where a pixel is no place.
+// The text for a place of the map; null outside of the domain, and in space, where a pixel is no place.
 function groundText(run, x, y) {
   if (inSpace()) return null;
   const [mx, my] = view.metres(x, y),

@@ -12,7 +12,7 @@ const LEAST_BODY = 0.75; // pixels: a smaller body is not drawn
 
 export const many = run => run.tracks.length > MANY;
 
-// How far a body reaches to the right and upwards, in pixels; 0 if the mission does not say it.
+// How far a body reaches to the right and upwards, in pixels; 0 if the mission does not have it.
 function bodyOf(run, view, track, at) {
   const radius = (run.mission.body_radius_m ?? 0) * view.scaleAt(track, at);
   return run.stretch.map(factor => factor * radius);

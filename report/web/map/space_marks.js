@@ -7,8 +7,8 @@ import { clamp } from '../text.js';
 
 const MANY = 12;
 
-// Of the edges along an axis that are part of the outline: the lowest on the screen, of the heights
-// the leftmost.
+// The edge along an axis that carries its numbers. It is part of the outline: the lowest on the screen, or
+// the leftmost of the heights.
 function edgeFor(view, axis) {
   const { size, forward } = view,
     [a, b] = [0, 1, 2].filter(other => other !== axis),

@@ -28,7 +28,7 @@ function slopeText(run) {
   return typeof run.slope === 'number' ? run.slope.toFixed(2).replace('-', '−') : '–';
 }
 
-// `live`: {rate, lost, authenticated, …} of a team that flies, or null.
+// `live`: {rate, lost, authenticated, …} of a running team, or null.
 export function showFacts(live) {
   const { run } = S,
     { mission, summary, metrics } = run,
@@ -235,7 +235,7 @@ export function showDetails() {
       element(
         'p',
         'muted',
-        `Of this long mission the page has every ${run.stride}th tick; its cₖ are those of these ticks.`,
+        `This page has only every ${run.stride}th tick of this long mission; its cₖ are those of these ticks.`,
       ),
     );
   if (!S.live)

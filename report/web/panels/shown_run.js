@@ -83,7 +83,7 @@ export const livePage = {
       set('tail', startTail(run));
     }
     put($('authentication'), facts.replay ? 'replay' : facts.authenticated ? '' : 'not authenticated');
-    $('authentication').title = facts.replay ? 'ergocast replay sends a record: nobody flies' : NO_KEY;
+    $('authentication').title = facts.replay ? 'ergocast replay sends a record: no team is running' : NO_KEY;
     $('authentication').hidden = facts.authenticated && !facts.replay;
     ask();
   },

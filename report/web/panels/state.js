@@ -10,7 +10,7 @@ export const S = {
   run: null,
   t: 0, // mission time that is shown
   live: false, // whether the mission still grows
-  facts: null, // of a team that flies: what live.js knows of it
+  facts: null, // of a running team: what live.js knows of it
   following: false, // whether t is the newest time
   playing: false,
   speed: 20,

@@ -9,7 +9,7 @@ const MOST_WITHOUT_CHIPS = 12;
 
 const own = (said, key, text = readable) => (typeof said?.[key] === 'number' ? text(said[key]) : '–');
 
-// A live team says how it is; a record has what each agent said last.
+// A live team reports its state; a record has the last report of each agent.
 const COLUMNS = [
   { head: 'Speed', text: ({ speed }) => (speed === null ? '–' : `${speed.toFixed(1)} m/s`) },
   {

@@ -17,7 +17,7 @@ const MAP = {
   Target: 'Where the target wants the team to spend its time.',
   Achieved: 'Where the team has spent its time up to the chosen time.',
   Difference: 'Where the team has been too little or too much: this is what φ² adds up.',
-  scale: 'A colour says how many times denser a place is than the average of the domain.',
+  scale: 'A colour shows how many times denser a place is than the average of the domain.',
   Trail: 'How much of its way is drawn behind each agent.',
   'Radio range': 'Teammates inside an agent’s circle receive what the agent sends.',
   pin: 'Its tip is where an agent is, and the arrow there says where it goes. The pin’s size means nothing.',

@@ -100,7 +100,7 @@ export function paintHeatMap(g, cells, { across, up, quantity, best, near, hot, 
       if (g.measureText(range).width < w - 6) g.fillText(range, x + w / 2, y + h / 2 + 9);
     }
     if (near.includes(point) && w > 14 && h > 14) {
-      // not told apart from the best
+      // not distinguished from the best
       g.beginPath();
       g.arc(x + 8, y + 8, 3, 0, 2 * Math.PI);
       g.fill();

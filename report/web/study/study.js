@@ -95,7 +95,7 @@ export const QUANTITIES = {
   },
   speed: {
     title: 'Mean speed',
-    means: 'Of all agents over all ticks',
+    means: 'The mean of all agents over all ticks',
     unit: 'm/s',
     log: false,
     better: 0,

@@ -20,7 +20,7 @@ function head({ title, means, number, by }, sort) {
   return th;
 }
 
-// The command that flies a point, in a row of its own.
+// The command that runs a point, in a row of its own.
 function toggleCommand(tr, point) {
   if (tr.nextSibling?.className === 'how') {
     tr.nextSibling.remove();

@@ -34,7 +34,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(HostsFile, SaysWhoDoesWhat) {
+TEST(HostsFile, AssignsTheRoles) {
   const auto hosts = hosts_in(
       "# our team\n"
       "ground  ops@10.0.0.1  coordinator logger sim\r\n"
@@ -116,7 +116,7 @@ TEST(Deployment, NeedsOneOfEachAndAQuorum) {
   EXPECT_EQ(lacks("a coordinator driver agent 0\nb driver agent 1"), "");
   EXPECT_TRUE(has(lacks("a sim agents=2"), "no host is the coordinator (give the role"));
   EXPECT_TRUE(has(lacks("a coordinator sim agents=2\nb coordinator"), "several hosts: a, b"));
-  EXPECT_TRUE(has(lacks("a coordinator agents=2"), "nobody moves the agents"));
+  EXPECT_TRUE(has(lacks("a coordinator agents=2"), "no host moves the vehicles"));
   EXPECT_TRUE(has(lacks("a coordinator sim agents=2\nb sim"), "sim is the role of several hosts"));
   EXPECT_TRUE(has(lacks("a coordinator sim agents=2\nb driver"), "a simulated world and drivers"));
   EXPECT_TRUE(has(lacks("a coordinator sim logger agents=2\nb logger"), "logger is the role of"));

@@ -37,7 +37,7 @@ TEST(BusListener, ARunIsNamedWithItsHosts) {
   EXPECT_EQ(finding.found, "run 0000000000000abc, 1 agent on robot-3");
 }
 
-TEST(BusListener, TheVersionIsToldWhereSomebodySaysIt) {
+TEST(BusListener, TheVersionIsReportedWhereAProcessSendsIt) {
   Hello hello;
   hello.header = {0xabc, kUnassigned, 77, 1, 0};
   hello.host = "robot-4";
@@ -59,7 +59,7 @@ TEST(BusListener, OtherLcmTrafficIsAWarningWithItsChannels) {
   EXPECT_TRUE(contains(finding.remedy, ":24006")) << finding.remedy;
 }
 
-TEST(BusListener, ATeamWithAKeyIsToldFromAStranger) {
+TEST(BusListener, ATeamWithAKeyIsDistinguishedFromAStranger) {
   MissionKey key;
   const MessageAuthenticator ours(key);
   key.shared[0] = std::byte{1};

@@ -70,7 +70,7 @@ TEST(FragmentRule, BehindOneThatAlsoDropsStillDropsTheRest) {
   EXPECT_EQ(finding(rules).level, Level::kOk);
 }
 
-TEST(FragmentRule, IsOfferedToWhomTheRulesAreHidden) {
+TEST(FragmentRule, IsOfferedToUsersThatCannotReadTheRules) {
   const Finding unknown = finding(std::nullopt);
   EXPECT_EQ(unknown.level, Level::kNote);
   EXPECT_TRUE(contains(unknown.found, "only root"));

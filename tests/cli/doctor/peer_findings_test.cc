@@ -20,10 +20,10 @@ Finding finding_of(const Peer& one, std::uint64_t key = 0) {
 
 TEST(PeerFindings, AllRight) { EXPECT_EQ(finding_of(peer({150, 50})).level, Level::kOk); }
 
-TEST(PeerFindings, NobodyIsAProblem) {
+TEST(PeerFindings, NoOtherHostIsAProblem) {
   const auto findings = peer_findings(url_of("ttl=1"), {{}, 0, 200, ""}, "0.1.0");
   EXPECT_EQ(findings.at(0).level, Level::kProblem);
-  EXPECT_TRUE(contains(findings[0].found, "nobody was heard (200 probes sent)"));
+  EXPECT_TRUE(contains(findings[0].found, "no other host was received (200 probes sent)"));
 }
 
 TEST(PeerFindings, OneWayIsAProblem) {
@@ -33,7 +33,7 @@ TEST(PeerFindings, OneWayIsAProblem) {
   EXPECT_TRUE(contains(finding_of(deaf).found, "one-way"));
 }
 
-TEST(PeerFindings, AFewProbesDoNotCondemnAnybody) {
+TEST(PeerFindings, AFewProbesAreNotJudged) {
   Peer brief = peer({3, 1});
   brief.to_it.reset();
   EXPECT_EQ(finding_of(brief).level, Level::kNote);
@@ -62,7 +62,7 @@ TEST(PeerFindings, AnotherVersionIsAWarning) {
   EXPECT_EQ(finding_of(old).level, Level::kWarning);
 }
 
-TEST(PeerFindings, AnotherMissionKeyIsAWarningThatSaysWhoHasOne) {
+TEST(PeerFindings, AnotherMissionKeyIsAWarningThatNamesWhichHostHasOne) {
   Peer one = peer({150, 50});
   EXPECT_TRUE(contains(finding_of(one, 7).found, "it has no mission key and this host has one"));
   one.key = 8;
@@ -79,7 +79,7 @@ TEST(PeerFindings, DuplicatesAreANote) {
   EXPECT_EQ(finding_of(twice).level, Level::kNote);
 }
 
-TEST(PeerFindings, SomebodyOnlyOthersHearIsAProblem) {
+TEST(PeerFindings, AHostThatOnlyOthersReceiveIsAProblem) {
   const auto findings = peer_findings(url_of("ttl=1"), {{peer({150, 50})}, 1, 200, ""}, "0.1.0");
   ASSERT_EQ(findings.size(), 2u);
   EXPECT_EQ(findings[1].level, Level::kProblem);

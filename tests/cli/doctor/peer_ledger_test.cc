@@ -33,7 +33,7 @@ struct Pair {
 constexpr auto kAll = [](std::uint32_t) { return true; };
 constexpr auto kNone = [](std::uint32_t) { return false; };
 
-TEST(PeerLedger, BothHearEachOtherAndKnowIt) {
+TEST(PeerLedger, BothReceiveEachOtherAndKnowIt) {
   Pair pair;
   pair.probe(40, kAll, kAll);
   const auto peers = pair.a.peers();
@@ -59,7 +59,7 @@ TEST(PeerLedger, ARoundTripIsTheTimeOnTheWayAndNotTheTimeHeld) {
   }
 }
 
-TEST(PeerLedger, OneWayShowsOnTheSideThatHears) {
+TEST(PeerLedger, OneWayShowsOnTheSideThatReceives) {
   Pair pair;
   pair.probe(40, kNone, kAll);
   EXPECT_TRUE(pair.b.peers().empty());
@@ -68,7 +68,7 @@ TEST(PeerLedger, OneWayShowsOnTheSideThatHears) {
   EXPECT_FALSE(peer.to_it.has_value());
 }
 
-TEST(PeerLedger, LossIsToldForEachDirectionAndLength) {
+TEST(PeerLedger, LossIsReportedForEachDirectionAndLength) {
   Pair pair;
   pair.probe(
       200, [](std::uint32_t n) { return n % 10 != 5; },  // 5 mod 10: both lengths
@@ -79,7 +79,7 @@ TEST(PeerLedger, LossIsToldForEachDirectionAndLength) {
   EXPECT_EQ(peer.from_it.large_percent(), 100);
 }
 
-TEST(PeerLedger, WhatComesTwiceCountsOnceAndIsTold) {
+TEST(PeerLedger, WhatComesTwiceCountsOnceAndIsReported) {
   PeerLedger a(1, "alpha", ""), b(2, "beta", "");
   for (int i = 0; i < 20; ++i) {
     const Probe probe = b.next(Instant(1s * i));
@@ -90,26 +90,26 @@ TEST(PeerLedger, WhatComesTwiceCountsOnceAndIsTold) {
   EXPECT_EQ(a.peers()[0].duplicates, 20);
 }
 
-TEST(PeerLedger, OwnProbesAreNobodys) {
+TEST(PeerLedger, OwnProbesAreIgnored) {
   PeerLedger a(1, "alpha", "");
   a.take(a.next(Instant(1s)), "", Instant(1s));
   EXPECT_TRUE(a.peers().empty());
 }
 
-TEST(PeerLedger, WhoStartsLateHasLostNothing) {
+TEST(PeerLedger, AHostThatStartsLateHasLostNothing) {
   Pair pair;
   pair.probe(100, kAll, [](std::uint32_t n) { return n >= 60; });
   EXPECT_EQ(pair.a.peers()[0].from_it.percent(), 0);
 }
 
-TEST(PeerLedger, WhoHasEndedIsNoLongerEchoed) {
+TEST(PeerLedger, AHostThatHasEndedIsNoLongerEchoed) {
   Pair pair;
   pair.probe(20, kAll, kAll);
   EXPECT_EQ(pair.a.next(pair.at + 1s).echoes.size(), 1u);
   EXPECT_TRUE(pair.a.next(pair.at + 10s).echoes.empty());
 }
 
-TEST(PeerLedger, SomebodyOnlyOthersHearIsCounted) {
+TEST(PeerLedger, AHostThatOnlyOthersReceiveIsCounted) {
   PeerLedger a(1, "alpha", ""), b(2, "beta", ""), c(3, "gamma", "");
   for (int i = 0; i < 40; ++i) {
     const Instant at(50ms * i);

@@ -47,7 +47,7 @@ TEST(Routing, OfSeveralInterfacesTheOnesNotUsedAreNamed) {
   EXPECT_EQ(finding.remedy, "ip route replace 224.0.0.0/4 dev wlan0");
 }
 
-TEST(Routing, InterfacesThatNobodyCouldUseAreNoChoice) {
+TEST(Routing, InterfacesThatCannotBeUsedAreNoChoice) {
   Interface down = cable("ifb0", "");
   down.up = false;
   EXPECT_EQ(worst_of(routing_findings(url_of("ttl=1"), "eth0",
@@ -78,7 +78,7 @@ TEST(Routing, AnMtuBelowOurLongestPacketIsAWarning) {
   EXPECT_EQ(routing_findings(url_of("ttl=1"), "eth0", {one})[2].level, Level::kWarning);
 }
 
-TEST(Routing, ATtlOfZeroIsANoteUntilOthersAreMeantToHear) {
+TEST(Routing, ATtlOfZeroIsANoteUntilOtherHostsAreToReceive) {
   EXPECT_EQ(ttl_finding(url_of("ttl=0"), false).level, Level::kNote);
   EXPECT_EQ(ttl_finding(url_of("ttl=0"), true).level, Level::kProblem);
   EXPECT_EQ(ttl_finding(url_of("ttl=0"), true).remedy,
@@ -86,7 +86,7 @@ TEST(Routing, ATtlOfZeroIsANoteUntilOthersAreMeantToHear) {
   EXPECT_EQ(ttl_finding(url_of("ttl=1"), true).level, Level::kOk);
 }
 
-TEST(Routing, AFailedSelfTestIsToldWithoutTheUrlAndItsRemedy) {
+TEST(Routing, AFailedSelfTestIsReportedWithoutTheUrlAndItsRemedy) {
   const LcmUrl url = url_of("ttl=0");
   EXPECT_EQ(self_test_finding(url, std::nullopt, true).level, Level::kOk);
   const Finding finding =

@@ -70,7 +70,7 @@ TEST_F(Deploy, HandsTheTableOfModesToEveryHost) {
   }
 }
 
-TEST_F(Deploy, SaysThatEachRobotNeedsItsOwnDriver) {
+TEST_F(Deploy, NotesThatEachRobotNeedsItsOwnDriver) {
   const std::string leased =
       (std::filesystem::path(ERGOCAST_SOURCE_DIR) / "tests/lab/leased_team.textproto").string();
   const auto deployed = [&](const std::string& roles) {
@@ -78,7 +78,7 @@ TEST_F(Deploy, SaysThatEachRobotNeedsItsOwnDriver) {
                      hosts("ground coordinator\nrover agents=40 " + roles + "\n")});
   };
   ASSERT_EQ(deployed("driver"), 0) << output();
-  EXPECT_TRUE(printed("beside agent N start it as ergocast-example-driver --id N")) << output();
+  EXPECT_TRUE(printed("start it beside agent N, as ergocast-example-driver --id N")) << output();
   ASSERT_EQ(deployed("sim"), 0) << output();
   EXPECT_FALSE(printed("ergocast-example-driver")) << output();
 }
@@ -132,7 +132,7 @@ TEST_F(Deploy, RefusesKeysThatWouldNotDo) {
   EXPECT_TRUE(printed("chmod 600")) << output();
 }
 
-TEST_F(Deploy, RefusesAFileThatTheScenarioNamesByItsWholePath) {
+TEST_F(Deploy, RefusesAFileThatTheScenarioNamesByItsAbsolutePath) {
   std::ofstream(folder_ / "room.svg")
       << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">)"
          R"(<path d="M 40 40 L 60 40 L 60 60 L 40 60 Z"/></svg>)";
@@ -179,7 +179,7 @@ TEST_F(Deploy, TheCoordinatorChangesTheScenarioAsItWasChangedHere) {
   EXPECT_TRUE(printed("a service's settings cannot hold")) << output();
 }
 
-TEST_F(Deploy, SaysThatOnlyFilesTakeTheTableOfModesAlong) {
+TEST_F(Deploy, NotesThatOnlyFilesTakeTheTableOfModesAlong) {
   const std::string office =
       (std::filesystem::path(ERGOCAST_SOURCE_DIR) / "scenarios/office.textproto").string();
   ASSERT_EQ(ergocast({"deploy", office, "--to", "ssh", "--hosts",

@@ -91,7 +91,7 @@ TEST_F(Doctor, LoopbackAndATtlThatMeansOthersDoNotFit) {
   EXPECT_EQ(finding("route")["level"], "problem");
 }
 
-TEST_F(Doctor, WhoIsOnAPortIsNamed) {
+TEST_F(Doctor, TheProgramOnAPortIsNamed) {
   const Squatter shares(24001, true);
   EXPECT_EQ(doctor({}), 1);
   EXPECT_EQ(finding("ports")["level"], "warning");
@@ -99,7 +99,7 @@ TEST_F(Doctor, WhoIsOnAPortIsNamed) {
       << output();
 }
 
-TEST_F(Doctor, ASocketThatIsClosedMeanwhileIsNobodysElse) {
+TEST_F(Doctor, ASocketThatIsClosedMeanwhileBelongsToNoOtherUser) {
   const std::jthread opens([](const std::stop_token& stop) {
     while (!stop.stop_requested()) const Squatter brief(24001, true);
   });
@@ -109,7 +109,7 @@ TEST_F(Doctor, ASocketThatIsClosedMeanwhileIsNobodysElse) {
   }
 }
 
-TEST_F(Doctor, APortThatSomebodyKeepsForItselfIsAProblem) {
+TEST_F(Doctor, APortThatAProgramDoesNotShareIsAProblem) {
   const Squatter alone(24000, false);
   EXPECT_EQ(doctor({"--peer", "1"}), 1);
   EXPECT_EQ(finding("ports")["level"], "problem");
@@ -126,7 +126,7 @@ TEST_F(Doctor, NothingIsSentToARunsPorts) {
   EXPECT_EQ(command.datagrams_heard(), 0);
 }
 
-TEST_F(Doctor, ARunIsOverheardAndLeftInPeace) {
+TEST_F(Doctor, ARunIsReceivedAndNotDisturbed) {
   Child run = start("ergocast", {"run", scenario_file("quadrimodal_corners"), "--realtime", "--out",
                                  out(), "--lcm-url", kUrl});
   ASSERT_TRUE(recorded(1000));
@@ -140,11 +140,11 @@ TEST_F(Doctor, ARunIsOverheardAndLeftInPeace) {
   wait_for(run);
 }
 
-TEST_F(Doctor, TwoOnOneHostHearEachOther) {
+TEST_F(Doctor, TwoOnOneHostReceiveEachOther) {
   Child other = start("ergocast", {"doctor", "--peer", "600", "--lcm-url", kUrl});
   ASSERT_TRUE(eventually([] {
     return text_of("/proc/net/udp").find(":5DC0 ") != std::string::npos;
-  })) << "nobody listens to port 24000";
+  })) << "no program listens to port 24000";
   // The other one listens to the bus before it tests; on a busy machine that takes a while.
   ASSERT_TRUE(eventually([&] {
     doctor({"--peer", "3"});

@@ -27,7 +27,7 @@ class ExportedMap : public OwnHost {
   }
 };
 
-TEST_F(ExportedMap, OfAScenarioWithoutAnOriginLiesAtZeroAndSaysSo) {
+TEST_F(ExportedMap, OfAScenarioWithoutAnOriginLiesAtZeroWithANote) {
   const auto features = map_of("quadrimodal_corners");
   EXPECT_NE(output().find("note: the scenario has no origin"), std::string::npos) << output();
   EXPECT_NE(output().find("--origin LATITUDE,LONGITUDE"), std::string::npos) << output();

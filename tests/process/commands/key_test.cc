@@ -153,7 +153,7 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
     outsider.send(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
     member.send(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
   }
-  EXPECT_TRUE(logs("coordinator", "somebody speaks without our --key-file"));
+  EXPECT_TRUE(logs("coordinator", "a process sends without our --key-file"));
   ASSERT_TRUE(moves_on()) << printed();
   EXPECT_EQ(ergocast({"pause", "--lcm-url", kUrl, "--key-file", team_}), 2) << output();
   ASSERT_TRUE(eventually([&] {
@@ -182,7 +182,7 @@ TEST_F(Keyed, TheCoordinatorsKeyPausesAMissionAndLetsItGoOn) {
   EXPECT_EQ(summary()["holds"].size(), 1U);
 }
 
-TEST_F(Keyed, ProcessesByHandFlyWithTheirOwnFiles) {
+TEST_F(Keyed, ProcessesByHandRunWithTheirOwnFiles) {
   std::filesystem::create_directory(out());
   hand("ergocast-logger", {"--out", out(), "--key-file", team_});
   hand("ergocast-sim", {"--key-file", team_});
@@ -194,7 +194,7 @@ TEST_F(Keyed, ProcessesByHandFlyWithTheirOwnFiles) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
-TEST_F(Keyed, WhoeverLacksTheKeyIsToldSo) {
+TEST_F(Keyed, AProcessWithoutTheKeyReportsIt) {
   Child mission = launch_endless(scenario(), {"--key-file", coordinator_, "--lcm-url", kUrl});
   EXPECT_EQ(ergocast({"status", "--lcm-url", kUrl}), 4);
   EXPECT_NE(output().find("has a mission key: give it with --key-file"), output().npos) << output();

@@ -23,7 +23,7 @@ TEST_F(Replay, ShowsTheWholeTeamAndItsEnd) {
             0)
       << output();
   Program& watch = hand("ergocast", {"status", "--watch"});
-  ASSERT_TRUE(watch.prints("nobody is heard on ")) << watch.printed();
+  ASSERT_TRUE(watch.prints("no message yet on ")) << watch.printed();
   Child player = begin({"/usr/bin/lcm-logplayer", std::string("--lcm-url=") + kUrl,
                         (out() / "events-000.lcm").string()});
   EXPECT_EQ(wait_for(watch.child), 0) << watch.printed();
@@ -62,7 +62,7 @@ class Channels {
   std::set<std::string> names_;
 };
 
-TEST_F(Replay, OfTheCommandIsShownAsAReplayAndNobodyJoinsOrStopsIt) {
+TEST_F(Replay, OfTheCommandIsShownAsAReplayThatCannotBeJoinedOrStopped) {
   ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "600",
                       "--event-log", "--out", out()}),
             0)
@@ -87,11 +87,11 @@ TEST_F(Replay, OfTheCommandIsShownAsAReplayAndNobodyJoinsOrStopsIt) {
     std::vector<std::string> words{"stop", "--lcm-url", kUrl};
     if (option == std::string("--now")) words.emplace_back(option);
     EXPECT_EQ(ergocast(words), 4);
-    EXPECT_NE(output().find("is a replay of run "), std::string::npos) << output();
-    EXPECT_NE(output().find("no team flies, and nobody can obey"), std::string::npos) << output();
+    EXPECT_NE(output().find("are a replay of run "), std::string::npos) << output();
+    EXPECT_NE(output().find("no team is there to obey"), std::string::npos) << output();
   }
   EXPECT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 4);
-  EXPECT_NE(output().find("is a replay of run "), std::string::npos) << output();
+  EXPECT_NE(output().find("are a replay of run "), std::string::npos) << output();
   EXPECT_EQ(ergocast({"replay", out(), "--lcm-url", kUrl}), 2);
   EXPECT_NE(output().find("a team or another replay sends here"), std::string::npos) << output();
   EXPECT_GE(channels.take().size(), 15U);

@@ -22,7 +22,7 @@ class Set : public OwnHost {
       "--set", "law.epsilon=0.3", "--set", "agents.starts[1].x_m=33", "--duration", "20"};
 };
 
-TEST_F(Set, TheRecordSaysWhatWasFlown) {
+TEST_F(Set, TheRecordHasTheScenarioThatRan) {
   auto words = options_;
   words.insert(words.begin(), scenario_);
   const std::string wanted = plan(words);
@@ -54,7 +54,7 @@ TEST_F(Set, ChecksAllFieldsAtOnceBeforeAnythingIsWritten) {
                 "law.epsilon?)\n"))
         << output();
     EXPECT_TRUE(printed("--set law.epsilon=-1: -1 is below the limit 0")) << output();
-    EXPECT_TRUE(printed("--set seed=4: --seed says it too (leave out one of them)\n")) << output();
+    EXPECT_TRUE(printed("--set seed=4: --seed sets it too (leave out one of them)\n")) << output();
     EXPECT_TRUE(printed("--set agents.quorum=x: x is not a whole number")) << output();
     EXPECT_TRUE(printed("\n4 problems\n")) << output();
     EXPECT_FALSE(std::filesystem::exists(out()));
@@ -62,7 +62,7 @@ TEST_F(Set, ChecksAllFieldsAtOnceBeforeAnythingIsWritten) {
   EXPECT_EQ(ergocast({"check", scenario_, "--set", "=3"}), 2);
   EXPECT_TRUE(printed("--set: \"=3\" is not FIELD=VALUE")) << output();
   EXPECT_EQ(ergocast({"simulate", scenario_, "--seeds", "1:3", "--set", "seed=4"}), 2);
-  EXPECT_TRUE(printed("--set seed=4: --seeds says it too")) << output();
+  EXPECT_TRUE(printed("--set seed=4: --seeds sets it too")) << output();
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ class Status : public ByHand {
   };
 };
 
-TEST_F(Status, OfATeamThatIsWellShowsEverybodyAndEndsWithZero) {
+TEST_F(Status, OfATeamThatIsWellShowsAllAndEndsWithZero) {
   Child mission = start_mission();
   ASSERT_TRUE(eventually([this] { return status() == 0; })) << output();
   for (const char* part : {"quadrimodal_corners, run ", ", running, tick ", " of 100000000 (",
@@ -80,7 +80,7 @@ TEST_F(Status, OfATeamThatIsWellShowsEverybodyAndEndsWithZero) {
   end(mission);
 }
 
-TEST_F(Status, OfAnAgentThatStandsStillSaysSoFirst) {
+TEST_F(Status, ShowsASilentAgentFirst) {
   Child mission = start_mission();
   signal_to(agent(2), SIGSTOP);
   const auto answer = status_where([](const auto& json) {
@@ -128,11 +128,11 @@ TEST_F(Status, CountsWhatAgentsRefuse) {
   end(mission);
 }
 
-TEST_F(Status, WithNobodyThereSaysWhatToCheckAndHasPublishedNothing) {
+TEST_F(Status, WithoutATeamNamesWhatToCheckAndHasPublishedNothing) {
   const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
   Ear swarm(url.of(Bus::kSwarm)), world(url.of(Bus::kWorld)), command(url.of(Bus::kCommand));
   EXPECT_EQ(status(), 4);
-  EXPECT_NE(output().find("nobody of any run was heard on "), std::string::npos) << output();
+  EXPECT_NE(output().find("no message of any run arrived on "), std::string::npos) << output();
   EXPECT_NE(output().find("ergocast doctor --lcm-url"), std::string::npos) << output();
   for (Ear* ear : {&swarm, &world, &command}) {
     ear->listen();
@@ -161,10 +161,10 @@ TEST_F(Status, OfSeveralRunsOnOneUrlAsksWhich) {
   EXPECT_TRUE(decided.prints("run 00000000000000b2")) << decided.printed();
 }
 
-TEST_F(Status, WatchGoesOnUntilTheMissionsEndAndSaysHowItEnded) {
+TEST_F(Status, WatchGoesOnUntilTheMissionsEndAndReportsHowItEnded) {
   Program& watch = hand("ergocast", {"status", "--watch"});
   Program& lines = hand("ergocast", {"status", "--watch", "--json"});
-  ASSERT_TRUE(watch.prints("nobody is heard on ")) << watch.printed();
+  ASSERT_TRUE(watch.prints("no message yet on ")) << watch.printed();
   Child mission = launch(scenario(), {"--realtime=5", "--duration", "20", "--lcm-url", kUrl});
   EXPECT_EQ(wait_for(mission), 0) << printed();
   EXPECT_EQ(wait_for(watch.child), 0) << watch.printed();
@@ -180,7 +180,7 @@ TEST_F(Status, WatchGoesOnUntilTheMissionsEndAndSaysHowItEnded) {
 
 TEST_F(Status, WatchEndsWithCtrlC) {
   Program& watch = hand("ergocast", {"status", "--watch"});
-  ASSERT_TRUE(watch.prints("nobody is heard on ")) << watch.printed();
+  ASSERT_TRUE(watch.prints("no message yet on ")) << watch.printed();
   watch.child.send(SIGINT);
   EXPECT_EQ(wait_for(watch.child), 0);
 }

@@ -96,9 +96,9 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
   signal_to({"ergocast-coordinator"}, SIGKILL);
   ASSERT_TRUE(moves_on());
   EXPECT_EQ(stop(), 4);
-  EXPECT_TRUE(answered("no coordinator is heard")) << output();
+  EXPECT_TRUE(answered("no coordinator answers")) << output();
   EXPECT_TRUE(answered("ergocast stop --now")) << output();
-  ASSERT_TRUE(moves_on()) << "nobody obeys a stop in order but the coordinator";
+  ASSERT_TRUE(moves_on()) << "only the coordinator obeys a stop in order";
   ASSERT_EQ(stop({"--now"}), 0) << output();
   for (Program* program : all) {
     if (program == all[2]) continue;
@@ -109,19 +109,19 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
 }
 
 // The team waits for one agent, so the tick in which STOP arrives is known.
-TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
+TEST_F(StopCommand, NoVehicleMovesInTheTickAfterItWasReceived) {
   constexpr Tick kWaitedFor = 100;
   hold_next("ERGOCAST_COMMAND_2", kWaitedFor);
   const auto all = start_all(endless(false));
   ASSERT_TRUE(eventually([] { return stopped(pids(agent(2))); })) << all[2]->printed();
   hold_none();
   ASSERT_EQ(stop({"--now"}), 0) << output();
-  EXPECT_TRUE(answered("agent 2 did not say so")) << output();
+  EXPECT_TRUE(answered("agent 2 did not confirm it")) << output();
   signal_to(agent(2), SIGCONT);
   EXPECT_EQ(wait_for(all[0]->child), 0);
   expect_halt(false);
   EXPECT_EQ(recorded_rows(out()).rbegin()->first, kWaitedFor)
-      << "the tick nobody had answered in full";
+      << "the tick that was not answered in full";
 }
 
 TEST_F(StopCommand, EndsAMissionOfALauncherWhichCallsItStopped) {
@@ -139,7 +139,7 @@ TEST_F(StopCommand, EndsAMissionOfALauncherWhichCallsItStopped) {
   }
 }
 
-TEST_F(StopCommand, ALauncherEndsAMissionWhoseCoordinatorIsDeaf) {
+TEST_F(StopCommand, ALauncherEndsAMissionWhoseCoordinatorIsFrozen) {
   Child mission = launch_endless(scenario());
   signal_to({"ergocast-coordinator"}, SIGSTOP);
   mission.send(SIGINT);
@@ -175,11 +175,11 @@ TEST_F(StopCommand, NeedsTheCoordinatorsKeyIfTheTeamHasOne) {
   EXPECT_TRUE(sim.prints("stopped at once")) << sim.printed();
 }
 
-TEST_F(StopCommand, WithNobodyThereSaysWhatToCheck) {
+TEST_F(StopCommand, WithoutATeamNamesWhatToCheck) {
   EXPECT_EQ(stop({"--now"}), 4);
-  EXPECT_TRUE(answered("nobody of any run was heard on ")) << output();
+  EXPECT_TRUE(answered("no message of any run arrived on ")) << output();
   EXPECT_EQ(stop({"--now", "--run-id", "b2"}), 4);
-  EXPECT_TRUE(answered("nobody of run 00000000000000b2 was heard on ")) << output();
+  EXPECT_TRUE(answered("no message of run 00000000000000b2 arrived on ")) << output();
 }
 
 /// Coordinators of two runs send until `done`.
@@ -203,17 +203,18 @@ TEST_F(StopCommand, OfSeveralRunsOnOneUrlEndsNoneInOrder) {
   EXPECT_TRUE(undecided.prints("--run-id 00000000000000b2")) << undecided.printed();
 }
 
-TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
+TEST_F(StopCommand, InAnEmergencyStopsAllThatAreReceived) {
   Program& decided = hand("ergocast", {"stop", "--now"});
   two_runs_speak_until([&] { return decided.printed().find("telling") != std::string::npos; });
-  EXPECT_TRUE(decided.prints("run 00000000000000a1: telling everybody to stand still"));
-  EXPECT_TRUE(decided.prints("run 00000000000000b2: telling everybody to stand still"));
+  EXPECT_TRUE(decided.prints("run 00000000000000a1: stopping all vehicles at once"));
+  EXPECT_TRUE(decided.prints("run 00000000000000b2: stopping all vehicles at once"));
   EXPECT_EQ(wait_for(decided.child), 4) << decided.printed();
-  EXPECT_TRUE(decided.prints("no world or driver was heard")) << "so nobody knows about vehicles";
+  EXPECT_TRUE(decided.prints("none came from a world or driver"))
+      << "so the state of vehicles is unknown";
 }
 
 // An attacker with recordings of many runs of the same key cannot hide another run behind them.
-TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
+TEST_F(StopCommand, InAnEmergencySendsAlsoToMoreRunsThanItCanWatch) {
   std::set<RunId> reached;
   const auto listener =
       std::get<0>(Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {kTypes<Stop>},
@@ -232,10 +233,10 @@ TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
     return reached.size() == 20;
   }));
   EXPECT_EQ(wait_for(decided.child), 4) << decided.printed();
-  EXPECT_TRUE(decided.prints("more than 16 runs were heard")) << decided.printed();
+  EXPECT_TRUE(decided.prints("more than 16 runs were found")) << decided.printed();
 }
 
-TEST_F(StopCommand, InAnEmergencyDoesNotSayThatVehiclesStandWhoseWorldIsSilent) {
+TEST_F(StopCommand, InAnEmergencyDoesNotReportThatVehiclesStandWhoseWorldIsSilent) {
   start_mission(endless(true));
   signal_to({"ergocast-sim"}, SIGSTOP);
   EXPECT_EQ(stop({"--now"}), 4) << output();

@@ -67,7 +67,7 @@ std::vector<std::vector<std::string>> rows_of(const std::string& table) {
   return rows;
 }
 
-TEST_F(Study, FliesEveryCombinationOnceInOrder) {
+TEST_F(Study, RunsEveryCombinationOnceInOrder) {
   auto words = arguments("4:6", out());
   words.insert(words.end(), {"--vary", "law.regularization=ABSOLUTE,RELATIVE"});
   ASSERT_EQ(ergocast(words), 0) << output();
@@ -93,7 +93,7 @@ TEST_F(Study, DoesNotDependOnTheNumberOfJobs) {
   EXPECT_EQ(table(), fresh("1:9"));
 }
 
-TEST_F(Study, ARunIsTheMissionThatSimulateFlies) {
+TEST_F(Study, ARunIsTheMissionThatSimulateRuns) {
   ASSERT_EQ(study("7", out()), 0);
   const auto simulated = folder_ / "simulated";
   auto mission = std::string(kMission);
@@ -139,14 +139,14 @@ TEST_F(Study, GoesOnAfterCtrlCAndLosesNothing) {
   ASSERT_TRUE(eventually([this] { return lines(table()) > 20; }));
   child.send(SIGINT);
   EXPECT_EQ(wait_for(child), 0);
-  EXPECT_TRUE(printed("runs are missing: the same command flies them")) << output();
+  EXPECT_TRUE(printed("runs are missing: the same command runs them")) << output();
   const auto before = rows_of(table());
   ASSERT_LT(before.size(), 1000000U);
   unsigned long last = 0;
   for (const auto& row : before) last = std::max(last, std::stoul(row[2]));
   const std::string seeds = "1:" + std::to_string(last + 5);
   ASSERT_EQ(study(seeds, out()), 0) << output();
-  EXPECT_TRUE(printed(std::to_string(2 * (last + 5) - before.size()) + " runs flown now"))
+  EXPECT_TRUE(printed(std::to_string(2 * (last + 5) - before.size()) + " runs done now"))
       << output();
   EXPECT_EQ(table(), fresh(seeds));
 }
@@ -156,14 +156,14 @@ TEST_F(Study, DropsALastLineThatIsTorn) {
   const std::string whole = table();
   write("run/study.csv", whole.substr(0, whole.size() - 7));
   ASSERT_EQ(study("1:3", out()), 0);
-  EXPECT_TRUE(printed("1 runs flown now")) << output();
+  EXPECT_TRUE(printed("1 runs done now")) << output();
   EXPECT_EQ(table(), whole);
 }
 
 TEST_F(Study, TakesMoreSeedsLaterAndKeepsThoseItHas) {
   ASSERT_EQ(study("1:3", out()), 0);
   ASSERT_EQ(study("2:8", out()), 0);
-  EXPECT_TRUE(printed("10 runs flown now, 16 in")) << output();
+  EXPECT_TRUE(printed("10 runs done now, 16 in")) << output();
   EXPECT_EQ(table(), fresh("1:8"));
 }
 
@@ -172,11 +172,11 @@ TEST_F(Study, DrawsAFinishedStudyAgain) {
   const std::string page = text_of(out() / "report.html");
   std::filesystem::remove(out() / "report.html");
   ASSERT_EQ(study("1:3", out()), 0);
-  EXPECT_TRUE(printed("0 runs flown now, 6 in")) << output();
+  EXPECT_TRUE(printed("0 runs done now, 6 in")) << output();
   EXPECT_EQ(text_of(out() / "report.html"), page);
 }
 
-TEST_F(Study, AWorkerThatDiesCostsItsRun) {
+TEST_F(Study, AWorkerThatCrashesCostsItsRun) {
   auto words = arguments("1", out());
   words.insert(words.end(), {"--duration", "10000000"});
   Child child = start("ergocast", words);
@@ -187,7 +187,8 @@ TEST_F(Study, AWorkerThatDiesCostsItsRun) {
     if (pid != child.pid()) kill(pid, SIGKILL);
   }
   EXPECT_EQ(wait_for(child), 4);
-  EXPECT_TRUE(printed("law.noise_intensity = 1, seed 1: its process died of SIGKILL")) << output();
+  EXPECT_TRUE(printed("law.noise_intensity = 1, seed 1: its process was killed by SIGKILL"))
+      << output();
   EXPECT_TRUE(printed("2 runs are missing, 2 of them failed")) << output();
   EXPECT_EQ(lines(table()), 1U);
 }
@@ -256,7 +257,7 @@ TEST_F(Shards, AShardThatIsIncompleteOrDamagedIsNotMerged) {
   const std::string good = text_of(table);
   const auto with = [&](const std::string& text) { std::ofstream(table) << text; };
   with(good.substr(0, good.rfind('\n', good.size() - 2) + 1));
-  refused({part(1), part(2)}, "1 of its 3 runs are missing (the command that made it flies them)");
+  refused({part(1), part(2)}, "1 of its 3 runs are missing (the command that made it runs them)");
   with(good + good.substr(good.rfind('\n', good.size() - 2) + 1));
   refused({part(1), part(2)}, "has a run that is there already");
   with(text_of(part(1) / "study.csv"));
@@ -271,7 +272,7 @@ TEST_F(Shards, AShardThatIsIncompleteOrDamagedIsNotMerged) {
   later.insert(at, "9");
   std::ofstream(json) << later;
   refused({part(1), part(2)}, "its study was begun by ergocast \"9");
-  refused({part(2), part(1)}, "(merge with the version that flew)");
+  refused({part(2), part(1)}, "(merge with the version that ran it)");
   std::ofstream(json) << identity.substr(0, identity.size() / 2);
   refused({part(1), part(2)}, "its study.json is damaged");
   std::ofstream(json) << identity;
@@ -333,7 +334,7 @@ TEST_F(Study, RefusesAFolderWithOtherFilesAndADamagedTable) {
   EXPECT_EQ(table(), damaged);
 }
 
-TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
+TEST_F(Study, RefusesWhatCannotRunBeforeItRunsAnything) {
   const auto refused = [&](std::vector<std::string> words, const std::string& why) {
     words.insert(words.begin(), {"study", folder_ / "mission.textproto", "--out", out()});
     EXPECT_EQ(ergocast(words), 2) << why;
@@ -359,14 +360,14 @@ TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
   refused({"--seeds", "1", "--vary", "law.epsilon=1", "--vary", "law.epsilon=2"},
           "is varied twice");
   refused({"--seeds", "1", "--vary", "time.duration_s=1,2", "--duration", "3"},
-          "--duration says it too");
+          "--duration sets it too");
   refused({"--seeds", "1", "--set", "seed=3"}, "--set seed=3: every point gets the same seeds");
   refused({"--seeds", "1", "--set", "law.epsilom=3"}, "did you mean law.epsilon?");
   refused({"--seeds", "1", "--set", "law.epsilon"}, "is not FIELD=VALUE");
   refused({"--seeds", "1", "--set", "law.epsilon=1", "--set", "law.epsilon=2"},
-          "--set law.epsilon=2: --set law.epsilon=1 says it too");
+          "--set law.epsilon=2: --set law.epsilon=1 sets it too");
   refused({"--seeds", "1", "--set", "law.epsilon=1", "--vary", "law.epsilon=2,3"},
-          "--vary law.epsilon: --set says it too");
+          "--vary law.epsilon: --set sets it too");
   refused({"--seeds", "1:2000000"}, "are above the limit, 1000000 runs");
   refused({"--seeds", "1", "--jobs", "0"}, "--jobs");
   std::string many = "law.epsilon=0";

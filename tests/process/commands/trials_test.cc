@@ -105,7 +105,7 @@ TEST_F(Trials, EachSeedDrawsItsStartsAsSimulateDoes) {
   }
 }
 
-TEST_F(Trials, ThePrintedCommandFliesTheSameMissionAgain) {
+TEST_F(Trials, ThePrintedCommandRunsTheSameMissionAgain) {
   const auto mission =
       write("it's a goal.textproto", std::string(kSwiftMission) + "goal_ergodic_metric: 1e-9\n");
   const auto faults = write("some faults.ini", "loss = 0.2\nagent_crashes_per_s = 0.1\n");

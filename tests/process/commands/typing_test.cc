@@ -60,7 +60,7 @@ TEST_F(Typing, OneSlipInAScenarioIsOneProblem) {
   }
 }
 
-TEST_F(Typing, PlacesAreSaidByTheDomainAndNotByALimitNobodyMeets) {
+TEST_F(Typing, ErrorsInPlacesNameTheDomainAndNotADistantLimit) {
   std::string text = text_of(scenario_file("quadrimodal_corners"));
   text.insert(text.find("starts {"), "starts { x_m: 1e20  y_m: 1 }\n  ");
   EXPECT_EQ(ergocast({"check", write("far.textproto", text)}), 2);
@@ -106,7 +106,7 @@ TEST_F(Typing, PipesInARunDirectoryAreRefused) {
   }
 }
 
-TEST_F(Typing, APipeAmongTheEventLogsHoldsNobody) {
+TEST_F(Typing, APipeAmongTheEventLogsBlocksNoCommand) {
   ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "3",
                       "--event-log", "--out", out()}),
             0);

@@ -35,7 +35,7 @@ class OtherVersion : public ByHand {
   Stranger stranger_{kUrl};
 };
 
-TEST_F(OtherVersion, OfACoordinatorEndsEverybodyWithBothVersionsNamed) {
+TEST_F(OtherVersion, OfACoordinatorEndsAllProcessesWithBothVersionsNamed) {
   std::filesystem::create_directory(out());
   std::vector<Program*> programs{&hand("ergocast-logger", {"--out", out()}), &hand("ergocast-sim"),
                                  &hand("ergocast-agent"),
@@ -60,7 +60,7 @@ TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
   Program& coordinator = hand("ergocast-coordinator", {scenario(), "--run-id", to_hex(kTheirRun)});
   BusObserver observer(kUrl);
   const Hello theirs{{kTheirRun, kUnassigned, 73, 0, 0}, 2, "old-robot", "9.9.9"};
-  const std::string warning = "agent on old-robot runs version 9.9.9, this mission is flown by " +
+  const std::string warning = "agent on old-robot runs version 9.9.9, this mission is run with " +
                               version() + ": install " + version() + " there";
   ASSERT_TRUE(eventually([&] {
     stranger_.send(Bus::kSwarm, theirs);
@@ -85,7 +85,7 @@ TEST_F(OtherVersion, OfAMessagesLayoutIsNamedWithItsChannelByAnAgentThatWaits) {
     stranger_.send(Bus::kSwarm, "ERGOCAST_MISSION", std::vector<std::byte>(300, std::byte{0xAB}));
     return agent.printed().find(warning) != std::string::npos;
   })) << agent.printed();
-  EXPECT_TRUE(agent.prints("no coordinator is heard")) << agent.printed();
+  EXPECT_TRUE(agent.prints("no coordinator answers")) << agent.printed();
 }
 
 }  // namespace
