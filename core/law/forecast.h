@@ -23,9 +23,9 @@
 // not matter: in lockstep all agents that receive the same messages compute the same forecast.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -34,7 +34,10 @@
 #include "core/law/block_layout.h"
 #include "core/law/coverage_table.h"
 #include "core/law/look_ahead.h"
-#include "core/mission/kinds.h"
+#include "core/law/sampling.h"
+#include "core/law/team_sum.h"
+#include "core/law/term.h"
+#include "core/law/track.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 
@@ -65,83 +68,36 @@ class Forecast {
                   Coefficients& coverage);
 
  private:
-  struct Place {
-    Tick tick;
-    Eigen::Vector3d x_m;
-  };
-  /// A row since its last blocks. Places belong to the vehicle, not to an incarnation.
-  struct Track {
-    std::vector<Place> places;  // ascending by tick; the last most_places_ count
-    Author author;              // author of the row that is extended
-    Tick active_from = 0;       // of that author, from the roster, …
-    int kind = 0;               // … and its kind
-    std::uint64_t look = 0;     // value of looks_ when it was last extended
-    std::vector<std::int64_t>
-        sent_steps;                   // per block: steps of the block that was taken from the row
-    std::vector<std::int64_t> steps;  // with the places added since
-    std::vector<Tick> until;          // the tick of the last step
-    std::vector<char> due;            // whether that step counts, but is not in the sums yet
-    AlignedDoubles sums;  // with the places; not set for blocks to which nothing was added
-    std::optional<CosinesAt> newest;  // at the newest place, and its tick
-    Tick newest_tick = -1;
-    AlignedDoubles gains;  // f dt there, by slot; only where that is not the mode
-  };
-  /// One row's part in one block.
-  struct Term {
-    // Where the first mode would be. A row that gains has the sums before, or the gains as sent.
-    const double *sums, *sums_before, *announced_gains;
-    Track* track;                      // null: by its blocks
-    std::int64_t steps, gained_steps;  // 0: no forecast
-    Tick tick, period;
-    double share;  // of the gains
-    double quality;
-    Tick rest_from;  // of its author, core/mission/station.h
+  /// How a row of the table is forecast.
+  struct Outlook {
+    bool any = false;           // whether it has a forecast
+    RowTrack* track = nullptr;  // what extends it by places; null: nothing is known of its vehicle
+    /// Whether places are newer than a block that was sent at `tick`.
+    bool by_places(Tick tick) const { return track != nullptr && track->newest_tick() >= tick; }
   };
 
-  Track* dead_reckon(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
-  void add_place(const Place& place, const CoverageTable& table, std::size_t row, Track& track);
-  void add_due_step(Track& track) const;
-  void set_gains_in_slots(Track& track);
-  const double* gains_of(const Track& track, Modes modes);
   void gather(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
+  RowTrack* extended_track(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
   bool uniform_blocks(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   Tick rest_from(AgentId id) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
+  double weigh(Term& term, double horizon_s, Tick tick) const;
   void point_terms(const CoverageTable& table, int block);
-  void add_up(Modes modes, double per_second, double* coverage);
-  void add(const Term& term, Modes modes, const double* before, double* sum);
-  void add_weighted(const Term& term, Modes modes, const double* before, double* sum);
-  const double* footprint(const Track& track) const {
-    return uniform_ ? nullptr : sensors_.of(track.kind).footprint();
-  }
+  void point(Term& term, const CoverageTable& table, std::size_t row, int block) const;
 
   Author self_;
-  Box domain_;
-  Basis basis_;
-  double dt_s_;
-  BlockLayout layout_;
-  int block_size_;
+  Sampling sampling_;
   LookAhead look_ahead_;
   bool dead_reckons_;
-  Sensors sensors_;
-  bool uniform_;    // whether all sensors are alike, the usual case
-  bool by_tables_;  // slots are not modes: f is computed as a whole, not mode by mode
   std::size_t most_places_;
   std::vector<Tick> rest_from_;  // by number, where any agent has a station
-  std::map<AgentId, Track> tracks_;
-  std::uint64_t looks_ = 0;            // calls of look_ahead()
-  std::vector<Track*> dead_reckoned_;  // per row of the table; null: by its blocks
-  std::vector<char> has_forecast_;     // per row: whether it has a forecast
-  std::vector<Term> terms_;            // of the other rows that count, ascending by author
-  std::ptrdiff_t before_own_ = 0;      // number of terms before the own row
-  const double* own_sums_ = nullptr;
-  double own_quality_ = 1;
-  AlignedDoubles nothing_;  // zeros
-  AlignedDoubles gains_;    // of a row whose sensor differs from others
+  std::map<AgentId, RowTrack> tracks_;
+  std::uint64_t looks_ = 0;        // calls of look_ahead()
+  std::vector<Outlook> outlooks_;  // per row of the table
+  TeamTerms terms_;
+  TeamSum team_sum_;
   AlignedDoubles by_slot_;  // ĉ, only where a slot is not the mode
-  // What the rows before the own one and those after it will have covered.
-  AlignedDoubles earlier_, later_;
 };
 
 }  // namespace ergocast

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs over the modes, row by row of the basis where f is needed.
+// Runs over the modes, row by row of the basis where f is needed. What a loop reads is in variables
+// of its own, so that it is a vector loop.
 #include "core/law/forecast_sums.h"
 
 #include <algorithm>
@@ -10,19 +11,21 @@
 namespace ergocast::sums {
 namespace {
 
-/// Calls each(k, f dt) for every k of the modes, at the place of these cosines.
+/// Calls each(k, f dt) for every k of the modes, at this place.
 template <class Each>
-ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, const Basis& basis, double dt_s,
-                                        Modes modes, const Each& each) {
+ERGOCAST_VECTORIZED_PART void for_gains(const PlaceGain& place, Modes modes, const Each& each) {
+  const CosinesAt& at = place.at;
+  const double dt_s = place.dt_s;
   if (at.free.modes != nullptr)
     return for_free_gains(at.free, dt_s, modes.first, modes.first + modes.count, each);
-  const int modes_y = basis.modes_y, end = modes.first + modes.count;
+  const int modes_x = place.basis.modes_x, modes_y = place.basis.modes_y;
+  const int end = modes.first + modes.count;
   int l = 0, m = modes.first / modes_y;
   int row = m * modes_y;
-  for (; m >= basis.modes_x; m -= basis.modes_x) ++l;
+  for (; m >= modes_x; m -= modes_x) ++l;
   double along_z = at.cos_z[l] * dt_s;
   for (int k = modes.first; k < end; ++m, row += modes_y) {
-    if (m == basis.modes_x) {  // the next slab
+    if (m == modes_x) {  // the next slab
       m = 0;
       along_z = at.cos_z[++l] * dt_s;
     }
@@ -34,80 +37,86 @@ ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, const Basis& basis,
   }
 }
 
+/// Calls each(k) for every k of the modes.
+template <class Each>
+ERGOCAST_VECTORIZED_PART void for_modes(Modes modes, const Each& each) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) each(k);
+}
+
 }  // namespace
 
 ERGOCAST_VECTORIZED
-void add_gain(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes, double* sums) {
-  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { sums[k] += gain; });
+void set_gains(const PlaceGain& place, Modes modes, double* gains) {
+  for_gains(place, modes, [=](int k, double gain) { gains[k] = gain; });
+  const double* const g = place.g;
+  if (g != nullptr) for_modes(modes, [=](int k) { gains[k] *= g[k]; });
 }
 
 ERGOCAST_VECTORIZED
-void set_gains(const CosinesAt& at, const Basis& basis, double dt_s, const double* g, Modes modes,
-               double* gains) {
-  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { gains[k] = gain; });
-  if (g == nullptr) return;
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) gains[k] *= g[k];
-}
-
-ERGOCAST_VECTORIZED
-void add_seen_gain(const CosinesAt& at, const Basis& basis, double dt_s, const double* g,
-                   Modes modes, double* sums) {
-  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { sums[k] += gain * g[k]; });
+void add_gain(const PlaceGain& place, Modes modes, double* sums) {
+  if (const double* const g = place.g) {
+    for_gains(place, modes, [=](int k, double gain) { sums[k] += gain * g[k]; });
+  } else {
+    for_gains(place, modes, [=](int k, double gain) { sums[k] += gain; });
+  }
 }
 
 ERGOCAST_VECTORIZED
 void add_weighted(const double* sums, const double* gains, double share, double quality,
-                  Modes modes, const double* before, double* sum) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    sum[k] = before[k] + quality * (sums[k] + share * gains[k]);
-  }
+                  const RunningSum& running) {
+  const double* const before = running.before;
+  double* const sum = running.sum;
+  for_modes(running.modes,
+            [=](int k) { sum[k] = before[k] + quality * (sums[k] + share * gains[k]); });
 }
 
 ERGOCAST_VECTORIZED
-void add_sums(const double* sums, Modes modes, const double* before, double* sum) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) sum[k] = before[k] + sums[k];
+void add_sums(const double* sums, const RunningSum& running) {
+  const double* const before = running.before;
+  double* const sum = running.sum;
+  for_modes(running.modes, [=](int k) { sum[k] = before[k] + sums[k]; });
 }
 
 ERGOCAST_VECTORIZED
-void add_gaining(const double* sums, const double* sums_before, double share, Modes modes,
-                 const double* before, double* sum) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    sum[k] = before[k] + (sums[k] + share * (sums[k] - sums_before[k]));
-  }
+void add_gaining(const double* sums, const double* sums_before, double share,
+                 const RunningSum& running) {
+  const double* const before = running.before;
+  double* const sum = running.sum;
+  for_modes(running.modes,
+            [=](int k) { sum[k] = before[k] + (sums[k] + share * (sums[k] - sums_before[k])); });
 }
 
 ERGOCAST_VECTORIZED
-void add_announced(const double* sums, const double* gains, double share, Modes modes,
-                   const double* before, double* sum) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    sum[k] = before[k] + (sums[k] + share * gains[k]);
-  }
+void add_announced(const double* sums, const double* gains, double share,
+                   const RunningSum& running) {
+  const double* const before = running.before;
+  double* const sum = running.sum;
+  for_modes(running.modes, [=](int k) { sum[k] = before[k] + (sums[k] + share * gains[k]); });
 }
 
 ERGOCAST_VECTORIZED
-void add_staying(const CosinesAt& at, const Basis& basis, double dt_s, const double* sums,
-                 double share, Modes modes, const double* before, double* sum) {
-  for_gains(at, basis, dt_s, modes,
+void add_staying(const PlaceGain& place, const double* sums, double share,
+                 const RunningSum& running) {
+  const double* const before = running.before;
+  double* const sum = running.sum;
+  for_gains(place, running.modes,
             [=](int k, double gain) { sum[k] = before[k] + (sums[k] + share * gain); });
 }
 
 ERGOCAST_VECTORIZED
-void add_arriving(const CosinesAt& at, const Basis& basis, double dt_s, double* sums, double share,
-                  Modes modes, const double* before, double* sum) {
-  for_gains(at, basis, dt_s, modes, [=](int k, double gain) {
+void add_arriving(const PlaceGain& place, double* sums, double share, const RunningSum& running) {
+  const double* const before = running.before;
+  double* const sum = running.sum;
+  for_gains(place, running.modes, [=](int k, double gain) {
     sums[k] += gain;
     sum[k] = before[k] + (sums[k] + share * gain);
   });
 }
 
 ERGOCAST_VECTORIZED
-void average(const double* earlier, const double* later, const double* own, double per_second,
-             Modes modes, double* coverage) {
+void average(const TeamParts& team, double per_second, Modes modes, double* coverage) {
+  const auto [earlier, later, own] = team;
   ERGOCAST_INDEPENDENT
   for (int k = modes.first; k < modes.first + modes.count; ++k) {
     coverage[k] = (earlier[k] + (later[k] + own[k])) * per_second;
@@ -115,11 +124,12 @@ void average(const double* earlier, const double* later, const double* own, doub
 }
 
 ERGOCAST_VECTORIZED
-void average_weighted(const double* earlier, const double* later, const double* own, double quality,
-                      double per_second, Modes modes, double* coverage) {
+void average_weighted(const TeamParts& team, double own_quality, double per_second, Modes modes,
+                      double* coverage) {
+  const auto [earlier, later, own] = team;
   ERGOCAST_INDEPENDENT
   for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    coverage[k] = (earlier[k] + (later[k] + quality * own[k])) * per_second;
+    coverage[k] = (earlier[k] + (later[k] + own_quality * own[k])) * per_second;
   }
 }
 

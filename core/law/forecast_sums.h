@@ -1,58 +1,72 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The additions that a forecast is made of, over some modes: the loops that take its time.
 //
-// `sum` is a running sum over rows. `before` is its value before this row, and may be the same
-// table. All tables begin with the first mode of the basis. Each mode is computed by itself and in
-// one order, so a vector of modes gives the same bits as one mode.
+// All tables begin with the first mode of the basis. Each mode is computed by itself and in one
+// order, so a vector of modes gives the same bits as one mode.
 #pragma once
 
 #include "core/basis/basis.h"
-#include "core/law/forecast.h"
+#include "core/law/block_layout.h"
 
 namespace ergocast::sums {
 
-using Modes = Forecast::Modes;
+using Modes = BlockLayout::Slots;
 
-/// S += f dt.
-void add_gain(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes, double* sums);
+/// What a place adds to a row in one step: g f dt. It refers to what it was made from.
+struct PlaceGain {
+  const CosinesAt& at;
+  const Basis& basis;
+  double dt_s;
+  const double* g;  ///< null: 1
+};
 
-/// gains = g f dt; g may be null, for 1.
-void set_gains(const CosinesAt& at, const Basis& basis, double dt_s, const double* g, Modes modes,
-               double* gains);
+/// A running sum over rows. What is added to `before` becomes `sum`; both may be the same table.
+struct RunningSum {
+  Modes modes;
+  const double* before;
+  double* sum;
+};
+
+/// gains = g f dt.
+void set_gains(const PlaceGain& place, Modes modes, double* gains);
 
 /// S += g f dt.
-void add_seen_gain(const CosinesAt& at, const Basis& basis, double dt_s, const double* g,
-                   Modes modes, double* sums);
+void add_gain(const PlaceGain& place, Modes modes, double* sums);
 
-/// sum = before + q (S + share · gains).
+/// before + q (S + share · gains).
 void add_weighted(const double* sums, const double* gains, double share, double quality,
-                  Modes modes, const double* before, double* sum);
+                  const RunningSum& running);
 
-/// sum = before + S.
-void add_sums(const double* sums, Modes modes, const double* before, double* sum);
+/// before + S.
+void add_sums(const double* sums, const RunningSum& running);
 
-/// sum = before + S + share · (S − S').
-void add_gaining(const double* sums, const double* sums_before, double share, Modes modes,
-                 const double* before, double* sum);
+/// before + S + share · (S − S').
+void add_gaining(const double* sums, const double* sums_before, double share,
+                 const RunningSum& running);
 
-/// sum = before + S + share · gains.
-void add_announced(const double* sums, const double* gains, double share, Modes modes,
-                   const double* before, double* sum);
+/// before + S + share · gains.
+void add_announced(const double* sums, const double* gains, double share,
+                   const RunningSum& running);
 
-/// sum = before + S + share · f dt.
-void add_staying(const CosinesAt& at, const Basis& basis, double dt_s, const double* sums,
-                 double share, Modes modes, const double* before, double* sum);
+/// before + S + share · f dt.
+/// @pre place.g is null
+void add_staying(const PlaceGain& place, const double* sums, double share,
+                 const RunningSum& running);
 
-/// S += f dt, and then sum = before + S + share · f dt.
-void add_arriving(const CosinesAt& at, const Basis& basis, double dt_s, double* sums, double share,
-                  Modes modes, const double* before, double* sum);
+/// S += f dt, and then before + S + share · f dt.
+/// @pre place.g is null
+void add_arriving(const PlaceGain& place, double* sums, double share, const RunningSum& running);
+
+/// The sums of a team in three parts.
+struct TeamParts {
+  const double *earlier, *later, *own;
+};
 
 /// coverage = (earlier + (later + own)) · per_second.
-void average(const double* earlier, const double* later, const double* own, double per_second,
-             Modes modes, double* coverage);
+void average(const TeamParts& team, double per_second, Modes modes, double* coverage);
 
 /// coverage = (earlier + (later + q own)) · per_second.
-void average_weighted(const double* earlier, const double* later, const double* own, double quality,
-                      double per_second, Modes modes, double* coverage);
+void average_weighted(const TeamParts& team, double own_quality, double per_second, Modes modes,
+                      double* coverage);
 
 }  // namespace ergocast::sums

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Adds one place after the other to each block that does not contain it.
+#include "core/law/track.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace ergocast {
+
+void RowTrack::see(Tick tick, const Eigen::Vector3d& x_m) {
+  if (!places_.empty() && places_.back().tick >= tick) return;
+  // Many are erased at a time: moving all others for each new place would cost more than using it.
+  if (places_.size() == 2 * most_places_)
+    places_.erase(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(most_places_));
+  places_.reserve(2 * most_places_);
+  places_.push_back({tick, x_m});
+}
+
+void RowTrack::extend(const CoverageTable& table, std::size_t row, const RosterEntry& entry,
+                      std::uint64_t look, Sampling& sampling) {
+  // Additions from before a pause, or from before a successor of the coordinator admitted the
+  // author again, are dropped. With them the forecast would depend on when it was computed.
+  const bool goes_on = author_ == entry.author && active_from_ == entry.active_from &&
+                       look_ + 1 == look && !blocks_.empty();
+  look_ = look;
+  if (!goes_on) restart(entry, sampling.layout());
+  take_newer_blocks(table, row);
+  for (auto place = first_to_add(); place != places_.end(); ++place) {
+    if (!entry.active_at(place->tick)) continue;
+    if (place->tick != newest_tick_) move_to(*place, sampling);
+    add_step(place->tick, table, row, sampling.layout());
+  }
+}
+
+void RowTrack::restart(const RosterEntry& entry, const BlockLayout& layout) {
+  author_ = entry.author;
+  active_from_ = entry.active_from;
+  kind_ = entry.kind;
+  const auto blocks = static_cast<std::size_t>(layout.block_count());
+  blocks_.assign(blocks, Block());
+  sums_.assign(blocks * static_cast<std::size_t>(layout.block_size()), 0);
+  newest_.reset();
+  newest_tick_ = -1;
+}
+
+void RowTrack::take_newer_blocks(const CoverageTable& table, std::size_t row) {
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const CoverageTable::BlockView sent = table.view(row, static_cast<int>(b));
+    if (blocks_[b].sent_steps == sent.steps) continue;
+    blocks_[b] = {.sent_steps = sent.steps, .steps = sent.steps, .until = sent.tick};
+  }
+}
+
+/// The first known place that some block does not contain, but at latest the newest place: the
+/// vehicle goes on from there, also if its author has already sent it.
+std::vector<RowTrack::Place>::const_iterator RowTrack::first_to_add() const {
+  const Tick oldest = std::ranges::min_element(blocks_, {}, &Block::until)->until;
+  const auto first =
+      places_.end() - std::min(std::ssize(places_), static_cast<std::ptrdiff_t>(most_places_));
+  auto place = places_.end();
+  while (place != first && std::prev(place)->tick > oldest) --place;
+  if (place == places_.end() && place != first) --place;
+  return place;
+}
+
+/// Adds what is due at the place before.
+void RowTrack::move_to(const Place& place, Sampling& sampling) {
+  add_due_steps(sampling);
+  newest_.emplace(place.x_m, sampling.domain(), sampling.basis());
+  newest_tick_ = place.tick;
+  if (sampling.layout().in_basis_order()) return;
+  in_slots_.resize(static_cast<std::size_t>(sampling.layout().slot_count()));
+  sampling.set_in_slots(*newest_, kind_, in_slots_.data());
+}
+
+void RowTrack::add_due_steps(const Sampling& sampling) {
+  for (int b = 0; b < std::ssize(blocks_); ++b) {
+    if (!take_due_step(b)) continue;
+    const sums::Modes modes = sampling.layout().slots_of(b);
+    if (sampling.layout().in_basis_order()) {
+      sums::add_gain(newest_gain(sampling), modes, sums());
+    } else {
+      sums::add_sums(in_slots_.data(), {modes, sums(), sums()});
+    }
+  }
+}
+
+/// Counts a step at the newest place in every block that does not contain it.
+void RowTrack::add_step(Tick tick, const CoverageTable& table, std::size_t row,
+                        const BlockLayout& layout) {
+  for (int b = 0; b < std::ssize(blocks_); ++b) {
+    Block& block = blocks_[static_cast<std::size_t>(b)];
+    if (block.sent_steps == 0 || tick <= block.until) continue;
+    if (!extends(b)) {
+      const sums::Modes modes = layout.slots_of(b);
+      std::copy_n(table.view(row, b).sums, modes.count, sums() + modes.first);
+    }
+    block.due = true;
+    block.until = tick;
+    ++block.steps;
+  }
+}
+
+bool RowTrack::uniform() const {
+  return std::all_of(blocks_.begin() + 1, blocks_.end(), [&](const Block& block) {
+    return block.steps == blocks_.front().steps && block.due == blocks_.front().due;
+  });
+}
+
+bool RowTrack::take_due_step(int block) {
+  const bool due = of(block).due;
+  blocks_[static_cast<std::size_t>(block)].due = false;
+  return due;
+}
+
+}  // namespace ergocast
