@@ -45,4 +45,8 @@ bool filters_commands(const Mission& mission, AgentId id);
 /// [m].
 double late_edge_margin_m(const Mission& mission, AgentId id);
 
+/// In this many ticks of unbroken contact, rounding takes no more than the margins that are added
+/// to distances.
+inline constexpr double kContactTicks = 1e6;
+
 }  // namespace ergocast

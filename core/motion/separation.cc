@@ -18,8 +18,6 @@
 namespace ergocast {
 namespace {
 
-/// In this many ticks of unbroken contact, rounding takes no more than D' − D.
-constexpr double kContactTicks = 1e6;
 /// The longest step, as a share of V dt: rounding then does not cut its velocity.
 constexpr double kReachShare = 1 - 5e-13;
 /// A step shorter than this share of the wanted one is blocked.

@@ -50,9 +50,6 @@ bool is_ring(const Ring& ring, const Box& domain) {
   return true;
 }
 
-/// In this many ticks of unbroken contact, rounding takes no more than the added margin.
-constexpr double kContactTicks = 1e6;
-
 }  // namespace
 
 bool solid_at(const Rings& walls, const Eigen::Vector2d& x_m) {

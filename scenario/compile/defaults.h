@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenario/parse/findings.h"
+#include "scenario/parse/source.h"
 #include "scenario/scenario.pb.h"
 
 namespace ergocast {
