@@ -161,7 +161,7 @@ void Forecast::point_terms(const CoverageTable& table, int block) {
 }
 
 void Forecast::point(Term& term, const CoverageTable& table, std::size_t row, int block) const {
-  const int first = sampling_.layout().slots_of(block).first;
+  const int first = block * sampling_.layout().block_size();
   const bool extended = term.track != nullptr && term.track->extends(block);
   term.sums = extended ? term.track->sums() : table.view(row, block).sums - first;
   if (term.track != nullptr || term.gained_steps == 0) return;
