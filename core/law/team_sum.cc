@@ -3,8 +3,6 @@
 // computes the sums of all agents with few more additions than those of one agent.
 #include "core/law/team_sum.h"
 
-#include <ranges>
-
 namespace ergocast {
 namespace {
 
@@ -82,8 +80,8 @@ void TeamSum::average(const TeamTerms& terms, const Sampling& sampling, int bloc
     add(term, sampling, block, {modes, parts.earlier, earlier_.data()});
     parts.earlier = earlier_.data();
   }
-  for (const Term& term : terms.later | std::views::reverse) {
-    add(term, sampling, block, {modes, parts.later, later_.data()});
+  for (auto term = terms.later.rbegin(); term != terms.later.rend(); ++term) {
+    add(*term, sampling, block, {modes, parts.later, later_.data()});
     parts.later = later_.data();
   }
   if (terms.own.quality == 1) return sums::average(parts, per_second, modes, coverage);
