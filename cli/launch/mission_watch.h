@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "cli/watch/progress.h"
 #include "cli/launch/stop_request.h"
+#include "cli/watch/progress.h"
 #include "core/base/ids.h"
 #include "core/mission/mission.h"
 #include "runtime/bus/transport.h"

@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "text/shell_word.h"
-#include "cli/watch/find_run.h"
 #include "cli/report_error.h"
+#include "cli/watch/find_run.h"
 #include "runtime/bus/lcm_url.h"
 #include "runtime/process/node.h"
 #include "runtime/process/shipped_folder.h"
+#include "text/shell_word.h"
 
 namespace ergocast::cli {
 namespace {

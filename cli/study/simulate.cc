@@ -3,13 +3,13 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/watch/progress.h"
 #include "cli/mission_options.h"
 #include "cli/record/run_directory.h"
 #include "cli/record/simulated_events.h"
 #include "cli/record/simulated_record.h"
 #include "cli/report_error.h"
 #include "cli/study/trials.h"
+#include "cli/watch/progress.h"
 #include "runtime/process/signals.h"
 
 namespace ergocast::cli {

@@ -4,11 +4,11 @@
 
 #include <cstdio>
 
-#include "text/shell_word.h"
 #include "logger/run_record.h"
 #include "runtime/process/node.h"
 #include "studies/study_page.h"
 #include "text/printable.h"
+#include "text/shell_word.h"
 
 namespace ergocast::cli {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/report_error.h"
 #include "cli/watch/find_run.h"
 #include "cli/watch/run_processes.h"
-#include "cli/report_error.h"
 #include "text/printable.h"
 
 namespace ergocast::cli {

@@ -11,8 +11,8 @@
 #include <string>
 #include <variant>
 
-#include "cli/watch/progress.h"
 #include "cli/watch/page_socket.h"
+#include "cli/watch/progress.h"
 #include "core/base/ids.h"
 #include "runtime/bus/lcm_url.h"
 #include "runtime/process/child.h"

@@ -12,12 +12,12 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/watch/page_process.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
 #include "cli/watch/live_watch.h"
-#include "report/target_density.h"
+#include "cli/watch/page_process.h"
 #include "cli/watch/serve_page.h"
+#include "report/target_density.h"
 #include "runtime/process/signals.h"
 
 namespace ergocast::cli {

@@ -9,15 +9,15 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/watch/find_run.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
+#include "cli/watch/find_run.h"
 #include "cli/watch/live_watch.h"
+#include "cli/watch/serve_page.h"
 #include "report/web_page.h"
 #include "runtime/bus/clock.h"
 #include "runtime/process/node.h"
 #include "runtime/process/signals.h"
-#include "cli/watch/serve_page.h"
 
 namespace ergocast::cli {
 namespace {

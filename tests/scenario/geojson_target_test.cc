@@ -178,7 +178,8 @@ TEST_F(GeoJsonTarget, RefusesWhatIsNoPolygonWithItsMember) {
          "has 5000 vertices, above the limit 4096 (simplify it: ogr2ogr -simplify");
 }
 
-// Each bracket would take a hundred bytes. tests/process/commands/bad_input_test.cc has larger ones.
+// Each bracket would take a hundred bytes. tests/process/commands/bad_input_test.cc has larger
+// ones.
 TEST_F(GeoJsonTarget, RefusesWhatIsNestedDeeperThanAnyPolygon) {
   expect(std::string(1000, '['), "is nested in more than 64 levels (simplify it");
 }

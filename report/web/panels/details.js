@@ -235,7 +235,7 @@ export function showDetails() {
       element(
         'p',
         'muted',
-        `This page has only every ${run.stride}th tick of this long mission; its cₖ are those of these ticks.`,
+        `This page has only every ${run.stride}th tick of this long mission; its cₖ belong to these.`,
       ),
     );
   if (!S.live)

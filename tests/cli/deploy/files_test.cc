@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "cli/deploy/deploy.h"
-#include "text/shell_word.h"
 #include "tests/support/temp_folder.h"
+#include "text/shell_word.h"
 
 namespace ergocast {
 namespace {
