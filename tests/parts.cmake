@@ -34,7 +34,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/vehicle_teams_test.cc core/vehicle_test.cc core/wall_following_test.cc core/walls_attack_test.cc
     core/station_test.cc
     core/walls_test.cc
-  LIBS ergocast::target ergocast::team)
+  LIBS ergocast_lab ergocast::target ergocast::team)
 
 ergocast_test(NAME target_tests LABELS unit
   SOURCES
@@ -194,7 +194,7 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/svg_target_test.cc
     scenario/warnings_test.cc
     scenario/water_column_test.cc
-  LIBS ergocast::scenario ergocast_scenario_messages ergocast_plan_message ergocast_logger PNG::PNG)
+  LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages ergocast_plan_message ergocast_logger PNG::PNG)
 
 ergocast_test(NAME studies_tests LABELS unit
   SOURCES
