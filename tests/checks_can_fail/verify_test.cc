@@ -114,7 +114,7 @@ std::vector<Lie> lies_of_the_tables() {
   return {
       {", first at tick 0, agent ", 1,
        [](const fs::path& run) { change_a_cell(run / "trajectory.csv"); }},
-      {"but it ends after tick 30", 1,
+      {"but the file ends after tick 30", 1,
        [=](const fs::path& run) { keep(run, "trajectory.csv", 30); }},
       {"goes on after the plan's last tick", 1,
        [](const fs::path& run) {

@@ -169,7 +169,7 @@ TEST(Warnings, OfVehiclesThatFollowLateAndBeginAtAnEdge) {
   };
   EXPECT_FALSE(has(late("0.5", "x_m: 50 y_m: 5.1"), "follow"));
   EXPECT_TRUE(has(late("0.5", "x_m: 50 y_m: 4.9"),
-                  "is nearer to an edge than the 5 m that a vehicle keeps that follows so late"));
+                  "is nearer to an edge than the 5 m that a vehicle with this delay keeps"));
   EXPECT_TRUE(has(late("1.3", "x_m: 50 y_m: 25"), "keep 13 m from every edge"));
 }
 

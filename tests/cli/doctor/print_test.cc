@@ -56,7 +56,7 @@ TEST(Print, PeersAreATable) {
   deaf.round_trips_s.clear();
   const std::string text = text_of(std::vector<Peer>{good, deaf});
   EXPECT_TRUE(contains(text,
-                       "robot-1  10.0.0.2  yes       0.0 / 50.0      0.0 / 0.0     "
+                       "robot-1  10.0.0.2  yes          0.0 / 50.0      0.0 / 0.0     "
                        "2.00 / 3.00 / 3.00  0\n"))
       << text;
   EXPECT_TRUE(contains(text, "robot-1  10.0.0.2  NO")) << text;

@@ -205,7 +205,7 @@ TEST_F(StopCommand, OfSeveralRunsOnOneUrlEndsNoneInOrder) {
 
 TEST_F(StopCommand, InAnEmergencyStopsAllThatAreReceived) {
   Program& decided = hand("ergocast", {"stop", "--now"});
-  two_runs_speak_until([&] { return decided.printed().find("telling") != std::string::npos; });
+  two_runs_speak_until([&] { return decided.printed().find("stopping") != std::string::npos; });
   EXPECT_TRUE(decided.prints("run 00000000000000a1: stopping all vehicles at once"));
   EXPECT_TRUE(decided.prints("run 00000000000000b2: stopping all vehicles at once"));
   EXPECT_EQ(wait_for(decided.child), 4) << decided.printed();
