@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* kRight = "\uE014";
 constexpr const char* kHome = "\uE011";
+constexpr const char* kShift = "\uE008";
 constexpr const char* kEscape = "\uE00C";
 
 TEST_F(PageInABrowser, AReportFromDiskShowsAnyTick) {
@@ -57,6 +58,8 @@ TEST_F(PageInABrowser, KeysAndButtonsMoveThroughTheMission) {
   EXPECT_NEAR(js("return ergocast.S.t").get<double>(), 0.1, 1e-9);
   browser_->click("#on");
   EXPECT_NEAR(js("return ergocast.S.t").get<double>(), 0.2, 1e-9);
+  browser_->press(kRight, kShift);
+  EXPECT_NEAR(js("return ergocast.S.t").get<double>(), 10.2, 1e-9);
   browser_->click("#play");
   EXPECT_TRUE(
       browser_->becomes("return !ergocast.S.playing && ergocast.S.t >= ergocast.S.run.end"));
@@ -74,6 +77,16 @@ TEST_F(PageInABrowser, KeysAndButtonsMoveThroughTheMission) {
   EXPECT_EQ(js("return ergocast.S.pins.size"), 0);
   browser_->press("?");
   EXPECT_EQ(js("return document.getElementById('keys').open"), true);
+  expect_no_errors();
+}
+
+TEST_F(PageInABrowser, CoverageLeavesOutThePlacesOfAPause) {
+  open_report();
+  const auto left_out = js(
+      "const { run } = ergocast.S, { coverage } = run; coverage.at(200); const all = "
+      "coverage.count;"
+      "run.holds = [[100, 150]]; coverage.reset(0); coverage.at(200); return all - coverage.count");
+  EXPECT_EQ(left_out, 4 * 50) << "four agents, 50 ticks";
   expect_no_errors();
 }
 

@@ -120,9 +120,11 @@ bool Browser::becomes(const std::string& script) {
   return waits_for([&] { return run(script) == true; }, *driver_);
 }
 
-void Browser::press(const std::string& key) {
+void Browser::press(const std::string& key, const std::string& held) {
   json actions = json::array();
+  if (!held.empty()) actions.push_back({{"type", "keyDown"}, {"value", held}});
   for (const char* type : {"keyDown", "keyUp"}) actions.push_back({{"type", type}, {"value", key}});
+  if (!held.empty()) actions.push_back({{"type", "keyUp"}, {"value", held}});
   json keyboard = {{"type", "key"}, {"id", "keyboard"}, {"actions", actions}};
   ask("POST", "/actions", {{"actions", json::array({keyboard})}});
 }

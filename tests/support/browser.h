@@ -29,7 +29,8 @@ class Browser {
   /// Waits until a script returns true.
   bool becomes(const std::string& script);
   /// A key as WebDriver names it, on the element that has the focus: "d", "\uE014" (right).
-  void press(const std::string& key);
+  /// @param held  a key that is held meanwhile, such as Shift
+  void press(const std::string& key, const std::string& held = "");
   void click(const std::string& selector);
   /// Presses the mouse in the middle of an element, moves it by `right` and `down` pixels, and
   /// releases it.
