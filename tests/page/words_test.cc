@@ -105,6 +105,13 @@ TEST_F(WordsInABrowser, LateCommandsAreAWarning) {
       launch_endless(scenario("pace: REALTIME realtime_factor: 10"), {"--watch", "--port", "8814"});
   browser_->open("http://127.0.0.1:8814/");
   ASSERT_TRUE(becomes_all("ok"));
+  // The way of an agent follows rows that come after it was asked for.
+  js("const track = ergocast.S.run.track(0); window.row = track.last + 30; track.distance(row)");
+  ASSERT_TRUE(browser_->becomes("return ergocast.S.run.track(0).last >= window.row"));
+  EXPECT_TRUE(
+      js("const track = ergocast.S.run.track(0); let way = 0;"
+         "for (let k = track.first + 1; k <= row; k++) way += track.between(k - 1, k) || 0;"
+         "return way > 0 && Math.abs(track.distance(row) - way) < 1e-6 * way"));
   signal_to(agent(3), SIGSTOP);
   EXPECT_TRUE(browser_->becomes("return !document.getElementById('overload')?.hidden"));
   EXPECT_NE(text("overload").find("% of the latest commands come too late"), std::string::npos)
