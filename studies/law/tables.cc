@@ -99,8 +99,10 @@ std::string label(const Group& group, const StudyRuns& runs) {
   return joined(names);
 }
 
+/// Nothing if the group has no such folder: not every law suits every scenario.
 Points points_of(const fs::path& folder, const Group& group, const Law& law) {
-  return read_study(folder / (std::string(group.study) + "-" + law.folder) / "study.csv");
+  const fs::path study = folder / (std::string(group.study) + "-" + law.folder);
+  return fs::exists(study) ? read_study(study / "study.csv") : Points();
 }
 
 void print_rows(const fs::path& folder, const Group& group) {
@@ -110,7 +112,11 @@ void print_rows(const fs::path& folder, const Group& group) {
     std::printf("| %s | %zu", label(group, ours).c_str(), ours.of(kMetric).size());
     for (const int law : {0, 1, 2})
       std::printf(" | %s", spread(named(laws[law], ours.names)).c_str());
-    std::printf(" | %.1e", geometric_mean(named(laws[3], ours.names).of(kMetric)));
+    if (laws[3].empty()) {
+      std::printf(" | –");
+    } else {
+      std::printf(" | %.1e", geometric_mean(named(laws[3], ours.names).of(kMetric)));
+    }
     for (const int law : {1, 2})
       std::printf(" | %s", text(against(ours, named(laws[law], ours.names))).c_str());
     std::printf(" |\n");
