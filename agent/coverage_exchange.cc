@@ -99,7 +99,7 @@ std::optional<Refusal> CoverageExchange::merge(const Contribution& theirs, int k
     case Merge::kRefusedEncoding:
       return Refusal::kEncoding;
     case Merge::kNewer:
-      table_.set_quality(theirs.author(), sensors_.of(kind).quality);
+      if (!sensors_.uniform()) table_.set_quality(theirs.author(), sensors_.of(kind).quality);
       last_update_[theirs.author()] = counted;
       break;
     case Merge::kStale:

@@ -61,7 +61,10 @@ void CoverageTable::set_layout(const BlockLayout& layout) {
 
 /// Where the row of `author` is, or would be.
 std::size_t CoverageTable::place_of(const Author& author) const {
-  const auto at = std::ranges::lower_bound(rows_, author, {}, &CoverageRow::author);
+  // Each message needs it. With a projection to author() it takes almost twice as long.
+  const auto at = std::lower_bound(
+      rows_.begin(), rows_.end(), author,
+      [](const CoverageRow& row, const Author& wanted) { return row.author() < wanted; });
   return static_cast<std::size_t>(at - rows_.begin());
 }
 
@@ -77,15 +80,16 @@ CoverageRow* CoverageTable::find(const Author& author) {
 
 /// Null if the table has no room for another row.
 CoverageRow* CoverageTable::find_or_add(const Author& author) {
-  if (CoverageRow* const row = find(author)) return row;
+  const std::size_t at = place_of(author);
+  if (at < rows_.size() && rows_[at].author() == author) return &rows_[at];
   const auto incarnations = std::ranges::count_if(
       rows_, [&](const CoverageRow& row) { return row.author().agent == author.agent; });
   if (incarnations >= kMaxIncarnationsPerAgent) return nullptr;
   if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
   scratch_.counted.resize(rows_.size() + 1);
   scratch_.qualities.resize(rows_.size() + 1);
-  const auto at = rows_.begin() + static_cast<std::ptrdiff_t>(place_of(author));
-  return &*rows_.insert(at, CoverageRow(author, layout_));
+  return &*rows_.insert(rows_.begin() + static_cast<std::ptrdiff_t>(at),
+                        CoverageRow(author, layout_));
 }
 
 void CoverageTable::add_row(const Author& author) {
