@@ -233,7 +233,7 @@ ergocast_test(NAME doctor_tests LABELS unit
   LIBS ergocast_doctor nlohmann_json::nlohmann_json)
 
 ergocast_test(NAME layering_tests LABELS unit
-  SOURCES layering_test.cc
+  SOURCES layering/includes_test.cc layering/modules_test.cc layering/sources_test.cc
   LIBS ergocast::core)
 
 ergocast_test(NAME lab_tests LABELS lab

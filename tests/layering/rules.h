@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one table of allowed dependencies: which folder may include which, and what of outside.
+#pragma once
+
+#include <set>
+#include <string_view>
+#include <vector>
+
+namespace ergocast {
+
+// Headers outside the tree, by the capability they give. The harmless part of the standard library
+// and Eigen are allowed everywhere.
+enum class Outside {
+  kProtobuf,     // the scenario's messages
+  kLcm,          // the network
+  kLcmTypes,     // lcm-gen's structs
+  kInstalled,    // our own headers, as libergocast-dev installs them
+  kZstd,         // libzstd
+  kLog,          // spdlog
+  kCommandLine,  // CLI11
+  kJson,         // nlohmann
+  kHash,         // xxHash
+  kCrypto,       // libsodium
+  kGenerator,    // Random123
+  kSpectra,      // Spectra, and the sparse part of Eigen
+  kPng,          // libpng
+  kLoader,       // dlopen: libnetcdf
+  kHttp,         // cpp-httplib
+  kPython,       // pybind11
+  kEarth,        // PROJ
+  kXml,          // pugixml
+  kPhysics,      // MuJoCo, and EGL for its pictures
+  kFiles,        // files and standard streams
+  kSystem,       // sockets, signals, processes, threads, the machine's clocks and dice
+};
+using enum Outside;
+
+/// The allowed includes of a folder, or of one file that differs from its folder.
+struct Rule {
+  std::string_view who;
+  std::set<std::string_view> folders;
+  std::set<Outside> outside;
+};
+
+// From the bottom up: a folder may include those above it in this list, and only those that it
+// names.
+inline const std::set<std::string_view> kCore = {"core/base", "core/basis", "core/mission",
+                                                 "core/law", "core/motion"};
+inline const std::vector<Rule> kRules = {
+    {"text", {}, {kFiles}},
+    {"text/input_file.cc", {"text"}, {kFiles, kSystem}},
+    // The method. Law and motion do not see each other.
+    {"core/base", {}, {kGenerator}},
+    {"core/basis", {"core/base"}, {}},
+    {"core/mission", {"core/base", "core/basis"}, {}},
+    {"core/law", {"core/base", "core/basis", "core/mission"}, {}},
+    {"core/motion", {"core/base", "core/mission"}, {}},
+    // Modes of a free domain: a process without their table computes them.
+    {"modes", {"core"}, {}},
+    {"modes/eigen_modes.cc", {"core", "modes"}, {kSpectra}},
+    {"modes/table.cc", {"core", "modes"}, {kHash}},
+    {"modes/table_file.h", {"modes"}, {kFiles}},
+    {"modes/table_file.cc", {"core", "modes"}, {kFiles, kSystem}},
+    {"modes/provide.cc", {"core", "modes"}, {kHash, kSystem}},
+    {"plan", {"core", "modes"}, {kHash}},
+    {"team", {"core", "plan"}, {}},
+    {"lcmtypes", {"text", "core", "plan", "team"}, {kLcmTypes, kHash, kCrypto}},
+    {"target", {"text", "core"}, {}},
+    {"target/maps", {"text", "core", "target"}, {kPng, kFiles}},
+    {"target/maps/netcdf_library.cc", {"target/maps"}, {kLoader}},
+    // Places on the earth, and drawings: for scenarios and exports, not for participants.
+    {"target/geo", {"text", "core"}, {kEarth, kFiles, kJson, kXml}},
+    {"scenario/parse", {"text", "core", "plan", "target"}, {kProtobuf, kCommandLine, kFiles}},
+    {"scenario/rules",
+     {"text", "core", "plan", "target", "target/maps", "target/geo", "scenario/parse"},
+     {kProtobuf, kFiles}},
+    {"scenario/compile",
+     {"text", "core", "modes", "plan", "target", "target/maps", "target/geo", "scenario/parse",
+      "scenario/rules"},
+     {kProtobuf, kFiles}},
+    {"scenario",
+     {"text", "core", "modes", "plan", "target", "target/maps", "target/geo", "scenario/parse",
+      "scenario/rules", "scenario/compile"},
+     {kProtobuf, kFiles}},
+    {"runtime/bus", {"text", "core", "plan", "team", "lcmtypes"}, {kLcm, kFiles, kSystem}},
+    {"runtime/record",
+     {"text", "core", "team", "lcmtypes", "runtime/bus"},
+     {kZstd, kFiles, kSystem}},
+    {"runtime/process",
+     {"text", "core", "modes", "plan", "team", "lcmtypes", "runtime/bus"},
+     {kLcm, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
+    // The participants: they know the shared parts, but not each other.
+    {"agent", {"core", "plan", "team"}, {}},
+    {"coordinator", {"core", "plan", "team"}, {}},
+    {"sim", {"core", "plan", "team"}, {}},
+    {"logger", {"text", "core", "modes", "plan", "team"}, {kFiles, kJson}},
+    {"agent/main.cc", {"agent", "runtime/bus", "runtime/process"}, {kLog}},
+    {"coordinator/main.cc",
+     {"plan", "team", "coordinator", "scenario", "scenario/parse", "runtime/bus",
+      "runtime/process"},
+     {kLog}},
+    {"sim/main.cc", {"sim", "runtime/bus", "runtime/process"}, {kLog}},
+    {"sim/world_process.h", {"sim", "runtime/bus", "runtime/process"}, {}},
+    {"sim/world_process.cc", {"sim", "runtime/bus", "runtime/process"}, {kLog}},
+    {"logger/main.cc",
+     {"text", "modes", "plan", "team", "logger", "lcmtypes", "runtime/bus", "runtime/record",
+      "runtime/process"},
+     {kLog, kFiles, kSystem}},
+    {"report", {"text", "core", "target", "target/maps", "team", "logger"}, {kFiles, kJson}},
+    {"report/export",
+     {"text", "core", "target", "target/geo", "team", "logger", "report"},
+     {kFiles, kJson}},
+    // The same participants in one process: no network, no clock, no threads.
+    {"lab", {"core", "plan", "team", "lcmtypes", "agent", "coordinator", "sim", "logger"}, {}},
+    {"studies",
+     {"text", "core", "plan", "target", "team", "scenario", "scenario/rules", "logger", "report",
+      "lab"},
+     {kJson, kFiles}},
+    {"cli/doctor",
+     {"text", "core", "team", "lcmtypes", "runtime/bus", "runtime/process"},
+     {kJson, kFiles, kSystem}},
+    {"cli/deploy",
+     {"text", "core", "plan", "scenario", "scenario/parse", "runtime/bus", "runtime/process"},
+     {kFiles}},
+    // The commands. The lower rooms show nothing and start nothing.
+    {"cli",
+     {"text", "core", "scenario", "scenario/parse", "runtime/bus", "runtime/process"},
+     {kCommandLine, kFiles, kSystem}},
+    {"cli/team",
+     {"text", "core", "plan", "team", "lcmtypes", "target", "scenario", "runtime/bus",
+      "runtime/record", "runtime/process", "logger", "report", "cli"},
+     {kJson, kFiles, kSystem}},
+    {"cli/record",
+     {"text", "core", "modes", "plan", "team", "lcmtypes", "scenario", "runtime/bus",
+      "runtime/record", "runtime/process", "logger", "report", "report/export", "lab", "cli",
+      "cli/team"},
+     {kLog, kCommandLine, kJson, kFiles, kSystem}},
+    {"cli/watch",
+     {"text", "core", "plan", "team", "lcmtypes", "scenario", "runtime/bus", "runtime/record",
+      "runtime/process", "logger", "report", "cli", "cli/team", "cli/record"},
+     {kLog, kCommandLine, kJson, kFiles, kSystem}},
+    {"cli/watch/page_server.cc", {"runtime/bus", "runtime/process", "cli/watch"}, {kHttp, kSystem}},
+    {"cli/launch",
+     {"text", "core", "modes", "plan", "team", "scenario", "scenario/parse", "runtime/bus",
+      "runtime/record", "runtime/process", "logger", "cli", "cli/team", "cli/record", "cli/watch"},
+     {kLog, kCommandLine, kJson, kFiles, kSystem}},
+    {"cli/study",
+     {"text", "core", "plan", "scenario", "scenario/parse", "runtime/process", "logger", "report",
+      "lab", "studies", "cli", "cli/record", "cli/watch"},
+     {kLog, kCommandLine, kJson, kFiles, kSystem}},
+    {"cli/doctor/doctor_command.cc",
+     {"text", "team", "runtime/bus", "runtime/process", "cli", "cli/doctor"},
+     {kCommandLine, kFiles, kSystem}},
+    {"cli/deploy/deploy_command.cc",
+     {"text", "core", "modes", "plan", "scenario", "scenario/parse", "runtime/bus",
+      "runtime/process", "logger", "cli", "cli/record", "cli/launch", "cli/deploy"},
+     {kCommandLine, kFiles, kSystem}},
+    {"cli/spy",
+     {"text", "runtime/bus", "runtime/process", "cli", "cli/watch"},
+     {kCommandLine, kFiles, kSystem}},
+    // The Python module: it uses only the command's part that writes a run directory.
+    {"python",
+     {"text", "core", "plan", "target", "scenario", "scenario/rules", "runtime/process", "logger",
+      "report", "lab", "cli", "cli/team", "cli/record"},
+     {kPython, kFiles}},
+    // What the generated reference says of fields and messages.
+    {"docs/reference",
+     {"text", "core", "plan", "team", "lcmtypes", "scenario", "scenario/parse"},
+     {kProtobuf, kFiles}},
+    // Somebody else's program: it sees the installed headers alone.
+    {"examples/embed", {}, {kInstalled, kSystem}},
+    // The example to copy: a participant with its main.
+    {"examples/driver", {"core", "team"}, {}},
+    {"examples/driver/main.cc", {"examples/driver", "runtime/bus", "runtime/process"}, {kLog}},
+    // Robots in a physics engine: the simulated world with other bodies.
+    {"examples/mujoco", {"core", "team", "sim"}, {kPhysics}},
+    {"examples/mujoco/main.cc", {"sim", "runtime/process", "examples/mujoco"}, {kLog}},
+    {"examples/mujoco/film.cc",
+     {"plan", "team", "scenario", "lab", "examples/mujoco"},
+     {kPhysics, kFiles}},
+};
+
+/// Folders with code that may include everything.
+inline const std::set<std::string_view> kFree = {"tests"};
+
+/// Names of headers by kind; a star matches anything.
+struct Kind {
+  Outside outside;
+  std::vector<std::string_view> names;
+};
+inline const std::vector<Kind> kKinds = {
+    {kProtobuf, {"google/protobuf/*", "*.pb.h"}},
+    {kLcm, {"lcm/*"}},
+    {kLcmTypes, {"ergocast/*_t.hpp"}},
+    {kInstalled,
+     {"ergocast/core/*", "ergocast/plan/*", "ergocast/target/*", "ergocast/team/*",
+      "ergocast/agent/*", "ergocast/lcmtypes/*"}},
+    {kZstd, {"zstd.h"}},
+    {kLog, {"spdlog/*"}},
+    {kCommandLine, {"CLI/*"}},
+    {kJson, {"nlohmann/*"}},
+    {kHash, {"xxhash.h"}},
+    {kCrypto, {"sodium.h"}},
+    {kGenerator, {"Random123/*"}},
+    {kSpectra, {"Spectra/*", "Eigen/Sparse*"}},
+    {kPng, {"png.h"}},
+    {kLoader, {"dlfcn.h"}},
+    {kHttp, {"httplib.h"}},
+    {kPython, {"pybind11/*"}},
+    {kEarth, {"proj.h"}},
+    {kXml, {"pugixml.hpp"}},
+    {kPhysics, {"mujoco/*", "EGL/*"}},
+    {kFiles, {"fstream", "filesystem", "iostream", "syncstream", "ext/stdio_filebuf.h"}},
+    {kSystem, {"thread",     "mutex",     "shared_mutex", "condition_variable",
+               "future",     "semaphore", "latch",        "barrier",
+               "stop_token", "random",    "ctime",        "csignal",
+               "sys/*",      "netinet/*", "arpa/*",       "net/*",
+               "linux/*",    "dirent.h",  "fcntl.h",      "ifaddrs.h",
+               "netdb.h",    "poll.h",    "pthread.h",    "signal.h",
+               "spawn.h",    "time.h",    "unistd.h"}},
+};
+
+// The time or a random device needs no special #include: <chrono> is allowed everywhere.
+inline const std::string_view kClocksAndDice[] = {"_clock::now", "clock_gettime", "gettimeofday",
+                                                  "std::time(",  "random_device", "std::rand(",
+                                                  "sleep_for",   "sleep_until"};
+
+}  // namespace ergocast
