@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/require.h"
-#include "core/mission/kinds.h"
 #include "core/motion/vehicle.h"
 
 namespace ergocast {

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "agent/guidance.h"
+#include "core/law/look_ahead.h"
 #include "core/mission/station.h"
 
 namespace ergocast {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/law/look_ahead.h"
+
 namespace ergocast {
 
 Guidance::Guidance(const Mission& mission, const RosterEntry& self)
@@ -19,10 +21,13 @@ Guidance::Guidance(const Mission& mission, const RosterEntry& self)
 void Guidance::on(const WorldState& world, const RadioRange& radio, const Participant& me) {
   const Tick tick = world.header.tick;
   if (!forecast_ || tick < active_from_) return;
-  if (tick > parts_.tick()) {
-    parts_.begin(world);
-  } else if (tick == parts_.tick()) {
-    parts_.add(world);
+  // A restarted world may send the same tick with fewer vehicles: then only its parts count.
+  if (tick >= parts_.tick()) {
+    if (parts_.same(world)) {
+      parts_.add(world);
+    } else {
+      parts_.begin(world);
+    }
   }
   // Nothing is covered at a held tick, and no vehicle moves on before the mission continues.
   if (me.is_held(tick)) return;

@@ -21,9 +21,6 @@
 
 namespace ergocast {
 
-/// Whether agents of a mission forecast the team's coverage.
-inline bool looks_ahead(const Mission& mission) { return mission.law.anticipation > 0; }
-
 class Guidance {
  public:
   /// @param self  the agent's entry in the roster

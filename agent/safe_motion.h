@@ -4,9 +4,8 @@
 // 1. the way home takes the law's place, once it has begun (core/motion/way_home.h);
 // 2. an agent that walls hold up goes along the wall, but not on its way home
 //    (core/motion/wall_following.h);
-// 3. the filter keeps the vehicle apart from bodies, walls and edges (core/motion/separation.h),
-// with the
-//    other bodies where TeamBodies has them;
+// 3. the filter keeps the vehicle apart from walls, edges and the bodies of TeamBodies
+//    (core/motion/separation.h);
 // 4. ticks at which it leaves almost nothing are counted for the status.
 //
 // A mission without a station, walls or bodies leaves the velocity as it is, bit for bit.

@@ -239,7 +239,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
   if (!ending_.begun()) return;
   // A process that asks to join must receive the end, too.
   const bool all_left =
-      !admission_.is_asked(kLinger, now) && ending_.all_have_left(members_, signs);
+      !admission_.is_asked(kEndLinger, now) && ending_.all_have_left(members_, signs);
   if (all_left) publish_mission(out);  // once more, for those that only watch
   if (all_left || ending_.over(now)) ending_.finish();
 }

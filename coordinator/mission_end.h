@@ -14,7 +14,7 @@
 namespace ergocast {
 
 /// How long the end is repeated.
-inline constexpr std::chrono::seconds kLinger{1};
+inline constexpr std::chrono::seconds kEndLinger{1};
 
 class MissionEnd {
  public:
@@ -34,7 +34,7 @@ class MissionEnd {
   /// has received the end.
   bool all_have_left(const Members& members, const SignsOfLife& signs) const;
   /// Whether it has been repeated for long enough. @pre begun()
-  bool over(Instant now) const { return now - *since_ >= kLinger; }
+  bool over(Instant now) const { return now - *since_ >= kEndLinger; }
 
   /// The coordinator sends nothing more.
   void finish() { finished_ = true; }

@@ -37,7 +37,7 @@ class TickWatch {
   std::int64_t world_revision() const { return world_revision_; }
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
 
-  /// Takes in the world's state. False if it is older than tick(): it then has no effect.
+  /// Takes in the world's state. False if it is older than tick(): then only world_heard() follows.
   bool receive(const WorldState& world, Instant now);
   /// Takes in a question of a starting world, which names the agent that this world waits for. A
   /// question of another world than before gives the tick its full time again.

@@ -52,10 +52,10 @@ class FaultSchedule {
     FaultEvent event;
   };
 
+  double faulty_s_;  // progress_s() at which all is healed
   std::vector<FaultEvent> events_;
   std::size_t next_ = 0;
   std::vector<End> ends_;
-  double faulty_s_;  // progress_s() at which all is healed
   bool healed_ = false;
   bool hinders_;  // even if only messages have faults
 };

@@ -52,7 +52,7 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
 bool IdealTeam::stands_for(const Mission& mission) {
   const Timing& timing = mission.timing;
   const bool all_is_sent = longest_period_ticks(timing) == 1;
-  const bool all_is_known = mission.law.anticipation > 0 && mission.dead_reckoning;
+  const bool all_is_known = looks_ahead(mission) && mission.dead_reckoning;
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
          (all_is_sent || all_is_known) && !any_station(mission);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Crashes, freezes and cuts off simulated processes by the schedule, but never destroys all
+// Crashes and cuts off simulated processes by the schedule, but never destroys all
 // copies of one fact.
 #include <algorithm>
 

@@ -31,7 +31,7 @@ class TrackGrid {
   /// Ticks between rows are left out. The newest position of a tick counts.
   void put(AgentId agent, Tick tick, const Eigen::Vector3d& x_m);
 
-  /// The rows [from, to) for the page, which reads them in web/tracks.js:
+  /// The rows [from, to) for the page, which reads them in report/web/data/tracks.js:
   ///   {"bits": b, "agents": [{"id": i, "runs": [first row, number of rows, …]}, …], "data":
   ///   base64}
   /// A coordinate is a whole number, from 0 at the domain's origin to 2^b − 1 at its end. For each

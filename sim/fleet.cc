@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/base/geometry.h"
-#include "core/base/noise.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/push.h"
 #include "core/motion/vehicle.h"
@@ -163,6 +162,14 @@ std::vector<WorldState> Fleet::snapshot() const {
     vehicle.velocity_mps = slot.applied_mps;
   }
   return states;
+}
+
+std::optional<std::string> Fleet::make_physics(const Mission& mission) {
+  if (!physics_maker_ || physics_) return {};
+  auto made = physics_maker_(mission);
+  if (auto* problem = std::get_if<std::string>(&made)) return std::move(*problem);
+  physics_ = std::move(std::get<0>(made));
+  return {};
 }
 
 }  // namespace ergocast

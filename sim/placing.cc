@@ -2,21 +2,12 @@
 // Where vehicles begin, and where a restarted world finds them.
 #include <algorithm>
 
-#include "core/base/geometry.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/starts.h"
 #include "core/motion/vehicle.h"
 #include "sim/fleet.h"
 
 namespace ergocast {
-
-std::optional<std::string> Fleet::make_physics(const Mission& mission) {
-  if (!physics_maker_ || physics_) return {};
-  auto made = physics_maker_(mission);
-  if (auto* problem = std::get_if<std::string>(&made)) return std::move(*problem);
-  physics_ = std::move(std::get<0>(made));
-  return {};
-}
 
 void Fleet::begin(const Mission& mission, Tick tick, const StateAssembler& before,
                   Surroundings surroundings) {

@@ -31,7 +31,7 @@ bool ArrivedParts::same(const WorldState& part) const {
 }
 
 void StateAssembler::take(const WorldState& part) {
-  if (part.header.tick < arrived_.tick() || part.part >= part.parts) return;
+  if (part.header.tick < arrived_.tick() || part.part < 0 || part.part >= part.parts) return;
   if (arrived_.same(part)) {
     arrived_.add(part);
   } else {

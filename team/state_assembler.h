@@ -43,8 +43,6 @@ class StateAssembler {
 
   /// Whether all parts of exactly this tick have arrived, and no newer ones.
   bool complete(Tick tick) const { return tick == arrived_.tick() && newest() == tick; }
-  /// The same, or a part of a newer tick has arrived.
-  bool complete_or_past(Tick tick) const { return arrived_.tick() > tick || complete(tick); }
   /// The newest tick of which all parts have arrived; −1: none.
   Tick newest() const { return states().empty() ? -1 : states().front().header.tick; }
   /// The parts of newest(), in order.

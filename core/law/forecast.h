@@ -51,9 +51,6 @@ class Forecast {
   /// [steps]. Beyond it: the oldest is forgotten.
   static constexpr Tick kPlacesBeyondPeriod = 64;
 
-  /// Consecutive slots in the order of the wire.
-  using Modes = BlockLayout::Slots;
-
   Forecast(const Mission& mission, const Author& self);
 
   /// Notes that a vehicle was at `x_m` at `tick`. It has no effect without dead reckoning, for our

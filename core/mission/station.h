@@ -15,7 +15,6 @@
 // beyond the plan have none.
 #pragma once
 
-#include <limits>
 #include <optional>
 
 #include "core/base/ids.h"

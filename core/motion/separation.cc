@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Takes the allowed step of a point that is nearest to the wanted one, or a sideways step if that
-// one is very short. Computes how far apart bodies begin.
+// one is very short.
 #include "core/motion/separation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/base/geometry.h"
 #include "core/base/noise.h"

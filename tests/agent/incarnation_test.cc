@@ -150,7 +150,7 @@ TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotStopIt) {
   EXPECT_FALSE(agent.finished());
 }
 
-TEST(AgentJoining, AnAgentThatAskedForNoNumberHasNoDuplicate) {
+TEST(AgentJoining, AnAgentThatAskedForNoNumberDoesNotStopForAnother) {
   AgentIdentity anybody = identity_of(1);
   anybody.requested_id = kUnassigned;
   announce(small_mission(2));

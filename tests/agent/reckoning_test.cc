@@ -187,6 +187,18 @@ TEST_F(Reckoning, InLockstepNoAgentAnswersBeforeAllPartsOfTheWorldsStateAreThere
   expect_foreseen(foreseen(mission_, 0, 0, their_path(0, 1), 1, 0));
 }
 
+// A vehicle whose agent has left is in the states of the world that knew it, and of no later one.
+TEST_F(Reckoning, ARestartedWorldsStateNeedsNoPartOfTheWorldBefore) {
+  begin(dead_reckoning_mission());
+  hear_block(their_path(0, 1));
+  WorldState before = world_answered(0, -1);
+  before.parts = 2;
+  EXPECT_TRUE(only<Command>(deliver(*agent_, before)).empty());
+  WorldState whole = world_answered(0, -1);
+  whole.header.incarnation = kWorldLife + 1;
+  EXPECT_EQ(only<Command>(deliver(*agent_, whole)).size(), 1u);
+}
+
 TEST_F(Reckoning, InRealTimeAMissingPartHoldsUpNoAgent) {
   begin(dead_reckoning_mission(Pace::kRealtime));
   WorldState first = world_answered(0, -1);

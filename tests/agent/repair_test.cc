@@ -174,7 +174,7 @@ TEST_F(Repair, AnyGapIsOneIfItsAuthorHasLeft) {
   EXPECT_EQ(answered(at(3s)), nobody);
 }
 
-TEST_F(Repair, NoAgentSendsItsOwnRow) {
+TEST_F(Repair, NoAgentAnswersWithItsOwnRow) {
   hold(author_of(0), 20);
   complain_twice(1, author_of(0), 0, at(0s));
   EXPECT_EQ(answered(at(1s)), nobody) << "in lockstep, ticks depend on when that is sent";

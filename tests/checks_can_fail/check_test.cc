@@ -511,7 +511,7 @@ TEST_F(CheckCanFail, InEachOfItsFindings) {
   plant_in_the_text();
   plant_outside_the_text();
   plant_warnings();
-  // The texts of override_options.cc are those of --help.
+  // The texts of scenario/parse/override_options.cc are those of --help.
   std::vector<std::string> sources;
   for (const char* folder : {"scenario", "scenario/parse", "scenario/rules", "scenario/compile",
                              "target", "target/maps"}) {

@@ -36,7 +36,7 @@ class Monitored : public ::testing::Test {
   MonitoredRun run_{kRun, at(0s)};
 };
 
-TEST_F(Monitored, AnAgentThatWasNotReceivedYetIsThereForAsLongAsItMayBeSilent) {
+TEST_F(Monitored, AnAgentWithoutAMessageYetIsThereForAsLongAsItMayBeSilent) {
   hear_mission(MissionState::kEnded, at(10ms));
   EXPECT_EQ(run_.still_there(at(20ms)), (Names{"agent 0", "agent 1"}))
       << "their last words may come next";

@@ -122,7 +122,7 @@ TEST(TeamTable, NamesTheProcessThatAnAgentWaitsFor) {
   EXPECT_EQ(condition_text(row), "waiting for world");
 }
 
-TEST(TeamTable, OfALongHostNameOrANeverReceivedAgentStaysAligned) {
+TEST(TeamTable, OfALongHostNameOrAnAgentWithoutMessagesStaysAligned) {
   TeamPicture picture = running_team();
   picture.agents[0].status->host = std::string(63, 'h');
   picture.agents[1].status->host = "über-träge-robotermaschine";

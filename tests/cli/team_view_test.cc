@@ -139,7 +139,7 @@ TEST_F(TeamViewTest, AnAgentWithoutMessagesIsLateThenSilentAndStandsFirst) {
   EXPECT_TRUE(picture.trouble);
 }
 
-TEST_F(TeamViewTest, AMemberThatWasNeverReceivedIsSilentSinceWeListen) {
+TEST_F(TeamViewTest, AMemberWithoutAnyMessageIsSilentSinceWeListen) {
   hear_mission(at(0s));
   hear_all(at(2s), 0, 3);
   EXPECT_EQ(condition(3, at(2900ms)), Condition::kUnheard);

@@ -187,7 +187,7 @@ TEST(CoordinatorAdmits, NoAgentWithoutTheNewestMissionAndRepeatsItSoon) {
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }
 
-TEST(CoordinatorAdmits, ManyAtOnceThatKnowTheNewestMessage) {
+TEST(CoordinatorAdmits, ManyAtOnceThatKnowTheNewestRevision) {
   Coordinator coordinator = coordinator_of(small_mission(20));
   const std::int64_t known = newest_sent(coordinator, at(0s));
   for (AgentId id = 0; id < 20; ++id)

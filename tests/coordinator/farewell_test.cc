@@ -54,7 +54,7 @@ TEST_F(Farewell, AtOnceWhenAllOthersLeaveWithTheEndSentOnceMore) {
   EXPECT_EQ(parts[0].state, MissionState::kEnded);
 }
 
-TEST_F(Farewell, AfterASecondIfAnyOfThemIsNotReceived) {
+TEST_F(Farewell, AfterASecondIfTheReportOfAnyOfThemIsMissing) {
   for (const int unheard : {0, 1, 2, 3}) {
     coordinator_ = running_coordinator(mission_);
     give(coordinator_, world_where(7, {6, 6}), at(1s));

@@ -24,7 +24,7 @@ constexpr Tick kNotice = 40;
 
 Pause pause_after(int changes) { return {{kRun, kOperator, 1, next_sequence(), 0}, changes}; }
 
-TEST(Pausing, CountsTheTicksSinceTheWorldWasReceived) {
+TEST(Pausing, CountsTheTicksSinceTheWorldsLastMessage) {
   for (const auto& [since, ticks] : {std::pair{0ms, 0}, {425ms, 8}, {825ms, 16}}) {
     Coordinator coordinator = running_coordinator(realtime_mission(2));
     give(coordinator, world_where(10, {9, 9}), at(1s));
@@ -47,7 +47,7 @@ TEST(Pausing, GoesByTheNewestTickOfAnyAgent) {
   EXPECT_EQ(coordinator.holds()[0].from, 13 + 1 + kNotice);
 }
 
-TEST(Pausing, NeedsAWorldThatIsReceived) {
+TEST(Pausing, NeedsAWorldThatSends) {
   Coordinator coordinator = running_coordinator(realtime_mission(2));
   give(coordinator, pause_after(0), at(1s));
   EXPECT_TRUE(coordinator.holds().empty());

@@ -430,7 +430,7 @@ TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAMessage) {
   EXPECT_TRUE(advance(coordinator, at(3s)).empty()) << "the mission is not its to end";
 }
 
-TEST(TakenOver, ACoordinatorUsesANewerRevisionThanARepeatedOne) {
+TEST(TakenOver, ACoordinatorOutnumbersARepeatedRevisionOfAStoppedOne) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   advance(coordinator, at(1s));
   MissionPart repeated = memory_of(1000);
@@ -452,7 +452,7 @@ TEST(TakenOver, ACoordinatorAdoptsTheEndOfAPauseThatOnlyItsPredecessorHasNamed) 
   EXPECT_EQ(coordinator.holds(), repeated.holds) << "agents may have gone by it";
 }
 
-TEST(TakenOver, ACoordinatorUsesANewerRevisionThanTheWorldHasReceived) {
+TEST(TakenOver, ACoordinatorOutnumbersARevisionThatOnlyTheWorldNames) {
   Coordinator coordinator = taken_over(memory_of(3));
   const std::int64_t before = sent_by(advance(coordinator, at(2s))).revision;
   WorldState world = world_where(0, {0, 0});

@@ -148,7 +148,7 @@ TEST(MessageLoss, LosingTheLastStateOnceDoesNoHarm) {
   }
 }
 
-TEST(MessageLoss, ALoggerThatIsNeverReceivedHoldsUpNoProcess) {
+TEST(MessageLoss, ALoggerWhoseMessagesAreAllLostHoldsUpNoProcess) {
   const Outcome outcome = simulated(
       [](const Message& message, int) { return std::holds_alternative<RecordAck>(message); });
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
@@ -236,7 +236,7 @@ bool is_command_of(const Message& message, AgentId agent) {
   return command != nullptr && command->header.sender == agent;
 }
 
-TEST(MessageLoss, AnAgentThatIsNeverReceivedIsNamedAndFailsTheMission) {
+TEST(MessageLoss, AnAgentWhoseMessagesAreAllLostIsNamedAndFailsTheMission) {
   const Outcome outcome = simulated([](const Message& m, int) { return is_command_of(m, 2); });
   EXPECT_EQ(outcome.state, MissionState::kFailed);
   EXPECT_NE(outcome.reason.find("agent 2 has not answered tick 0"), std::string::npos)

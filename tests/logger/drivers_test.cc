@@ -43,7 +43,7 @@ TEST(RecordOfDrivers, JoinsTheirStates) {
   EXPECT_EQ(number(rows[5], 4), 501);
 }
 
-TEST(RecordOfDrivers, HasTheOthersRowsWhereOneIsNotReceived) {
+TEST(RecordOfDrivers, HasTheOthersRowsWhereThePartsOfOneAreMissing) {
   Record record(driven(3));
   for (Tick tick = 0; tick < 40; ++tick) {
     for (const AgentId id : {2, 0, 1}) {

@@ -62,7 +62,7 @@ TEST_F(LastWords, TheLastRowIsAcknowledgedAtOnce) {
   EXPECT_EQ(acks(record_.deliver(state_of(2), at(1s))), (std::vector<Tick>{1}));
 }
 
-TEST_F(LastWords, AfterASecondIfAnyOfThemIsNotReceived) {
+TEST_F(LastWords, AfterASecondIfTheReportOfAnyOfThemIsMissing) {
   for (const int unheard : {0, 1, 2}) {
     Record record(mission_);
     for (Tick tick = 0; tick <= 2; ++tick) record.deliver(state_of(tick), at(1s));

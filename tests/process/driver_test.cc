@@ -128,7 +128,7 @@ class RobotsWithTheirOwnDrivers : public ByHand {
   }
 };
 
-TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotReceivedAndRefuseASecondDriver) {
+TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneDriverIsSilentAndRefuseASecondDriver) {
   std::filesystem::create_directory(out());
   Program& logger = hand("ergocast-logger", {"--out", out()});
   std::vector<Program*> drivers;

@@ -221,7 +221,7 @@ TEST_F(Restart, KilledLoggerGoesOnInASecondSegmentAndLosesNothing) {
   EXPECT_EQ(ergocast({"report", out()}), 0) << output();
 }
 
-TEST_F(Restart, InRealTimeTheMissionContinuesWithoutEachOfThem) {
+TEST_F(Restart, InRealTimeTheMissionContinuesThoughEachOfThemIsKilled) {
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
   kill_next(kCoordinatorProcess);
   ASSERT_TRUE(logs("coordinator", "taken over")) << printed();

@@ -291,7 +291,7 @@ TEST(WorldAsks, HalfAnAnswerDoesNotMeanThatThereIsNone) {
   }
 }
 
-TEST(WorldAsks, NoAgentThatAnswersAnotherProcess) {
+TEST(WorldAsks, IgnoresAnswersToAnotherProcess) {
   World world = asking_world(small_mission(1));
   for (const Incarnation asked_by : {Incarnation{0}, kWorldLife - 1}) {
     for (const Tick tick : {4, 5}) {
@@ -306,7 +306,7 @@ TEST(WorldAsks, NoAgentThatAnswersAnotherProcess) {
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 9);
 }
 
-TEST(WorldAsks, ForNoTicksOrPlacesThatCannotBe) {
+TEST(WorldAsks, IgnoresAnswersWithImpossibleTicksOrPlaces) {
   const Mission mission = small_mission(1);
   World world = asking_world(mission);
   give(world, command_from(0, mission.timing.tick_count + 1, {300, 400, 0}, {0, 0, 0}), at(0s));

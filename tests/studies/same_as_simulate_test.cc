@@ -81,7 +81,7 @@ double recorded_metric(const std::vector<std::byte>& plan, bool free_domain) {
   return free_domain ? facts.cosine_metric_last : facts.ergodic_metric_last;
 }
 
-TEST(SameAsSimulate, ForEveryScenario) {
+TEST(SameAsSimulate, ForDrawnScenariosWithEveryField) {
   Drawn drawn;
   std::set<std::string> unused = all_fields();
   int stood_for = 0, others = 0, others_that_differ = 0;

@@ -76,7 +76,7 @@ TEST(Liveness, OnlyNewMessagesAreASignOfLife) {
   EXPECT_EQ(liveness.last_sign({3, 7}), at(4s));
 }
 
-TEST(Liveness, KnowsWhenAnyIncarnationOfAKindWasReceived) {
+TEST(Liveness, KnowsTheLastMessageOfAnyIncarnationOfAKind) {
   Liveness liveness;
   liveness.record(sent(kWorld, 7, 5), Bus::kWorld, at(1s));
   liveness.record(sent(kWorld, 8, 1), Bus::kWorld, at(2s));
@@ -89,7 +89,7 @@ TEST(Liveness, KnowsWhenAnyIncarnationOfAKindWasReceived) {
   EXPECT_FALSE(liveness.last_sign_of_kind(kLogger));
 }
 
-TEST(Liveness, ASenderPresumedAliveWasNotReceived) {
+TEST(Liveness, ASenderPresumedAliveHasSentNothingYet) {
   Liveness liveness;
   liveness.presume_alive({3, 7}, at(1s));
   EXPECT_EQ(liveness.last_sign({3, 7}), at(1s));

@@ -29,7 +29,6 @@ const Vehicle& vehicle(const StateAssembler& assembler, std::size_t part) {
 TEST(StateAssembler, IsCompleteOnceAllPartsHaveArrivedInAnyOrder) {
   StateAssembler assembler;
   EXPECT_EQ(assembler.newest(), -1);
-  EXPECT_FALSE(assembler.complete_or_past(0));
   assembler.take(part_of(3, 1, 2, 7));
   assembler.take(part_of(3, 1, 2, 7));
   EXPECT_FALSE(assembler.complete(3));
@@ -47,8 +46,6 @@ TEST(StateAssembler, KeepsTheLastCompleteTickUntilTheNextOneIsComplete) {
   assembler.take(part_of(4, 0, 2, 0, 20));
   EXPECT_EQ(assembler.newest(), 3);
   EXPECT_FALSE(assembler.complete(3)) << "a newer tick has come";
-  EXPECT_TRUE(assembler.complete_or_past(3));
-  EXPECT_FALSE(assembler.complete_or_past(4));
   EXPECT_EQ(vehicle(assembler, 0).position_m.x(), 10);
   assembler.take(part_of(3, 0, 2, 0, 99));
   EXPECT_EQ(vehicle(assembler, 0).position_m.x(), 10) << "an older tick has no effect";

@@ -126,7 +126,7 @@ TEST_F(Doctor, NothingIsSentToARunsPorts) {
   EXPECT_EQ(command.datagrams_heard(), 0);
 }
 
-TEST_F(Doctor, ARunIsReceivedAndNotDisturbed) {
+TEST_F(Doctor, ARunIsFoundAndNotDisturbed) {
   Child run = start("ergocast", {"run", scenario_file("quadrimodal_corners"), "--realtime", "--out",
                                  out(), "--lcm-url", kUrl});
   ASSERT_TRUE(recorded(1000));

@@ -203,7 +203,7 @@ TEST_F(StopCommand, OfSeveralRunsOnOneUrlEndsNoneInOrder) {
   EXPECT_TRUE(undecided.prints("--run-id 00000000000000b2")) << undecided.printed();
 }
 
-TEST_F(StopCommand, InAnEmergencyStopsAllThatAreReceived) {
+TEST_F(StopCommand, InAnEmergencyStopsAllRunsThatItFinds) {
   Program& decided = hand("ergocast", {"stop", "--now"});
   two_runs_speak_until([&] { return decided.printed().find("stopping") != std::string::npos; });
   EXPECT_TRUE(decided.prints("run 00000000000000a1: stopping all vehicles at once"));
