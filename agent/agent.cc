@@ -202,7 +202,7 @@ std::string Agent::blocked_reason() const {
   });
   if (!taken) return "waiting to be admitted";
   return "waiting to be admitted: the roster has another agent " + std::to_string(requested_id_) +
-         ", whose end the coordinator may not have noticed yet";
+         "; if that one has stopped, the coordinator has not noticed it yet";
 }
 
 }  // namespace ergocast

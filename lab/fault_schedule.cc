@@ -22,8 +22,8 @@ double faulty_time_s(const Faults& faults, const Mission& mission) {
 
 FaultSchedule::FaultSchedule(const Faults& faults, const Mission& mission)
     : faulty_s_(faulty_time_s(faults, mission)),
-      events_(fault_events(faults, mission.seed, static_cast<int>(mission.starts_m.size()),
-                           faulty_s_)),
+      events_(
+          fault_events(faults, mission.seed, static_cast<int>(mission.starts_m.size()), faulty_s_)),
       hinders_(lab::hinders(faults, mission.timing.lockstep_timeout_s)) {}
 
 Instant FaultSchedule::next() const {

@@ -29,7 +29,7 @@ std::string unreadable_plan() {
 
 /// The error for a plan that names this version but breaks its rules.
 std::string broken_plan() {
-  return std::string("the mission's plan says that it is of version " ERGOCAST_VERSION
+  return std::string("the mission's plan is of version " ERGOCAST_VERSION
                      ", but breaks that version's rules: it is damaged or another build's") +
          kRemedy;
 }

@@ -15,7 +15,8 @@ namespace ergocast {
 
 class CommandHistory {
  public:
-  /// Takes in a command. A repeat of a tick changes nothing, unless it corrects the velocity to zero.
+  /// Takes in a command. A repeat of a tick changes nothing, unless it corrects the velocity to
+  /// zero.
   void take(const Command& command);
   /// Forgets all commands: another incarnation drives the vehicle.
   void clear() { last_.reset(), before_.reset(); }

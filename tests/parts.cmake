@@ -24,7 +24,6 @@ ergocast_test(NAME core_tests LABELS unit
     core/kinds_test.cc
     core/look_ahead_test.cc
     core/merge_property_test.cc
-    core/mission_fields_test.cc
     core/noise_test.cc
     core/perturbation_test.cc
     core/potential_test.cc
@@ -52,12 +51,13 @@ ergocast_test(NAME team_tests LABELS unit
   SOURCES
     team/beacon_book_test.cc
     team/command_window_test.cc
-    team/hostile_plan_test.cc
+    plan/hostile_plan_test.cc
+    plan/mission_fields_test.cc
     team/liveness_test.cc
     team/median_metric_test.cc
     team/mission_follower_test.cc
     team/participant_test.cc
-    team/plan_test.cc
+    plan/plan_test.cc
     team/radio_range_test.cc
     team/state_assembler_test.cc
     text/input_file_test.cc
@@ -89,7 +89,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     agent/divided_team_test.cc
     agent/foresight_test.cc
     agent/forgetting_test.cc
-    agent/hearing_test.cc
+    agent/receiving_test.cc
     agent/incarnation_test.cc
     agent/mission_repeat_test.cc
     agent/pause_test.cc
@@ -186,7 +186,7 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/geojson_target_test.cc
     scenario/map_target_test.cc
     scenario/plan_proto_test.cc
-    scenario/plan_test.cc
+    scenario/scenario_to_plan_test.cc
     scenario/polygon_flaw_test.cc
     scenario/problems_test.cc
     scenario/scenario_test.cc

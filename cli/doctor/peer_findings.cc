@@ -23,7 +23,7 @@ bool only_large_are_lost(const Loss& loss) {
 
 Finding one_way(const LcmUrl& url, const Peer& peer) {
   return {"peer " + peer.host, Level::kProblem,
-          "one-way: received here, but does not receive this host",
+          "one-way: its probes arrive here, but this host's do not arrive there",
           "What this host sends is lost on the way to " + peer.address +
               ": a wrong route here, a "
               "firewall there, or a switch between that does not pass the group on.",
@@ -100,7 +100,7 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
 
 Finding nobody(const LcmUrl& url, const PeerTest& test) {
   return {"peers", Level::kProblem,
-          "no other host was received (" + std::to_string(test.sent) + " probes sent)",
+          "no probe of another host arrived (" + std::to_string(test.sent) + " sent)",
           "Either no other host ran this test at the same time with the same group and port, or "
           "what it sent did not arrive. Only the other host knows whether it received this one.",
           here_again(url) +
@@ -125,7 +125,8 @@ Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::strin
   if (test.only_received_by_others > 0) {
     findings.push_back(
         {"peers", Level::kProblem,
-         std::to_string(test.only_received_by_others) + " more received by others, but not here",
+         std::to_string(test.only_received_by_others) +
+             " more whose probes reach others, but not this host",
          "One-way towards this host: other hosts receive one that it does not receive.",
          "tcpdump -ni any udp port " + std::to_string(url.base_port) + "   # here: what arrives?"});
   }

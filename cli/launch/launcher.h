@@ -11,8 +11,8 @@
 #include "core/base/ids.h"
 #include "runtime/bus/lcm_url.h"
 #include "runtime/process/child.h"
+#include "runtime/process/sealed_file.h"
 #include "runtime/record/event_log.h"
-#include "runtime/record/sealed_file.h"
 
 namespace ergocast::cli {
 

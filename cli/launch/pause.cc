@@ -126,7 +126,7 @@ class Pausing : public TeamCommand {
              "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
     if (team().holds().size() == kMaxHolds && pauses_)
       return "a mission can be paused " + std::to_string(kMaxHolds) +
-             " times, and this one has been";
+             " times, and this one has been: end it with ergocast stop";
     return "the coordinator names no tick: it may have another key, or receive no world";
   }
 

@@ -30,8 +30,8 @@
 #include "runtime/bus/transport.h"
 #include "runtime/process/key_file.h"
 #include "runtime/process/node.h"
+#include "runtime/process/sealed_file.h"
 #include "runtime/process/signals.h"
-#include "runtime/record/sealed_file.h"
 
 namespace ergocast::cli {
 namespace {

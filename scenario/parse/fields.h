@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table of every number in a scenario: its default and its limits, which
 // docs/reference/scenario.md prints. A mission's numbers have the limits of plan/mission_fields.h
-// and, unless the table says otherwise, the defaults of core/mission/mission.h. scenario/rules/validate.cc has the
-// rules that depend on more than one field.
+// and, unless the table says otherwise, the defaults of core/mission/mission.h.
+// scenario/rules/validate.cc has the rules that depend on more than one field.
 #pragma once
 
 #include <google/protobuf/message.h>

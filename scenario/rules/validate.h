@@ -8,7 +8,8 @@
 namespace ergocast {
 
 /// Reports everything in `scenario` that breaks a limit of scenario.proto, except for problems that
-/// only integration finds (scenario/compile/compile_target.h). A scenario without a target comes from a plan.
+/// only integration finds (scenario/compile/compile_target.h). A scenario without a target comes
+/// from a plan.
 /// @pre the defaults are filled in
 void validate(const proto::Scenario& scenario, Checks& checks);
 

@@ -86,8 +86,10 @@ class SeparationRules {
           "relies on bodies that stay where they stand, and disturbance_m lets them drift",
           "write world.disturbance_intensity: 0, or remove lease_s");
     if (mission_.radio_range_m > 0)
-      lease_problem("needs each agent to receive all others, and world.radio_range_m prevents that",
-                    "remove one of them");
+      lease_problem(
+          "needs the beacons of all agents to reach all others, and world.radio_range_m prevents "
+          "that",
+          "remove one of them");
     if (team > kMostLeasedAgents)
       lease_problem("is for at most " + std::to_string(kMostLeasedAgents) + " agents, not " +
                         std::to_string(team),

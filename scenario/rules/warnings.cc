@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the speed limit with the noise of the law, and the step with the size of the domain.
+// One function for each warning, such as steps, weights, packing, stations and walls.
 #include "scenario/rules/warnings.h"
 
 #include <algorithm>

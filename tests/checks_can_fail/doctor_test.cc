@@ -460,7 +460,8 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
       plant("peer stranger", "it has no mission key and this host has one", "warning", {}, keyed),
       plant("peer stranger", ", lost: ", "warning", {.leaves_out = every_fifth}, test),
       plant("peer stranger", "probes came twice", "note", {.twice = true}, test),
-      plant("peers", "1 more received by others, but not here", "problem", {.gossips = true}, test),
+      plant("peers", "1 more whose probes reach others, but not this host", "problem",
+            {.gossips = true}, test),
       // The output for people, on a terminal.
       {.arguments = {"--peer", "1"}, .wrapper = "env NO_COLOR=1", .on_a_terminal = true},
   };

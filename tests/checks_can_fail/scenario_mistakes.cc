@@ -139,7 +139,7 @@ std::vector<Mistake> mistakes_between_fields() {
       {kLaw, keeping("distance_m: 5 lease_s: 2 guard: true", ""),
        "separation.lease_s: means that no process knows all places"},
       {kLaw, keeping("distance_m: 5 lease_s: 2", "radio_range_m: 50"),
-       "separation.lease_s: needs each agent to receive all others"},
+       "separation.lease_s: needs the beacons of all agents to reach all others"},
       {kLaw, keeping("distance_m: 5 lease_s: 2 disturbance_m: 0.1", ""),
        "separation.lease_s: relies on bodies that stay where they stand"},
       {"agents {", keeping("distance_m: 12", "", "agents { random_count: 22 "),

@@ -79,6 +79,24 @@ TEST(Layering, ModulesOfThePagesImportWhatIsThere) {
   }
 }
 
+/// Whether a module of `folder` may import one of `other`; both are "" for the pages themselves.
+bool may_import(const std::string& folder, const std::string& other) {
+  static const std::map<std::string, std::set<std::string>> kOthers = {
+      {"data", {}}, {"map", {"data"}}, {"panels", {"data", "map"}}, {"study", {}}};
+  const bool is_shared = other.empty();
+  return folder.empty() || folder == other || is_shared || kOthers.at(folder).contains(other);
+}
+
+TEST(Layering, ModulesOfThePagesImportOnlyWhatTheirRoomsMayKnow) {
+  for (const auto& [name, imports] : modules_of_the_pages()) {
+    const std::string folder = std::filesystem::path(name).parent_path();
+    for (const std::string& imported : imports) {
+      EXPECT_TRUE(may_import(folder, std::filesystem::path(imported).parent_path()))
+          << name << " imports " << imported;
+    }
+  }
+}
+
 TEST(Sources, ModulesBeginWithTheirLicenceAndASentenceOfTheirOwn) {
   std::set<std::string> sentences;
   for (const auto& [name, imports] : modules_of_the_pages()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A file that a launcher hands to a process: no process can change it, and only a child that gets
 // it can read it.
-#include "runtime/record/sealed_file.h"
+#include "runtime/process/sealed_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "plan/mission_fields.h"
 #include "plan/plan.h"
 #include "plan/plan.pb.h"
-#include "tests/team/rich_mission.h"
+#include "tests/plan/rich_mission.h"
 
 namespace ergocast {
 namespace {

@@ -3,7 +3,7 @@
 import { averageOf, picture } from './cosine_sums.js';
 import { Places, axesOf } from './places.js';
 import { targetOfModes } from './run.js';
-import { stretchOf } from '../map/space_view.js';
+import { stretchOf } from './stretch.js';
 
 function projectedTrack(track, axes, factors) {
   const places = new Places(track, axes, factors),

@@ -2,7 +2,7 @@
 // Computes the ticks and names of a box's axes.
 import { ticksOf } from '../axes.js';
 import { nameOf } from '../data/places.js';
-import { stretchOf } from './space_view.js';
+import { stretchOf } from '../data/stretch.js';
 
 // Ticks of an axis from the box's corner; their texts are in the scenario's coordinates.
 export function ticksFor(run, axis) {

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Projects a box in perspective from a point around it.
 // It has the methods of View (view.js) that the map uses.
+import { stretchOf } from '../data/stretch.js';
 import { clamp } from '../text.js';
 
 const DISTANCE = 4; // of the eye, in radii of the box's sphere
 const START = { azimuth: -0.55, elevation: 0.42, zoom: 1, dx: 0, dy: 0 };
-const NICE = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];
-
-// Flat boxes are drawn higher than they are: by what factor.
-export function stretchOf([lx, ly, lz]) {
-  const wanted = Math.max(lx, ly) / lz / 4;
-  return NICE.findLast(factor => factor <= Math.max(1, 2 * wanted - 1));
-}
 
 export class SpaceView {
   constructor() {

@@ -4,10 +4,10 @@ import { S, ask, startTail } from './state.js';
 import { buildStrip, seek, showFollowing } from './timeline.js';
 import { buildTeam } from './team.js';
 import { showFacts } from './details.js';
-import { set, showLegend } from '../map/legend.js';
+import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
 import { QUANTITIES } from './chart.js';
-import { beginSpace } from '../map/space_controls.js';
+import { beginSpace } from './space_controls.js';
 import { $, ofModes, put } from '../text.js';
 
 const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';

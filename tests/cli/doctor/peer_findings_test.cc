@@ -23,7 +23,7 @@ TEST(PeerFindings, AllRight) { EXPECT_EQ(finding_of(peer({150, 50})).level, Leve
 TEST(PeerFindings, NoOtherHostIsAProblem) {
   const auto findings = peer_findings(url_of("ttl=1"), {{}, 0, 200, ""}, "0.1.0");
   EXPECT_EQ(findings.at(0).level, Level::kProblem);
-  EXPECT_TRUE(contains(findings[0].found, "no other host was received (200 probes sent)"));
+  EXPECT_TRUE(contains(findings[0].found, "no probe of another host arrived (200 sent)"));
 }
 
 TEST(PeerFindings, OneWayIsAProblem) {

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From a scenario to its plan and back to a scenario's text: both have the same limits.
-#include "plan/plan.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "logger/mission_text.h"
 #include "plan/mission_fields.h"
+#include "plan/plan.h"
 #include "scenario/scenario.pb.h"
 #include "team/messages.h"
+#include "tests/plan/rich_mission.h"
 #include "tests/scenario/scenarios.h"
-#include "tests/team/rich_mission.h"
 
 namespace ergocast {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the bytes into a memfd and seals it, so that the file never gets shorter under a process
 // that maps it.
-#include "runtime/record/sealed_file.h"
+#include "runtime/process/sealed_file.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>

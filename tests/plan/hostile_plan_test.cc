@@ -10,7 +10,7 @@
 #include "plan/mission_limits.h"
 #include "plan/plan.h"
 #include "team/messages.h"
-#include "tests/team/rich_mission.h"
+#include "tests/plan/rich_mission.h"
 
 namespace ergocast {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Offers the views of a box, and one slider for each slice.
-import { S, ask, inSpace } from '../panels/state.js';
+import { S, ask, inSpace } from './state.js';
 import { showLegend } from './legend.js';
 import { nameOf } from '../data/places.js';
-import { canTurn, layout } from '../panels/screen.js';
+import { canTurn, layout } from './screen.js';
 import { rangeOfTarget } from '../data/slices.js';
 import { $, element, put } from '../text.js';
 

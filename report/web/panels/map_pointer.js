@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Handles pointer, wheel and fingers on the map: zoom, move, choose an agent, read a place.
-import { S, inSpace, mapState, shown } from '../panels/state.js';
-import { markersOf } from './markers.js';
+import { S, inSpace, mapState, shown } from './state.js';
+import { markersOf } from '../map/markers.js';
 import { coordinate, nameOf } from '../data/places.js';
 import { stateOf } from '../data/run.js';
-import { hover, pin } from '../panels/team.js';
-import { redraw, view } from '../panels/screen.js';
+import { hover, pin } from './team.js';
+import { redraw, view } from './screen.js';
 import { $, put } from '../text.js';
 
 const PER_PIXEL = 0.008; // radians

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shows which shading, trail, axis, quantity and theme are chosen, and what their colours mean.
 import { themeColours } from '../colours.js';
-import { S, ask, inSpace, shown } from '../panels/state.js';
-import { TAILS } from './map.js';
-import { colourTeam } from '../panels/team.js';
-import { redraw } from '../panels/screen.js';
+import { S, ask, inSpace, shown } from './state.js';
+import { TAILS } from '../map/map.js';
+import { colourTeam } from './team.js';
+import { redraw } from './screen.js';
 import { $, put } from '../text.js';
-import { meaningOf } from '../panels/words.js';
+import { meaningOf } from './words.js';
 
 export function showLegend() {
   const difference = S.layer === 'difference',

@@ -10,7 +10,7 @@
 #include "core/motion/walls.h"
 #include "plan/mission_fields.h"
 #include "team/messages.h"
-#include "tests/team/rich_mission.h"
+#include "tests/plan/rich_mission.h"
 
 namespace ergocast {
 namespace {
