@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/launch/stop_request.h"
+#include "cli/operate/stop_request.h"
 #include "cli/watch/progress.h"
 #include "core/base/ids.h"
 #include "core/mission/mission.h"

@@ -15,9 +15,9 @@
 #include "cli/launch/launcher.h"
 #include "cli/launch/mission_watch.h"
 #include "cli/mission_options.h"
+#include "cli/operate/controlled_page.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
-#include "cli/watch/page_process.h"
 #include "cli/watch/progress.h"
 #include "cli/watch/run_registry.h"
 #include "cli/watch/serve_page.h"
@@ -48,6 +48,7 @@ struct RunOptions : MissionOptions {
   fs::path world;                            ///< empty: ergocast-sim
   std::vector<std::string> world_arguments;  ///< of that program
   bool watch = false;                        ///< serves a page
+  bool control = false;                      ///< on which operators give orders
   PageOptions page;
 };
 
@@ -56,8 +57,8 @@ constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
 
 /// Returns when all processes have ended.
 /// @param page  may be null
-void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, PageProcess* page,
-               StopSignals& signals, ProgressDisplay& display) {
+void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
+               ControlledPage* page, StopSignals& signals, ProgressDisplay& display) {
   int asked = 0;
   while (!launcher.all_ended()) {
     const bool over = mission.stage() == Stage::kOver;
@@ -168,20 +169,16 @@ LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
 }
 
 /// The page of the mission, if it is wanted; an error if it cannot be served.
-std::variant<std::unique_ptr<PageProcess>, std::string> begin_page(const RunOptions& options,
-                                                                   const Launcher::Setup& setup,
-                                                                   ProgressDisplay& display) {
-  if (!options.watch) return std::unique_ptr<PageProcess>();
-  auto started = PageProcess::start({.program = setup.programs / "ergocast",
-                                     .run_dir = setup.run_dir,
-                                     .url = setup.url,
-                                     .run = setup.run,
-                                     .key_file = setup.key_file,
-                                     .page = options.page},
-                                    display);
-  if (auto* page = std::get_if<0>(&started)) {
-    display.print("  page     " + (*page)->url());
-    display.also_to([page = page->get()](const std::string& line) { page->print(line); });
+std::variant<std::unique_ptr<ControlledPage>, std::string> begin_page(const RunOptions& options,
+                                                                      const Launcher::Setup& setup,
+                                                                      ProgressDisplay& display) {
+  if (!options.watch) return std::unique_ptr<ControlledPage>();
+  const BusOptions team{setup.url, setup.run, options.authenticator, options.key_file};
+  auto started = ControlledPage::start(team, setup.run_dir, options.page, options.control, display);
+  if (auto* started_page = std::get_if<0>(&started)) {
+    PageProcess& page = (*started_page)->page();
+    display.print("  page     " + page.url());
+    display.also_to([&page](const std::string& line) { page.print(line); });
   }
   return started;
 }
@@ -247,7 +244,7 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
   if (const auto* problem = std::get_if<std::string>(&watching)) {
     return report_error(kExitUnavailable, *problem);
   }
-  PageProcess* const page = std::get<0>(watching).get();
+  ControlledPage* const page = std::get<0>(watching).get();
   auto entry = RunEntry::write(live_run(setup, scenario));
   if (const auto* problem = std::get_if<std::string>(&entry)) {
     display.print("warning: " + *problem + "; give the other commands --lcm-url");
@@ -264,7 +261,7 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
   const auto summary = amended_summary(scenario, setup, launcher, mission);
   const auto unwritten = write_file(setup.run_dir / kSummaryFile, to_text(summary));
   conclude(setup.run_dir, summary, scenario);
-  if (page != nullptr) show_record(*page, signals);
+  if (page != nullptr) show_record(page->page(), signals);
   if (unwritten) return report_error(kExitFailed, *unwritten);
   return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed
                                                                              : kExitDone;
@@ -359,7 +356,9 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--watch", options->watch,
                     "Show the mission in a browser, and afterwards its record, until Ctrl-C");
   add_page_options(*command, options->page);
-  for (const char* option : {"--port", "--listen"}) command->get_option(option)->needs("--watch");
+  add_control_option(*command, options->control);
+  for (const char* option : {"--port", "--listen", "--control"})
+    command->get_option(option)->needs("--watch");
   command->callback([&action, options] { action = [options] { return run(*options); }; });
 }
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "scenario/scenario.h"
+#include "core/motion/vehicle.h"
 
 namespace ergocast::cli {
 namespace {
@@ -90,6 +90,23 @@ bool MonitoredRun::unheard() const {
 bool MonitoredRun::stands_still() const {
   return std::all_of(vehicles_.begin(), vehicles_.end(),
                      [](const auto& one) { return one.second.velocity_mps.isZero(0); });
+}
+
+MonitoredRun::Standing MonitoredRun::standing() const {
+  Standing found;
+  found.all = static_cast<int>(vehicles_.size());
+  for (const auto& [id, vehicle] : vehicles_) {
+    const Motion motion = knows_mission() ? motion_of(me_.mission(), id) : Motion{};
+    const bool circles = motion.vehicle.min_speed_mps > 0 && me_.is_held(tick_);
+    if (stands(motion, vehicle.velocity_mps)) {
+      ++found.standing;
+    } else if (circles) {
+      ++found.circling;
+    } else {
+      found.moving.push_back(name_of(id));
+    }
+  }
+  return found;
 }
 
 bool MonitoredRun::silent(const Author& agent, Instant now) const {

@@ -69,6 +69,13 @@ class MonitoredRun {
   bool knows_roster() const { return me_.follower().revision() >= 0; }
   /// Whether no vehicle moved in the newest state that names it; true if none was received.
   bool stands_still() const;
+  /// The vehicles in the newest states that name them.
+  struct Standing {
+    int all = 0, standing = 0;
+    int circling = 0;                 ///< in a pause: fixed wings, which cannot stand
+    std::vector<std::string> moving;  ///< the others: "agent 2"
+  };
+  Standing standing() const;
 
   /// Processes that are not silent and have not reported their end: "agent 2", "the world".
   std::vector<std::string> still_there(Instant now) const;

@@ -53,27 +53,37 @@ std::variant<std::unique_ptr<PageProcess>, std::string> PageProcess::start(
 }
 
 PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay& display)
-    : socket_(std::move(socket)), display_(display), log_(open_log(setup.run_dir / "log/run.log")) {
+    : socket_(std::move(socket)), control_token_(setup.control_token), display_(display) {
+  if (!setup.run_dir.empty()) log_ = open_log(setup.run_dir / "log/run.log");
   int ends[2] = {-1, -1};
   if (pipe2(ends, O_CLOEXEC) == 0) {
     until_.emplace(ends[0]);
     running_.emplace(ends[1]);
     program_.descriptors = {socket_.fd(), until_->fd()};
   }
+  if (setup.control != nullptr) {
+    program_.descriptors.push_back(setup.control->fd());
+    program_.environment.push_back(std::string(kControlToken) + '=' + control_token_);
+  }
   auto& command = program_.command;
-  command = {setup.program.string(), "run-page", setup.run_dir.string(), "--lcm-url",
+  command = {setup.program.string(), "run-page", "--lcm-url",
              setup.url.base(),       "--run-id", to_hex(setup.run)};
-  if (!setup.key_file.empty()) {
-    command.insert(command.end(), {"--key-file", setup.key_file.string()});
+  if (!setup.run_dir.empty()) command.push_back(setup.run_dir.string());
+  if (setup.key) {
+    command.insert(command.end(), {"--key-file", program_.hand(setup.key->descriptor())});
   }
   if (!setup.page.listen.empty()) {
     command.insert(command.end(), {"--listen", setup.page.listen});
   }
   if (!socket_.token().empty()) {
-    program_.environment = {std::string(kPageToken) + '=' + socket_.token()};
+    program_.environment.push_back(std::string(kPageToken) + '=' + socket_.token());
   }
-  program_.log = setup.run_dir / "log/page.log";
+  program_.log = setup.run_dir.empty() ? "/dev/null" : setup.run_dir / "log/page.log";
   program_.signal_if_orphaned = SIGKILL;
+}
+
+std::string PageProcess::url() const {
+  return socket_.url() + (control_token_.empty() ? "" : "#control=" + control_token_);
 }
 
 PageProcess::~PageProcess() {

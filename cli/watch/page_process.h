@@ -11,11 +11,13 @@
 #include <string>
 #include <variant>
 
+#include "cli/watch/control_link.h"
 #include "cli/watch/page_socket.h"
 #include "cli/watch/progress.h"
 #include "core/base/ids.h"
 #include "runtime/bus/lcm_url.h"
 #include "runtime/process/child.h"
+#include "runtime/process/sealed_file.h"
 
 namespace spdlog {
 class logger;
@@ -23,21 +25,25 @@ class logger;
 
 namespace ergocast::cli {
 
-/// The process inherits these descriptors, its options (cli/watch/run_page.cc), and an environment
-/// variable that only this user can read.
+/// The process inherits these descriptors, its options (cli/watch/run_page.cc), and environment
+/// variables that only this user can read.
 inline constexpr int kPageSocket = 3;
-inline constexpr int kPageUntil = 4;  ///< a pipe that ends when the mission has ended
+inline constexpr int kPageUntil = 4;    ///< a pipe that ends when the mission has ended
+inline constexpr int kPageControl = 5;  ///< of a page with control: its end of the ControlLink
 inline constexpr const char* kPageToken = "ERGOCAST_PAGE_TOKEN";
+inline constexpr const char* kControlToken = "ERGOCAST_CONTROL_TOKEN";
 
 class PageProcess {
  public:
   struct Setup {
     std::filesystem::path program;  ///< `ergocast`
-    std::filesystem::path run_dir;
+    std::filesystem::path run_dir;  ///< empty: there is none on this host
     LcmUrl url;
     RunId run = 0;
-    std::filesystem::path key_file;  ///< empty: no key
+    std::optional<SealedFile> key;  ///< a key that cannot sign; nothing: no key
     PageOptions page;
+    const ControlLink* control = nullptr;  ///< the page's end; null: the page only shows
+    std::string control_token = {};
   };
 
   /// Returns an error if the page's address cannot be used.
@@ -48,19 +54,24 @@ class PageProcess {
   /// Ends the process.
   ~PageProcess();
 
-  std::string url() const { return socket_.url(); }
+  /// The address that a person opens. What follows # never leaves the browser.
+  std::string url() const;
   /// Starts the process again if it has ended; call it often.
   void attend(Instant now);
   /// Writes a line to the page's log, log/run.log.
   void print(const std::string& line);
-  /// Call when the record is complete: from now on the page shows it.
-  void finish() { running_.reset(); }
+  /// Call when the record is complete: from now on the page shows it, and has no control.
+  void finish() {
+    running_.reset();
+    control_token_.clear();
+  }
 
  private:
   PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay& display);
   void launch(Instant now);
 
   PageSocket socket_;
+  std::string control_token_;
   ProgressDisplay& display_;
   std::shared_ptr<spdlog::logger> log_;  // null: it cannot be opened
   std::optional<Socket> until_;          // the process's end of the pipe

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <utility>
 
+#include "cli/watch/control_request.h"
+
 namespace ergocast::cli {
 namespace {
 
@@ -19,6 +21,10 @@ using httplib::Response;
 /// Limit (Page): length of the address that a browser asks for [bytes]. Beyond it: the answer is
 /// 414.
 constexpr std::size_t kLongest = 1024;  // of a request's target
+
+/// The headers of a request of an operator. A page of another origin cannot set them.
+constexpr const char* kTokenHeader = "X-Ergocast-Token";
+constexpr const char* kRequestHeader = "X-Ergocast-Request";
 
 /// Takes equal time for every text of one length, right or wrong.
 bool same(const std::string& a, const std::string& b) {
@@ -119,7 +125,8 @@ class Server final : public PageServer {
 
   /// Whether the request passes; if not, the answer contains the reason.
   bool admit(const Request& request, Response& response) const {
-    if (request.method != "GET") return refuse(response, 405, "only GET");
+    const bool orders = request.method == "POST" && request.path == "/control" && content_.control;
+    if (request.method != "GET" && !orders) return refuse(response, 405, "only GET");
     if (request.target.size() > kLongest) return refuse(response, 414, "too long");
     const std::string host = request.get_header_value("Host");
     if (request.get_header_value_count("Host") != 1 || !socket_.is_called(host)) {
@@ -134,7 +141,16 @@ class Server final : public PageServer {
     if (request.has_header("Origin") && request.get_header_value("Origin") != "http://" + host) {
       return refuse(response, 403, "not for other sites");
     }
+    if (orders && !may_order(request, response)) return false;
     return socket_.token().empty() || knows_token(request, response);
+  }
+
+  /// A browser names the origin of each POST. The token comes as a header and never as a cookie,
+  /// because a cookie is sent to every port of a host.
+  bool may_order(const Request& request, Response& response) const {
+    if (!request.has_header("Origin")) return refuse(response, 403, "not for other sites");
+    if (same(request.get_header_value(kTokenHeader), content_.control_token)) return true;
+    return refuse(response, 403, "open the address that was printed, with all that follows #");
   }
 
   bool knows_token(const Request& request, Response& response) const {
@@ -167,6 +183,9 @@ class Server final : public PageServer {
       }
       send(response, std::move(record), "application/json");
     });
+    protocol_.Post("/control", [this](const Request& request, Response& response) {
+      pass_on(request, response);
+    });
     protocol_.Get("/events", [this](const Request&, Response& response) {
       if (!content_.events) {
         refuse(response, 404, "there are no events");
@@ -177,6 +196,17 @@ class Server final : public PageServer {
       response.set_content_provider("text/event-stream",
                                     [](std::size_t, httplib::DataSink&) { return false; });
     });
+  }
+
+  void pass_on(const Request& request, Response& response) {
+    const std::string text = request.get_header_value(kRequestHeader);
+    if (!ControlRequest::parse(text)) {
+      refuse(response, 400, "no request of an operator");
+    } else if (!content_.control(text)) {
+      refuse(response, 503, "too many requests at once");
+    } else {
+      response.status = 202;
+    }
   }
 
   /// The text follows the head that cpp-httplib writes. It does not pass through cpp-httplib, so

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serves a page to browsers. It answers only GET, and a request has no other effect.
+// Serves a page to browsers. It answers GET, and such a request has no other effect. A page with
+// control also answers POST to /control.
 //
 // Protection against other pages in the same browser: a foreign Host header is refused (DNS
 // rebinding). Requests of other origins are refused, and no answer allows another origin to read
 // it. Other hosts need a token, which becomes a cookie that no script reads and no other site
-// sends. cli/watch/connections.h protects against clients that are too slow or send too much.
+// sends. A POST needs the page's own origin and the control token in a header, which no foreign
+// page can set. cli/watch/connections.h protects against clients that are too slow or send too
+// much.
 #pragma once
 
 #include <functional>
@@ -26,6 +29,10 @@ class PageServer {
     std::function<Connections::Text()> record;
     /// Makes the event stream of one browser; null: there are no events.
     std::function<Connections::Stream()> events;
+    /// Takes a request of an operator (cli/watch/control_request.h); false if it cannot be passed
+    /// on now. Null: the page only shows.
+    std::function<bool(const std::string&)> control = {};
+    std::string control_token = {};
   };
 
   /// @param socket  accepts the connections

@@ -20,18 +20,6 @@ namespace {
 
 constexpr int kWaiting = 1024;  // connections that the kernel holds for the server
 
-std::string random_token() {
-  std::array<unsigned char, 16> bytes{};
-  if (getrandom(bytes.data(), bytes.size(), 0) != std::ssize(bytes)) {
-    throw std::runtime_error("the system gives no random numbers");
-  }
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
-  }
-  return text;
-}
-
 std::string address_in(const PageOptions& options) {
   return options.listen.empty() ? "127.0.0.1" : options.listen;
 }
@@ -81,6 +69,18 @@ bool is_address(const std::string& name) {
 }
 
 }  // namespace
+
+std::string random_token() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != std::ssize(bytes)) {
+    throw std::runtime_error("the system gives no random numbers");
+  }
+  std::string text;
+  for (const unsigned char byte : bytes) {
+    for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
+  }
+  return text;
+}
 
 PageSocket::PageSocket(Socket socket, const std::string& listen, std::string token)
     : socket_(std::move(socket)),

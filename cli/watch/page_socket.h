@@ -14,6 +14,9 @@ struct PageOptions {
   int port = 0;        ///< 0: kUsualPort, or any
 };
 
+/// 128 random bits in hexadecimal digits. Throws std::runtime_error if the system has none.
+std::string random_token();
+
 class PageSocket {
  public:
   /// The default port, if it is free.

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
 #include "cli/watch/live_watch.h"
+#include "cli/watch/page_control.h"
 #include "cli/watch/page_process.h"
 #include "cli/watch/serve_page.h"
 #include "report/target_density.h"
@@ -59,6 +61,14 @@ bool closed(int pipe) {
   return poll(&end, 1, 0) > 0;
 }
 
+/// The control that this process was handed, if any.
+std::optional<PageControl> page_control() {
+  const char* token = std::getenv(kControlToken);
+  auto link = token != nullptr ? ControlLink::inherited(kPageControl) : std::nullopt;
+  if (!link) return std::nullopt;
+  return PageControl(std::move(*link), token);
+}
+
 int run_page(const RunPageOptions& options) {
   StopSignals signals;
   const char* token = std::getenv(kPageToken);
@@ -66,20 +76,26 @@ int run_page(const RunPageOptions& options) {
   if (const auto* problem = std::get_if<std::string>(&socket)) {
     return report_error(kExitBadInput, *problem + "; `ergocast run --watch` starts this command");
   }
-  auto mission = recorded_mission_or_complain(options.run_dir);
-  if (!mission) return kExitBadInput;
-  auto density = read_target_density(options.run_dir / kTargetDensityFile);
-  const bool drawn = std::holds_alternative<Field>(density);
-  auto opened = LiveWatch::open({options, options.run_dir, std::move(*mission),
-                                 drawn ? std::get<Field>(std::move(density)) : Field()});
+  LiveWatch::Source source{options, options.run_dir, {}, {}};
+  if (!options.run_dir.empty()) {
+    source.mission = recorded_mission_or_complain(options.run_dir);
+    if (!source.mission) return kExitBadInput;
+    auto density = read_target_density(options.run_dir / kTargetDensityFile);
+    if (auto* drawn = std::get_if<Field>(&density)) source.density = std::move(*drawn);
+  }
+  auto opened = LiveWatch::open(std::move(source));
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     return report_error(kExitUnavailable, *problem);
   }
   LiveWatch& watch = *std::get<0>(opened);
   const rlimit former = limit_memory();
-  const auto server = PageServer::make(std::get<PageSocket>(std::move(socket)), watch.content());
+  auto control = page_control();
+  const auto server =
+      PageServer::make(std::get<PageSocket>(std::move(socket)),
+                       control ? control->joined(watch.content()) : watch.content());
   serve_until_stop(*server, signals, [&, over = false]() mutable {
     watch.listen(server->fd());
+    if (control) control->listen();
     if (over || !closed(kPageUntil)) return;
     over = true;
     setrlimit(RLIMIT_DATA, &former);  // a long record may need more; the mission is over
@@ -94,7 +110,8 @@ void add_run_page(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("run-page", "The page's process of `run --watch`");
   command->group("");  // hidden: it is not started by hand
   auto options = std::make_shared<RunPageOptions>();
-  command->add_option("RUN_DIR", options->run_dir, "Run directory")->required()->type_name("DIR");
+  command->add_option("RUN_DIR", options->run_dir, "Run directory, if this host has it")
+      ->type_name("DIR");
   add_bus_options(*command, *options);
   command->add_option("--listen", options->listen, "Address that the socket is bound to");
   command->callback([&action, options] { action = [options] { return run_page(*options); }; });

@@ -12,6 +12,8 @@ namespace ergocast::cli {
 
 /// --port and --listen.
 void add_page_options(CLI::App& app, PageOptions& options);
+/// --control, which --listen excludes. @pre add_page_options()
+void add_control_option(CLI::App& app, bool& control);
 /// Serves until Ctrl-C or SIGTERM comes, at a low priority.
 /// @param wait  waits until the server, or what it shows, has something to do, at most 0.1 s
 void serve_until_stop(PageServer& server, StopSignals& signals, const std::function<void()>& wait);

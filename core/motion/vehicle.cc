@@ -73,11 +73,15 @@ Eigen::Vector3d turned(const Motion& motion, const Eigen::Vector3d& now_mps,
 Eigen::Vector3d mean_of_turn(const Motion& motion, const Eigen::Vector3d& now_mps,
                              const Eigen::Vector3d& then_mps) {
   const double speed_mps = length_of(then_mps);
-  if (speed_mps <= 2 * kStandingShare * motion.speed_limit_mps) return {0, 0, 0};
+  if (stands(motion, then_mps)) return {0, 0, 0};
   return speed_mps / 2 * (heading_of(now_mps) + heading_of(then_mps));
 }
 
 }  // namespace
+
+bool stands(const Motion& motion, const Eigen::Vector3d& v_mps) {
+  return length_of(v_mps) <= 2 * kStandingShare * motion.speed_limit_mps;
+}
 
 Motion motion_of_kind(const Mission& mission, int kind) {
   Motion motion{mission.vehicle, mission.speed_limit_mps, mission.timing.dt_s, mission.domain};

@@ -62,6 +62,10 @@ bool can_drive(const Mission& mission, int kind, AgentId id);
 std::optional<std::string> why_not_of_kind(const Mission& mission, const std::string& name,
                                            AgentId id);
 
+/// Whether a vehicle with the velocity `v_mps` stands: the velocity of a standing unicycle only
+/// shows where it looks.
+bool stands(const Motion& motion, const Eigen::Vector3d& v_mps);
+
 /// Whether any body of the mission is no point.
 bool any_but_points(const Mission& mission);
 

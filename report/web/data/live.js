@@ -110,7 +110,7 @@ function addTold(told, { agents, t_s: t, ergodic_metric: phi }) {
 const toldBefore = past =>
   Object.fromEntries(Object.keys(emptyCurves()).map(key => [key, past[key].map(v => v ?? NaN)]));
 
-// Connects; `page` has began(run), changed(facts), ended(run, why) and lost(text).
+// Connects; `page` has began(run), changed(facts), controlled(state), ended(run, why) and lost(text).
 export function watchLive(page) {
   const rate = new Rate(),
     lateness = new Lateness(),
@@ -189,6 +189,7 @@ export function watchLive(page) {
     }
     page.ended(whole, message.text);
   });
+  on('control', message => page.controlled(message));
   on('notice', message => page.lost(message.text));
   stream.onerror = () => {
     if (!over) page.lost('No connection to ergocast watch; it is tried again.');

@@ -139,7 +139,8 @@ export function connectKeys() {
       e.metaKey ||
       e.altKey ||
       document.querySelector('dialog[open]') ||
-      e.target.tagName === 'SELECT'
+      e.target.tagName === 'SELECT' ||
+      e.target.id === 'operatorName'
     )
       return;
     const action = KEYS[e.key.length === 1 ? e.key.toLowerCase() : e.key];

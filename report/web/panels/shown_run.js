@@ -7,6 +7,7 @@ import { showFacts } from './details.js';
 import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
 import { QUANTITIES } from './chart.js';
+import { hideControl, showControl } from './control.js';
 import { beginSpace } from './space_controls.js';
 import { $, ofModes, put } from '../text.js';
 
@@ -87,7 +88,9 @@ export const livePage = {
     $('authentication').hidden = facts.authenticated && !facts.replay;
     ask();
   },
+  controlled: showControl,
   ended(run, text) {
+    hideControl();
     const at = S.following ? undefined : S.t;
     if (run) showRecord(run, at);
     this.lost('');

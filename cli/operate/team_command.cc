@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Keeps a MonitoredRun for each received run, up to a limit.
-#include "cli/launch/team_command.h"
+#include "cli/operate/team_command.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <utility>
 
 #include "cli/watch/diagnose_silence.h"
 
@@ -62,6 +64,29 @@ bool TeamCommand::listen() {
   transport_->deliver_until(now() + kTurnTime, signals_.fd());
   interrupted_ = interrupted_ || signals_.take() > 0;
   return !interrupted_;
+}
+
+std::optional<int> TeamCommand::choose_run() {
+  if (!look_around()) return interrupted();
+  if (runs_.empty()) return nobody();
+  if (runs_.size() > 1) return choose();
+  transport_->set_run(runs_.begin()->first);
+  return std::nullopt;
+}
+
+std::optional<OrderReport> TeamCommand::obeyed(Order& order) {
+  const MonitoredRun& team = runs_.begin()->second;
+  bool answered = false;
+  while (true) {
+    order.send(team, *transport_, now());
+    const OrderReport report = order.report(team, now());
+    if (report.ended() || report.state == OrderReport::State::kObeyed) return report;
+    if (report.state == OrderReport::State::kAnswered && !std::exchange(answered, true)) {
+      std::printf("%s\n", report.text.c_str());
+      std::fflush(stdout);
+    }
+    if (!listen()) return std::nullopt;
+  }
 }
 
 int TeamCommand::nobody() const {

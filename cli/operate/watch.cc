@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast watch`: serves a page of a record or of a running team.
+// `ergocast watch`: serves a page of a record or of a running team, on which operators may give
+// orders.
 #include <poll.h>
-#include <sys/resource.h>
 
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/operate/controlled_page.h"
+#include "cli/operate/team_command.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
 #include "cli/watch/find_run.h"
@@ -27,12 +30,18 @@ using Json = nlohmann::ordered_json;
 
 /// The period with which deadlines of the page's clients are checked.
 constexpr int kServeMs = 50;
-/// The priority is low, so that the team's processes run first.
-constexpr int kPagePriority = 10;
+
+using namespace std::chrono_literals;
+
+/// The longest time between two looks at the page's requests.
+constexpr auto kAttendPeriod = 50ms;
+/// The coordinator reports the end's reason after the end, and the logger closes the record.
+constexpr auto kLinger = 1s;
 
 struct WatchOptions : BusOptions {
   fs::path run_dir;
   PageOptions page;
+  bool control = false;
 };
 
 void announce(const std::string& url) {
@@ -81,45 +90,61 @@ int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals
   return kExitDone;
 }
 
+/// Finds the only run on a URL.
+class RunFinder : public TeamCommand {
+ public:
+  using TeamCommand::TeamCommand;
+  RunId run() const { return runs_.begin()->first; }
+
+ private:
+  int act() override { return choose_run().value_or(kExitDone); }
+};
+
+/// The page has a process of its own, and this one gives the orders.
+int control_team(WatchOptions options, const fs::path& run_dir, StopSignals& signals) {
+  RunFinder finder(options);
+  if (const int code = finder.carry_out(); code != kExitDone) return code;
+  options.run = finder.run();
+  ProgressDisplay display;
+  auto started = ControlledPage::start(options, run_dir, options.page, true, display);
+  if (const auto* problem = std::get_if<std::string>(&started)) {
+    return report_error(kExitUnavailable, *problem);
+  }
+  ControlledPage& watched = *std::get<0>(started);
+  announce(watched.page().url());
+  std::optional<Instant> over_since;
+  while (signals.take() == 0) {
+    watched.control()->listen(now() + kAttendPeriod, signals.fd());
+    watched.attend(now());
+    if (watched.control()->over() && !over_since) over_since = now();
+    if (over_since && now() - *over_since >= kLinger) watched.page().finish();
+  }
+  return kExitDone;
+}
+
 }  // namespace
 
-void serve_until_stop(PageServer& server, StopSignals& signals, const std::function<void()>& wait) {
-  setpriority(PRIO_PROCESS, 0, kPagePriority);
-  while (signals.take() == 0) {
-    wait();
-    server.serve(now());
-  }
-}
-
-void add_page_options(CLI::App& app, PageOptions& options) {
-  app.add_option("--port", options.port,
-                 "Port of the page (default: 8765, or any if that is taken)")
-      ->check(CLI::Range(1, 65535));
-  app.add_option("--listen", options.listen,
-                 "Address on which other hosts reach the page; it then needs the token that is "
-                 "printed (default: this host only)")
-      ->type_name("ADDRESS");
-}
-
 void add_watch(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("watch", "Show a record or a running team in a browser; sends nothing");
+  auto* command = app.add_subcommand("watch", "Show a record or a running team in a browser");
   auto options = std::make_shared<WatchOptions>();
   command->add_option("RUN_DIR", options->run_dir, "Run directory (default: a running team)")
       ->type_name("DIR");
   add_bus_options(*command, *options);
   describe_search(*command);
   add_page_options(*command, options->page);
+  add_control_option(*command, options->control);
+  command->get_option("--control")->excludes("RUN_DIR");
   command->footer(
-      "Serves the page until Ctrl-C. Exit codes: 0 done; 2 no record, or it is damaged; 3 LCM or "
-      "the\n"
-      "address cannot be used.");
+      "Serves the page until Ctrl-C. Sends nothing, unless --control is given. Exit codes: 0 done;\n"
+      "2 no record, or it is damaged, or several runs are found; 3 LCM or the address cannot be used;\n"
+      "4 --control finds no team.");
   command->callback([&action, options, command] {
     action = [options, command] {
       StopSignals signals;
       if (command->count("RUN_DIR") > 0) return watch_record(*options, signals);
       fs::path run_dir;
       if (const auto code = find_run(*command, *options, &run_dir)) return *code;
+      if (options->control) return control_team(*options, run_dir, signals);
       return watch_team(*options, run_dir, signals);
     };
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The common part of `ergocast stop`, `pause` and `resume`. They listen for the runs on a URL and
-// send a request to one of them. Then they wait until its messages show that it obeys.
+// The common part of the commands that give orders (cli/operate/order.h). They listen for the runs
+// on a URL and give the order to one of them. Then they wait until its messages show that it obeys.
 #pragma once
 
 #include <chrono>
@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/operate/order.h"
 #include "cli/report_error.h"
 #include "cli/team/team_monitor.h"
 #include "runtime/bus/clock.h"
@@ -34,8 +35,7 @@ class TeamCommand {
   /// Finds the run, sends the request and reports the result; returns the exit code.
   virtual int act() = 0;
 
-  /// How long to wait for the first process, for a coordinator, and for a coordinator's answer.
-  static constexpr std::chrono::seconds kListeningTime{3}, kAnswerPatience{5};
+  static constexpr auto kListeningTime = Order::kListeningTime;
   /// Longer than the interval between an agent's messages, so that every other run on this URL is
   /// detected.
   static constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
@@ -45,6 +45,12 @@ class TeamCommand {
   bool look_around();
   /// Listens for one turn. False if a signal arrived.
   bool listen();
+  /// Finds the only run on this URL and listens to it alone. If there is none, or several, prints
+  /// an error and returns the exit code.
+  std::optional<int> choose_run();
+  /// Gives the order to that run until the team obeys or the order has failed, and prints the
+  /// coordinator's answer. Nothing if a signal arrived. @pre choose_run()
+  std::optional<OrderReport> obeyed(Order& order);
   auto waited() const { return now() - since_; }
 
   int nobody() const;

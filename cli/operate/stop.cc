@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/launch/stop_request.h"
-#include "cli/launch/team_command.h"
+#include "cli/operate/stop_order.h"
+#include "cli/operate/stop_request.h"
+#include "cli/operate/team_command.h"
 #include "cli/watch/find_run.h"
 
 namespace ergocast::cli {
@@ -20,13 +21,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long the team may take to exit.
-constexpr auto kLongest = 15s;
 /// After this time the result so far is reported.
 constexpr auto kReportAfter = 250ms;
-/// Without a roster an emergency stop is repeated at least this long, because an unknown process
-/// may miss the first ones.
-constexpr auto kLeastInsistence = 1s;
 constexpr const char* kAtOnce = "stopped at once by `ergocast stop --now` on ";
 
 struct StopOptions : BusOptions {
@@ -48,9 +44,7 @@ class Stopping : public TeamCommand {
   std::optional<int> judge_answers() {
     if (!listen()) return interrupted();
     for (auto& [run, request] : requests_) {
-      const MonitoredRun& team = runs_.at(run);
-      if (!request.code) request.code = verdict(request, team);
-      if (!request.code) report_progress(request, team);
+      if (!request.code) judge(request, runs_.at(run));
     }
     return result();
   }
@@ -58,7 +52,7 @@ class Stopping : public TeamCommand {
  private:
   /// The request to one run.
   struct Request {
-    StopRequest word;
+    StopOrder order;
     Instant since;
     bool reported = false;  // the result so far was reported
     std::optional<int> code = {};
@@ -79,17 +73,14 @@ class Stopping : public TeamCommand {
 
   void send_stop_to(RunId run, const MonitoredRun& team) {
     const char* how = options_.at_once ? kAtOnce : "stopped by `ergocast stop` on ";
-    const auto [at, is_new] =
-        requests_.try_emplace(run, Request{StopRequest(run, false, how + host_name()), now()});
+    const auto [at, is_new] = requests_.try_emplace(
+        run, Request{StopOrder(run, options_.at_once, how + host_name(), now()), now()});
     Request& request = at->second;
     if (is_new) {
-      std::printf("run %s: %s\n", to_hex(run).c_str(),
-                  options_.at_once ? "stopping all vehicles at once"
-                                   : "asking the coordinator to end the mission");
-      std::fflush(stdout);
+      print(run, options_.at_once ? "stopping all vehicles at once"
+                                  : "asking the coordinator to end the mission");
     }
-    const bool obeyed = request.code || (!options_.at_once && team.over());
-    if (!obeyed) request.word.repeat(*transport_, now(), options_.at_once, team.tick());
+    if (!request.code) request.order.send(team, *transport_, now());
   }
 
   /// Runs beyond kMostRuns must stop, too. Other runs, or recordings of them, may fill the table.
@@ -120,82 +111,29 @@ class Stopping : public TeamCommand {
                             "sent to all, but not all were seen to obey: repeat it with --run-id");
   }
 
-  std::vector<std::string> awaited(const MonitoredRun& team) const {
-    return options_.at_once ? team.still_moving(now()) : team.still_there(now());
-  }
-
-  /// The exit code; nullopt while it is unknown.
-  std::optional<int> verdict(const Request& request, const MonitoredRun& team) const {
+  /// Sets the exit code once it is known, and reports the result so far once if the rest takes
+  /// longer.
+  void judge(Request& request, const MonitoredRun& team) const {
     const auto waited = now() - request.since;
-    if (team.unheard()) return waited < kListeningTime ? std::nullopt : std::optional(nobody());
-    const bool world_due = options_.at_once && !team.world_seen() && team.tick() > 0;
-    if (world_due && waited < kListeningTime) return std::nullopt;
-    const auto left = awaited(team);
-    const bool obeyed =
-        options_.at_once ? team.knows_roster() || waited >= kLeastInsistence : team.over();
-    if (obeyed && left.empty()) return conclude(team);
-    if (waited >= kLongest) {
-      return fail(team, "still running: " + listed(left) +
-                            (options_.at_once ? ": end them on their hosts"
-                                              : ": ergocast stop --now stops them at once"));
+    const OrderReport report = request.order.report(team, now());
+    if (team.unheard()) {
+      if (waited >= kListeningTime) request.code = nobody();
+      return;
     }
-    if (obeyed || options_.at_once) return std::nullopt;
-    return why_not_in_order(team, waited);
+    if (report.state == OrderReport::State::kFailed) {
+      request.code = report_error(kExitFailed, "run " + to_hex(team.run()) + ": " + report.text);
+    } else if (report.state == OrderReport::State::kDone) {
+      print(team.run(), report.text);
+      request.code = kExitDone;
+    } else if (!request.reported && waited >= kReportAfter) {
+      request.reported = true;
+      print(team.run(), report.text);
+    }
   }
 
-  std::optional<int> why_not_in_order(const MonitoredRun& team, Instant::duration waited) const {
-    if (!team.coordinator_seen() && waited >= kListeningTime) {
-      return fail(team,
-                  "no coordinator answers, and only a coordinator ends a mission in order: "
-                  "ergocast stop --now stops the team at once");
-    }
-    if (waited >= kAnswerPatience) {
-      return fail(team,
-                  "the coordinator does not end the mission: ergocast stop --now stops "
-                  "the team at once");
-    }
-    return std::nullopt;
-  }
-
-  /// Reports the result so far once, if the rest takes longer.
-  void report_progress(Request& request, const MonitoredRun& team) const {
-    if (request.reported || now() - request.since < kReportAfter) return;
-    request.reported = true;
-    const bool at_once = options_.at_once;
-    const char* obeyed = !at_once ? (team.over() ? "the coordinator has ended the mission"
-                                                 : "the coordinator has not answered yet")
-                         : !team.world_seen()  ? "no world or driver answers yet"
-                         : team.stands_still() ? "all vehicles stand still"
-                                               : "vehicles still move";
-    const auto left = awaited(team);
-    std::printf("run %s: %s%s%s\n", to_hex(team.run()).c_str(), obeyed,
-                left.empty() ? "" : "; waiting for ", listed(left).c_str());
+  static void print(RunId run, const std::string& text) {
+    std::printf("run %s: %s\n", to_hex(run).c_str(), text.c_str());
     std::fflush(stdout);
-  }
-
-  int conclude(const MonitoredRun& team) const {
-    // A mission that never started has moved no vehicle.
-    if (options_.at_once && !team.world_seen() && team.tick() > 0) {
-      return fail(team,
-                  "no messages arrive any more, and none came from a world or driver: it is "
-                  "unknown whether the vehicles stand still: look at them");
-    }
-    if (options_.at_once && !team.stands_still()) {
-      return fail(team, "the world is silent, and in its last state, of " +
-                            team.mission_time(team.tick()) + ", vehicles still move: look at them");
-    }
-    const auto lost = team.lost(now());
-    const std::string but = lost.empty() ? "" : "; " + listed(lost) + " did not confirm it";
-    std::printf("run %s: %s at %s: %s%s\n", to_hex(team.run()).c_str(),
-                options_.at_once ? "stopped" : "the mission has ended",
-                team.mission_time(team.tick()).c_str(),
-                options_.at_once ? "all stand still" : team.reason().c_str(), but.c_str());
-    std::fflush(stdout);
-    return kExitDone;
-  }
-
-  static int fail(const MonitoredRun& team, const std::string& problem) {
-    return report_error(kExitFailed, "run " + to_hex(team.run()) + ": " + problem);
   }
 
   const StopOptions& options_;

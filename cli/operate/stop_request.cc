@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sends the same STOP every 0.1 s, each time with a new sequence number.
-#include "cli/launch/stop_request.h"
+#include "cli/operate/stop_request.h"
 
 #include <chrono>
 #include <utility>

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Connects the desk with the team's buses and with the page's process.
+#include "cli/operate/control.h"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "cli/watch/page_socket.h"
+#include "runtime/bus/clock.h"
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Requests that are taken in at once; the others follow in the next turn.
+constexpr int kRequestsAtOnce = 64;
+/// A page's process that was started again learns the state so.
+constexpr auto kStatePeriod = 500ms;
+
+}  // namespace
+
+std::variant<std::unique_ptr<Control>, std::string> Control::open(
+    const BusOptions& team, std::function<void(const std::string&)> print) {
+  auto links = ControlLink::pair();
+  if (!links) return std::string("no page with control: the system has no descriptors left");
+  std::unique_ptr<Control> control(new Control(team.run, std::move(*links), std::move(print)));
+  auto opened = listen_to_teams(
+      team,
+      [monitored = &control->team_](const Message& message, Bus bus, AgentId transmitter) {
+        if (header_of(message).run == monitored->run())
+          monitored->receive(message, bus, transmitter, now());
+      },
+      [](const Message&, Bus, AgentId) {});
+  if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
+  control->transport_ = std::get<0>(std::move(opened));
+  return control;
+}
+
+Control::Control(RunId run, std::pair<ControlLink, ControlLink> links,
+                 std::function<void(const std::string&)> print)
+    : links_(std::move(links)),
+      print_(std::move(print)),
+      token_(random_token()),
+      team_(run, now()),
+      desk_(host_name()) {}
+
+void Control::attend(Instant now) {
+  transport_->deliver_until(now, -1);
+  for (int i = 0; i < kRequestsAtOnce; ++i) {
+    const auto text = links_.first.receive();
+    if (!text) break;
+    if (const auto request = ControlRequest::parse(*text)) desk_.receive(*request, team_, now);
+  }
+  desk_.advance(team_, *transport_, now);
+  for (const std::string& line : desk_.take_lines()) print_(line);
+  std::string state = desk_.state().dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  if (state == state_ && now < next_state_) return;
+  if (links_.first.send(state)) state_ = std::move(state);
+  next_state_ = now + kStatePeriod;
+}
+
+}  // namespace ergocast::cli

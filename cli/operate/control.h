@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Gives orders to one team for the operators of its page. It listens to the team, and holds the key
+// that signs orders; the page's process has neither that key nor a way to publish them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "cli/operate/control_desk.h"
+#include "cli/team/team_monitor.h"
+#include "cli/watch/control_link.h"
+#include "core/base/ids.h"
+#include "runtime/bus/transport.h"
+#include "runtime/process/node.h"
+
+namespace ergocast::cli {
+
+class Control {
+ public:
+  /// @param team   its run is known, and its key can sign
+  /// @param print  gets the lines of the log
+  /// An error if LCM cannot be used, or the system has no descriptors.
+  static std::variant<std::unique_ptr<Control>, std::string> open(
+      const BusOptions& team, std::function<void(const std::string&)> print);
+
+  /// Takes requests in, follows orders and tells the page. Call at least ten times a second.
+  void attend(Instant now);
+  /// Listens until `until`, or until `wake_fd` is readable. For an owner without another bus.
+  void listen(Instant until, int wake_fd) { transport_->deliver_until(until, wake_fd); }
+
+  /// Whether the mission's end has been received.
+  bool over() const { return team_.over(); }
+  /// The end of the page's process, which inherits it.
+  const ControlLink& page_end() const { return links_.second; }
+  /// What a page must know to ask for anything.
+  const std::string& token() const { return token_; }
+
+ private:
+  Control(RunId run, std::pair<ControlLink, ControlLink> links,
+          std::function<void(const std::string&)> print);
+
+  std::pair<ControlLink, ControlLink> links_;  // ours, and the page's
+  std::function<void(const std::string&)> print_;
+  std::string token_;
+  MonitoredRun team_;
+  ControlDesk desk_;
+  std::unique_ptr<Transport> transport_;
+  std::string state_;  // as the page knows it
+  Instant next_state_{};
+};
+
+}  // namespace ergocast::cli

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps the operator, the last numbers, and the orders that are being followed.
+#include "cli/operate/control_desk.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/operate/pause_order.h"
+#include "cli/operate/stop_order.h"
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using State = OrderReport::State;
+
+std::string called(const ControlRequest& request) {
+  return request.name.empty() ? "an operator without a name" : request.name;
+}
+
+/// "pause", "agent 2 home".
+std::string what(const ControlRequest& request) {
+  switch (request.act) {
+    case ControlAct::kStopNow:
+      return "stop now";
+    case ControlAct::kHome:
+      return "agent " + std::to_string(request.agent) + " home";
+    case ControlAct::kOut:
+      return "agent " + std::to_string(request.agent) + " out of the mission";
+    default:
+      return to_string(request.act);
+  }
+}
+
+const char* word_of(State state) {
+  constexpr const char* kWords[] = {"sent", "answered", "obeyed", "done", "failed"};
+  return kWords[static_cast<int>(state)];
+}
+
+bool pauses_or_resumes(ControlAct act) {
+  return act == ControlAct::kPause || act == ControlAct::kResume;
+}
+
+}  // namespace
+
+bool ControlDesk::Numbers::is_new(const ControlRequest& request) {
+  const auto known = std::find_if(last.begin(), last.end(), [&request](const auto& one) {
+    return one.first == request.operator_id;
+  });
+  if (known == last.end()) {
+    if (last.size() == kMost) last.pop_front();
+    last.emplace_back(request.operator_id, request.number);
+    return true;
+  }
+  if (request.number <= known->second) return false;
+  known->second = request.number;
+  return true;
+}
+
+// ---- requests ----
+
+void ControlDesk::receive(const ControlRequest& request, const MonitoredRun& team, Instant now) {
+  if (!numbers_.is_new(request)) return;  // a repetition
+  if (const auto why = why_refused(request, team, now)) {
+    refused_ = {request, *why};
+    if (over_rate_ <= 1)
+      note(called(request) + " asks for: " + what(request) + ": refused: " + *why);
+    return;
+  }
+  if (is_held_by(request)) operator_->last_sign = now;
+  if (request.act == ControlAct::kHere) return;
+  if (request.act == ControlAct::kTake || request.act == ControlAct::kRelease)
+    return change_operator(request, team, now);
+  give(request, team, now);
+}
+
+std::optional<std::string> ControlDesk::why_refused(const ControlRequest& request,
+                                                    const MonitoredRun& team, Instant now) {
+  if (request.act == ControlAct::kStopNow) return std::nullopt;
+  if (!within_rate(now)) return "too many requests in a second";
+  if (request.act != ControlAct::kTake && !is_held_by(request)) {
+    return operator_ ? operator_->name + " has control now" : "nobody has control: take it first";
+  }
+  if (request.act == ControlAct::kHere || request.act == ControlAct::kRelease) return std::nullopt;
+  if (!window_.admits(request.tick))
+    return "the page has shown nothing new for several seconds: look at the team again";
+  if (request.act == ControlAct::kTake) return std::nullopt;
+  if (team.unheard()) return "no message of the team arrives";
+  const auto going =
+      std::count_if(acts_.begin(), acts_.end(), [](const Act& act) { return !act.over(); });
+  if (going >= static_cast<std::ptrdiff_t>(kMostActs))
+    return "so many orders are not carried out yet";
+  return std::nullopt;
+}
+
+bool ControlDesk::within_rate(Instant now) {
+  if (now - second_ >= 1s) {
+    if (over_rate_ > 1)
+      note(std::to_string(over_rate_) + " requests were refused: too many in a second");
+    second_ = now;
+    in_this_second_ = over_rate_ = 0;
+  }
+  if (in_this_second_ < kMostInASecond) {
+    ++in_this_second_;
+    return true;
+  }
+  ++over_rate_;
+  return false;
+}
+
+bool ControlDesk::is_held_by(const ControlRequest& request) const {
+  return operator_ && operator_->id == request.operator_id;
+}
+
+void ControlDesk::change_operator(const ControlRequest& request, const MonitoredRun& team,
+                                  Instant now) {
+  const std::string when = " at " + team.mission_time(team.tick());
+  if (request.act == ControlAct::kRelease) {
+    note(called(request) + " gives control back" + when);
+    operator_.reset();
+    return;
+  }
+  const bool other = operator_ && !is_held_by(request);
+  note(called(request) + " takes control" + (other ? " from " + operator_->name : "") + when);
+  operator_ = {request.operator_id, called(request), now};
+}
+
+// ---- orders ----
+
+void ControlDesk::give(const ControlRequest& request, const MonitoredRun& team, Instant now) {
+  const auto same = std::find_if(acts_.begin(), acts_.end(), [&request](const Act& act) {
+    return !act.over() && act.request.act == request.act && act.request.agent == request.agent;
+  });
+  if (same != acts_.end()) return;  // it is being carried out
+  end_contradicted(request);
+  make_room();
+  note(called(request) + " asks for: " + what(request) + ", at " + team.mission_time(team.tick()));
+  acts_.push_back({request, team.mission_time(team.tick()), order_for(request, team, now)});
+}
+
+/// Orders that are being followed stay.
+void ControlDesk::make_room() {
+  const auto over = [](const Act& act) { return act.over(); };
+  const auto oldest = std::find_if(acts_.begin(), acts_.end(), over);
+  if (acts_.size() >= kMostActs && oldest != acts_.end()) acts_.erase(oldest);
+}
+
+std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
+                                              const MonitoredRun& team, Instant now) const {
+  const auto stop = [&](bool at_once) {
+    return std::make_unique<StopOrder>(
+        team.run(), at_once,
+        std::string(at_once ? "stopped at once by " : "stopped by ") + called(request) +
+            " on the page of " + host_,
+        now);
+  };
+  switch (request.act) {
+    case ControlAct::kPause:
+      return std::make_unique<PauseOrder>(true, now);
+    case ControlAct::kResume:
+      return std::make_unique<PauseOrder>(false, now);
+    case ControlAct::kStop:
+      return stop(false);
+    case ControlAct::kStopNow:
+      return stop(true);
+    default:
+      return nullptr;
+  }
+}
+
+/// A pause that still waits for robots to stand ends with a resumption, and the reverse.
+void ControlDesk::end_contradicted(const ControlRequest& request) {
+  if (!pauses_or_resumes(request.act)) return;
+  for (Act& act : acts_) {
+    if (!act.over() && pauses_or_resumes(act.request.act) && act.request.act != request.act) {
+      note(what(act.request) + " of " + called(act.request) + ": " + act.report.text + "; then " +
+           called(request) + " asks for: " + what(request));
+      act.order.reset();
+    }
+  }
+}
+
+void ControlDesk::advance(const MonitoredRun& team, Transport& transport, Instant now) {
+  window_.note(team.tick(), true, now);
+  if (operator_ && now - operator_->last_sign > kSilence) {
+    note(operator_->name + " loses control at " + team.mission_time(team.tick()) +
+         ": the browser has been silent for " + std::to_string(kSilence.count()) + " s");
+    operator_.reset();
+  }
+  for (Act& act : acts_) {
+    if (act.over()) continue;
+    act.order->send(team, transport, now);
+    act.report = act.order->report(team, now);
+    if (!act.report.ended()) continue;
+    note(what(act.request) + " of " + called(act.request) + ", asked for at " + act.at + ": " +
+         act.report.text);
+    act.order.reset();
+  }
+}
+
+nlohmann::ordered_json ControlDesk::state() const {
+  using Json = nlohmann::ordered_json;
+  Json state;
+  state["operator"] =
+      operator_ ? Json{{"id", operator_->id}, {"name", operator_->name}} : Json(nullptr);
+  Json acts = Json::array();
+  for (const Act& act : acts_) {
+    acts.push_back({{"operator", act.request.operator_id},
+                    {"name", called(act.request)},
+                    {"number", act.request.number},
+                    {"what", what(act.request)},
+                    {"at", act.at},
+                    {"state", word_of(act.report.state)},
+                    {"text", act.report.text}});
+  }
+  state["acts"] = std::move(acts);
+  state["refused"] = refused_ ? Json{{"operator", refused_->first.operator_id},
+                                     {"number", refused_->first.number},
+                                     {"what", what(refused_->first)},
+                                     {"text", refused_->second}}
+                              : Json(nullptr);
+  return state;
+}
+
+}  // namespace ergocast::cli

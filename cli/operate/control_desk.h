@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Decides who may order what from a page, and follows the orders. No clock, socket or output.
+//
+// At most one operator has control. Another one takes it over, visibly for both. An operator whose
+// browser sends nothing for 10 s loses it, and the mission goes on as it is. Only the operator's
+// requests become orders, with one exception: whoever has the page's token may stop the team at
+// once.
+//
+// A request counts once: its number must be greater than any before of the same operator, and it
+// names the newest tick that the page has shown, which must be recent (team/command_window.h). A
+// stop at once is obeyed at any tick, because a late one is safer than none.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/operate/order.h"
+#include "cli/watch/control_request.h"
+#include "core/base/ids.h"
+#include "team/command_window.h"
+
+namespace ergocast::cli {
+
+class ControlDesk {
+ public:
+  /// Limit (Page): silence of an operator's browser [s]. Beyond it: the operator loses control.
+  static constexpr std::chrono::seconds kSilence{10};
+  /// Limit (Page): requests of operators in a second, other than to stop at once. Beyond it: they
+  /// are refused.
+  static constexpr int kMostInASecond = 20;
+  /// Limit (Page): acts of operators that the page shows. Beyond it: the oldest are not shown; the
+  /// log has all.
+  static constexpr std::size_t kMostActs = 8;
+
+  /// @param host  named as the place of the operator in the record of a stop
+  explicit ControlDesk(std::string host) : host_(std::move(host)) {}
+
+  /// Takes a request in: it becomes an order, or is refused.
+  void receive(const ControlRequest& request, const MonitoredRun& team, Instant now);
+  /// Sends what is due, and judges what the team has reported. Call at least ten times a second.
+  void advance(const MonitoredRun& team, Transport& transport, Instant now);
+
+  /// What every page shows: {"operator", "acts", "refused"}.
+  nlohmann::ordered_json state() const;
+  /// Lines for the log since the last call: who asked for what and when, and what came of it.
+  std::vector<std::string> take_lines() { return std::exchange(lines_, {}); }
+
+ private:
+  struct Operator {
+    std::uint32_t id;
+    std::string name;
+    Instant last_sign;
+  };
+  struct Act {
+    ControlRequest request;
+    std::string at;  ///< mission time
+    std::unique_ptr<Order> order;
+    OrderReport report = {};
+    bool over() const { return order == nullptr; }
+  };
+  /// The last number of each operator.
+  struct Numbers {
+    /// Of operators whose numbers are remembered.
+    static constexpr std::size_t kMost = 64;
+    std::deque<std::pair<std::uint32_t, std::int64_t>> last;
+
+    bool is_new(const ControlRequest& request);
+  };
+
+  std::optional<std::string> why_refused(const ControlRequest& request, const MonitoredRun& team,
+                                         Instant now);
+  bool within_rate(Instant now);
+  bool is_held_by(const ControlRequest& request) const;
+  void change_operator(const ControlRequest& request, const MonitoredRun& team, Instant now);
+  void give(const ControlRequest& request, const MonitoredRun& team, Instant now);
+  std::unique_ptr<Order> order_for(const ControlRequest& request, const MonitoredRun& team,
+                                   Instant now) const;
+  void end_contradicted(const ControlRequest& request);
+  void make_room();
+  void note(const std::string& line) { lines_.push_back("control: " + line); }
+
+  std::string host_;
+  std::optional<Operator> operator_;
+  Numbers numbers_;
+  CommandWindow window_;
+  std::deque<Act> acts_;                                           // the newest last
+  std::optional<std::pair<ControlRequest, std::string>> refused_;  // the last, and why
+  std::vector<std::string> lines_;
+  Instant second_{};
+  int in_this_second_ = 0, over_rate_ = 0;
+};
+
+}  // namespace ergocast::cli

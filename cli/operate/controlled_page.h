@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A page in a process of its own, and the control that it may have in this one.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "cli/operate/control.h"
+#include "cli/watch/page_process.h"
+#include "cli/watch/progress.h"
+#include "core/base/ids.h"
+#include "runtime/process/node.h"
+
+namespace ergocast::cli {
+
+class ControlledPage {
+ public:
+  /// Starts the page's process. The page shows `team`, and with control gives orders to it.
+  /// An error if the page's address or LCM cannot be used.
+  /// @param display  gets the lines about the page and about control; it outlives the page
+  static std::variant<std::unique_ptr<ControlledPage>, std::string> start(
+      const BusOptions& team, const std::filesystem::path& run_dir, const PageOptions& page,
+      bool with_control, ProgressDisplay& display);
+
+  PageProcess& page() { return *page_; }
+  /// Null: the page only shows.
+  Control* control() { return control_.get(); }
+  /// Call at least ten times a second.
+  void attend(Instant now);
+
+ private:
+  std::unique_ptr<Control> control_;
+  std::unique_ptr<PageProcess> page_;
+};
+
+}  // namespace ergocast::cli

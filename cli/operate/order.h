@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An order of an operator to a running team. It is sent until the team's own messages show that the
+// team obeys.
+//
+// `ergocast pause`, `resume`, `stop` and `recall` and the buttons of the page give the same orders.
+// An order has no clock and prints nothing.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "cli/team/team_monitor.h"
+#include "core/base/ids.h"
+#include "runtime/bus/transport.h"
+
+namespace ergocast::cli {
+
+/// What the team has reported about an order.
+struct OrderReport {
+  enum class State {
+    kSent,      ///< nothing shows that the team obeys
+    kAnswered,  ///< the coordinator has answered; robots go on until the tick that it names
+    kObeyed,    ///< the team obeys; robots may still brake, or be on their way
+    kDone,      ///< all robots have reported it
+    kFailed,    ///< `text` has the cause and the remedy
+  };
+  State state = State::kSent;
+  std::string text;  ///< a sentence for people, without a full stop
+
+  /// Whether nothing more is to come.
+  bool ended() const { return state == State::kDone || state == State::kFailed; }
+};
+
+class Order {
+ public:
+  /// How long to wait for the first process of a team, and for a coordinator.
+  static constexpr std::chrono::seconds kListeningTime{3};
+  /// How long to wait for a coordinator's answer.
+  static constexpr std::chrono::seconds kAnswerPatience{5};
+
+  virtual ~Order() = default;
+
+  /// Sends what is due.
+  /// @param transport  of the team's run
+  virtual void send(const MonitoredRun& team, Transport& transport, Instant now) = 0;
+  /// Call after send(), with the same team.
+  virtual OrderReport report(const MonitoredRun& team, Instant now) const = 0;
+};
+
+/// "4 of 6 stand, 1 circles; agent 2 still moves", of the newest states of the world; a fixed wing
+/// cannot stand.
+std::string standing_text(const MonitoredRun& team);
+
+}  // namespace ergocast::cli

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Asks for the mission until its holds are known, then repeats PAUSE until the next change is
+// named.
+#include "cli/operate/pause_order.h"
+
+#include <chrono>
+#include <cstdio>
+
+#include "runtime/bus/random_identity.h"
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using State = OrderReport::State;
+
+/// How long to wait for the whole mission; agents of a large team send it in turn.
+constexpr auto kMissionPatience = 20s;
+constexpr auto kPeriod = 100ms;
+
+std::string in_seconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, ", in %.1f s", seconds);
+  return text;
+}
+
+}  // namespace
+
+PauseOrder::PauseOrder(bool pauses, Instant now)
+    : pauses_(pauses), header_{0, kOperator, random_identity(), 0, 0}, since_(now) {}
+
+/// Whether MISSION names the tick of the change.
+bool PauseOrder::is_named(const MonitoredRun& team) const {
+  return is_open(team.holds()) == pauses_;
+}
+
+void PauseOrder::send(const MonitoredRun& team, Transport& transport, Instant now) {
+  if (team.over()) return;
+  if (team.is_running() && !changes_) {
+    changes_ = named_changes(team.holds());
+    obsolete_ = is_named(team);
+    since_ = now;
+    next_ = now;
+  }
+  was_named_ = was_named_ || (changes_ && is_named(team));
+  if (was_named_ || now < next_) return;
+  next_ = now + kPeriod;
+  ++header_.sequence;
+  header_.run = team.run();
+  if (!changes_) {
+    // The coordinator sends MISSION once a second; an agent repeats it at once.
+    Hello question;
+    question.header = header_;
+    question.header.tick = -1;
+    return transport.publish({Bus::kSwarm, question});
+  }
+  header_.tick = team.tick();
+  transport.publish({Bus::kSwarm, Pause{header_, *changes_, {}}});
+}
+
+OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {
+  if (!changes_) return without_mission(team, now);
+  if (team.over()) return {State::kFailed, "the mission had already ended: " + team.reason()};
+  if (!is_named(team) && was_named_)
+    return {State::kDone, pauses_ ? "the mission was resumed" : "the mission was paused again"};
+  if (!is_named(team)) return unnamed(team, now);
+  return pauses_ ? paused(team) : resumed(team);
+}
+
+OrderReport PauseOrder::without_mission(const MonitoredRun& team, Instant now) const {
+  if (team.over()) return {State::kFailed, "the mission is over: " + team.reason()};
+  if (now - since_ < kMissionPatience) return {State::kSent, "waiting for the mission"};
+  return {State::kFailed,
+          team.knows_mission()
+              ? "the mission has not begun: it waits for its quorum, and no vehicle moves"
+              : "the mission was not received: is its coordinator running?"};
+}
+
+OrderReport PauseOrder::unnamed(const MonitoredRun& team, Instant now) const {
+  if (now - since_ < kAnswerPatience) return {State::kSent, "the coordinator has not answered yet"};
+  return {State::kFailed, why_not(team)};
+}
+
+/// In real time the tick comes two seconds later, and vehicles move until then.
+OrderReport PauseOrder::paused(const MonitoredRun& team) const {
+  const Tick named = team.holds().back().from;
+  const std::string when = team.mission_time(named);
+  if (team.tick() < named) {
+    return {State::kAnswered, "the coordinator pauses the mission at " + when +
+                                  in_seconds(team.seconds_until(named))};
+  }
+  const bool all_stand = team.standing().moving.empty();
+  return {all_stand ? State::kDone : State::kObeyed,
+          (obsolete_ ? "the mission is paused already, at " : "paused at ") + when + ": " +
+              standing_text(team)};
+}
+
+/// Nothing depends on its time of arrival, so no process waits for it.
+OrderReport PauseOrder::resumed(const MonitoredRun& team) const {
+  if (obsolete_ || team.holds().empty()) return {State::kDone, "the mission is not paused"};
+  const Tick named = team.holds().back().until;
+  const std::string when = "the mission goes on at " + team.mission_time(named);
+  if (team.tick() >= named) return {State::kDone, when};
+  return {State::kObeyed, when + in_seconds(team.seconds_until(named))};
+}
+
+std::string PauseOrder::why_not(const MonitoredRun& team) const {
+  if (!team.coordinator_seen())
+    return "no coordinator answers, and only a coordinator names the tick: start one with "
+           "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
+  if (team.holds().size() == kMaxHolds && pauses_)
+    return "a mission can be paused " + std::to_string(kMaxHolds) +
+           " times, and this one has been: end it with ergocast stop";
+  return "the coordinator names no tick: it may have another key, or receive no world";
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The order to pause a mission, or to resume it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "cli/operate/order.h"
+#include "team/messages.h"
+
+namespace ergocast::cli {
+
+class PauseOrder final : public Order {
+ public:
+  /// @param pauses  whether it pauses the mission, or resumes it
+  PauseOrder(bool pauses, Instant now);
+
+  void send(const MonitoredRun& team, Transport& transport, Instant now) override;
+  OrderReport report(const MonitoredRun& team, Instant now) const override;
+
+ private:
+  bool is_named(const MonitoredRun& team) const;
+  OrderReport without_mission(const MonitoredRun& team, Instant now) const;
+  OrderReport unnamed(const MonitoredRun& team, Instant now) const;
+  OrderReport paused(const MonitoredRun& team) const;
+  OrderReport resumed(const MonitoredRun& team) const;
+  std::string why_not(const MonitoredRun& team) const;
+
+  bool pauses_;
+  Header header_;
+  Instant since_, next_{};
+  std::optional<std::int32_t> changes_;  // as counted when the mission was first known
+  bool obsolete_ = false;                // the mission was already as the order wants it
+  bool was_named_ = false;
+};
+
+}  // namespace ergocast::cli

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads a request field by field; whatever is not expected makes it none.
+#include "cli/watch/control_request.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/mission/kinds.h"
+#include "text/printable.h"
+
+namespace ergocast::cli {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kNames[] = {"take", "release",  "here", "pause", "resume",
+                                  "stop", "stop-now", "home", "out"};
+
+std::optional<std::int64_t> whole_number(const json& object, const char* key, std::int64_t least,
+                                         std::int64_t most) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number_integer()) return std::nullopt;
+  if (found->is_number_unsigned() &&
+      found->get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()})
+    return std::nullopt;
+  const auto value = found->get<std::int64_t>();
+  if (value < least || value > most) return std::nullopt;
+  return value;
+}
+
+std::optional<std::string> word(const json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_string()) return std::nullopt;
+  return found->get<std::string>();
+}
+
+/// A name stands in one line of the log.
+bool is_name(const std::string& text) {
+  return text.size() <= ControlRequest::kLongestName && printable(text) == text &&
+         text.find_first_of("\n\t") == text.npos;
+}
+
+}  // namespace
+
+const char* to_string(ControlAct act) { return kNames[static_cast<int>(act)]; }
+
+std::optional<ControlRequest> ControlRequest::parse(std::string_view text) {
+  if (text.size() > kLongest) return std::nullopt;
+  const json object = json::parse(text, nullptr, false);
+  if (!object.is_object()) return std::nullopt;
+  const auto id = whole_number(object, "operator", 1, std::numeric_limits<std::uint32_t>::max());
+  const auto number = whole_number(object, "number", 1, std::int64_t{1} << 53);
+  const auto tick = whole_number(object, "tick", 0, std::int64_t{1} << 53);
+  const auto name = word(object, "name"), act = word(object, "act");
+  if (!id || !number || !tick || !name || !act || !is_name(*name)) return std::nullopt;
+  const auto known = std::find(std::begin(kNames), std::end(kNames), *act);
+  if (known == std::end(kNames)) return std::nullopt;
+  ControlRequest request{.operator_id = static_cast<std::uint32_t>(*id),
+                         .name = *name,
+                         .number = *number,
+                         .tick = *tick,
+                         .act = static_cast<ControlAct>(std::distance(std::begin(kNames), known))};
+  const bool names_agent = request.act == ControlAct::kHome || request.act == ControlAct::kOut;
+  const auto agent = whole_number(object, "agent", 0, kMaxAgents - 1);
+  if (names_agent != object.contains("agent") || (names_agent && !agent)) return std::nullopt;
+  if (object.size() != (names_agent ? 6U : 5U)) return std::nullopt;
+  if (agent) request.agent = static_cast<AgentId>(*agent);
+  return request;
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an operator asks for on the page of `ergocast run --watch --control`.
+//
+// A browser sends a request as JSON. The page's process checks its form and hands it to the process
+// that started it. That process decides (cli/operate/control_desk.h), and trusts no page.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/base/ids.h"
+
+namespace ergocast::cli {
+
+enum class ControlAct {
+  kTake,     ///< becomes the operator, in the place of another one
+  kRelease,  ///< is the operator no longer
+  kHere,     ///< is still the operator
+  kPause,
+  kResume,
+  kStop,     ///< in order
+  kStopNow,  ///< at once
+  kHome,     ///< one agent goes home
+  kOut,      ///< one agent leaves the mission
+};
+/// "take", "release", "here", "pause", "resume", "stop", "stop-now", "home" or "out".
+const char* to_string(ControlAct act);
+
+struct ControlRequest {
+  /// Limit (Page): length of a request of an operator [bytes]. Beyond it: it is refused with 400.
+  static constexpr std::size_t kLongest = 512;
+  /// Limit (Page): length of an operator's name [bytes]. Beyond it: the request is refused with
+  /// 400.
+  static constexpr std::size_t kLongestName = 48;
+
+  std::uint32_t operator_id = 0;  ///< random, one for each page that was opened; not secret
+  std::string name;               ///< as the operator calls himself; printable UTF-8
+  std::int64_t number = 0;        ///< greater than in each request before of this operator
+  Tick tick = 0;                  ///< the newest that the page has shown
+  ControlAct act = ControlAct::kHere;
+  AgentId agent = kUnassigned;  ///< of kHome and kOut
+
+  /// Nothing if it is no request: unknown or missing fields, wrong types, numbers out of range.
+  static std::optional<ControlRequest> parse(std::string_view text);
+};
+
+}  // namespace ergocast::cli

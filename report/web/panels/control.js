@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lets an operator give orders to a running team, and says what the team has reported of each.
+import { S } from './state.js';
+import { $, put } from '../text.js';
+
+const CONFIRM_MS = 3000, // for a second press
+  HERE_MS = 3000, // the server takes control from a browser that is silent for 10 s
+  SEND_MS = 5000;
+
+// The right to give orders is in the address, after #. It stays in this page's memory: neither the address
+// bar, the history nor a cookie keeps it.
+const token = takeToken();
+const me = { id: crypto.getRandomValues(new Uint32Array(1))[0] || 1, number: 0, mine: false };
+let armed = null, // {button, timer}: waits for its second press
+  shownAct = '', // the newest act, its state, and what was said of it
+  shownRefusal = 0;
+
+function takeToken() {
+  const wishes = new URLSearchParams(location.hash.slice(1)),
+    found = wishes.get('control');
+  if (found === null) return null;
+  wishes.delete('control');
+  const rest = wishes.toString();
+  history.replaceState(null, '', location.pathname + location.search + (rest ? `#${rest}` : ''));
+  return found;
+}
+
+const say = text => put($('controlText'), text);
+const speak = text => put($('spoken'), text);
+
+// A header holds ASCII only.
+const ascii = text =>
+  text.replace(/[\u007f-\uffff]/g, c => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`);
+
+async function send(act, agent) {
+  const request = {
+    operator: me.id,
+    name: $('operatorName').value.trim(),
+    number: ++me.number,
+    tick: S.facts?.state?.world_tick ?? 0,
+    act,
+  };
+  if (agent !== undefined) request.agent = agent;
+  try {
+    const answer = await fetch('control', {
+      method: 'POST',
+      headers: { 'X-Ergocast-Token': token, 'X-Ergocast-Request': ascii(JSON.stringify(request)) },
+      cache: 'no-store',
+      signal: AbortSignal.timeout(SEND_MS),
+    });
+    if (answer.status === 202) return;
+    complain(`${act}: not sent: ${(await answer.text()).trim()}`);
+  } catch {
+    complain(`${act}: not sent: no connection to the page’s server. Press again.`);
+  }
+}
+
+function complain(text) {
+  say(text);
+  speak(text);
+}
+
+function disarm() {
+  if (!armed) return;
+  clearTimeout(armed.timer);
+  put(armed.button, armed.button.dataset.label);
+  armed.button.classList.remove('armed');
+  armed = null;
+}
+
+// Every order but the stop at once needs a second press, so that no order comes by accident.
+function press(button) {
+  const { act, label } = button.dataset;
+  if (armed?.button === button) {
+    disarm();
+    give(act, label);
+    return;
+  }
+  disarm();
+  armed = { button, timer: setTimeout(disarm, CONFIRM_MS) };
+  button.classList.add('armed');
+  put(button, `Again: ${label}`);
+  speak(`Press again within 3 seconds: ${label}`);
+}
+
+function give(act, label) {
+  say(`${label}: sent`);
+  const named = act === 'home' || act === 'out';
+  send(act, named ? Number($('orderedAgent').value) : undefined);
+}
+
+// The agents that can be chosen; the one that is pinned is.
+function listAgents() {
+  const select = $('orderedAgent'),
+    ids = (S.facts?.state?.agents ?? []).map(agent => agent.id).sort((a, b) => a - b),
+    [pinned] = S.pins;
+  if ([...select.options].map(option => Number(option.value)).join() !== ids.join()) {
+    const chosen = select.value;
+    select.replaceChildren(...ids.map(id => new Option(`agent ${id}`, id)));
+    if (ids.includes(Number(chosen))) select.value = chosen;
+  }
+  if (S.pins.size === 1 && select.dataset.pinned !== String(pinned)) {
+    select.value = pinned;
+    select.dataset.pinned = pinned;
+  }
+}
+
+function showHolder(operator) {
+  const mine = operator?.id === me.id;
+  if (me.mine && !mine)
+    complain(operator ? `${operator.name} has taken control from you.` : 'You no longer have control.');
+  me.mine = mine;
+  put(
+    $('holder'),
+    mine ? 'You have control' : operator ? `${operator.name} has control` : 'Nobody has control',
+  );
+  put($('take'), operator && !mine ? 'Take over' : 'Take control');
+  $('take').hidden = $('operatorName').hidden = mine;
+  $('release').hidden = !mine;
+  $('orders').hidden = !mine;
+  if (!mine) disarm();
+}
+
+function showAct(acts) {
+  const act = acts[acts.length - 1];
+  if (!act) return;
+  const name = act.operator === me.id ? '' : ` by ${act.name}`,
+    text = `${act.what}${name}, ${act.at}: ${act.text || 'sent'}`;
+  if (act.state === 'failed') $('controlText').classList.add('bad');
+  else $('controlText').classList.remove('bad');
+  const key = [act.operator, act.number, act.state].join();
+  if (key !== shownAct) speak(text);
+  shownAct = key;
+  say(text);
+}
+
+function showRefusal(refused) {
+  if (refused?.operator !== me.id || refused.number <= shownRefusal) return false;
+  shownRefusal = refused.number;
+  complain(`${refused.what}: refused: ${refused.text}`);
+  return true;
+}
+
+// The state of control, as the server tells it: {operator, acts, refused}.
+export function showControl({ operator, acts, refused }) {
+  $('control').hidden = false;
+  $('readOnly').hidden = token !== null;
+  $('stopNow').hidden = $('take').parentElement.hidden = token === null;
+  if (token === null) {
+    put($('holder'), operator ? `${operator.name} has control` : 'Nobody has control');
+    $('orders').hidden = true;
+  } else {
+    showHolder(operator);
+    listAgents();
+  }
+  if (!showRefusal(refused)) showAct(acts);
+}
+
+export function hideControl() {
+  disarm();
+  me.mine = false;
+  $('control').hidden = true;
+}
+
+export function connectControl() {
+  $('stopNow').onclick = () => give('stop-now', 'Stop now');
+  $('take').onclick = () => send('take');
+  $('release').onclick = () => send('release');
+  for (const button of document.querySelectorAll('#orders [data-act]')) {
+    button.dataset.label = button.textContent;
+    button.onclick = () => press(button);
+  }
+  setInterval(() => {
+    if (me.mine) send('here');
+  }, HERE_MS);
+}
