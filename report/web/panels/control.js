@@ -13,7 +13,8 @@ const token = takeToken();
 const me = { id: crypto.getRandomValues(new Uint32Array(1))[0] || 1, number: 0, mine: false };
 let armed = null, // {button, timer}: waits for its second press
   shownAct = '', // the newest act, its state, and what was said of it
-  shownRefusal = 0;
+  shownRefusal = 0,
+  chosenByPin;
 
 function takeToken() {
   const wishes = new URLSearchParams(location.hash.slice(1)),
@@ -51,7 +52,7 @@ async function send(act, agent) {
     if (answer.status === 202) return;
     complain(`${act}: not sent: ${(await answer.text()).trim()}`);
   } catch {
-    complain(`${act}: not sent: no connection to the page’s server. Press again.`);
+    complain(`${act}: no answer from the page’s server: it may not have been sent. Press again.`);
   }
 }
 
@@ -89,20 +90,19 @@ function give(act, label) {
   send(act, named ? Number($('orderedAgent').value) : undefined);
 }
 
-// The agents that can be chosen; the one that is pinned is.
-function listAgents() {
+// The agents that can be chosen. Whichever is pinned on the map or in the table becomes the choice.
+export function listAgents() {
+  if (!me.mine) return;
   const select = $('orderedAgent'),
     ids = (S.facts?.state?.agents ?? []).map(agent => agent.id).sort((a, b) => a - b),
     [pinned] = S.pins;
   if ([...select.options].map(option => Number(option.value)).join() !== ids.join()) {
     const chosen = select.value;
     select.replaceChildren(...ids.map(id => new Option(`agent ${id}`, id)));
-    if (ids.includes(Number(chosen))) select.value = chosen;
+    if (chosen !== '' && ids.includes(Number(chosen))) select.value = chosen;
   }
-  if (S.pins.size === 1 && select.dataset.pinned !== String(pinned)) {
-    select.value = pinned;
-    select.dataset.pinned = pinned;
-  }
+  if (S.pins.size === 1 && chosenByPin !== pinned) select.value = pinned;
+  chosenByPin = pinned;
 }
 
 function showHolder(operator) {
@@ -125,7 +125,7 @@ function showAct(acts) {
   const act = acts[acts.length - 1];
   if (!act) return;
   const name = act.operator === me.id ? '' : ` by ${act.name}`,
-    text = `${act.what}${name}, ${act.at}: ${act.text || 'sent'}`;
+    text = `${act.what}${name}: ${act.text || 'sent'}`;
   if (act.state === 'failed') $('controlText').classList.add('bad');
   else $('controlText').classList.remove('bad');
   const key = [act.operator, act.number, act.state].join();

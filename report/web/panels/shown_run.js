@@ -7,7 +7,7 @@ import { showFacts } from './details.js';
 import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
 import { QUANTITIES } from './chart.js';
-import { hideControl, showControl } from './control.js';
+import { hideControl, listAgents, showControl } from './control.js';
 import { beginSpace } from './space_controls.js';
 import { $, ofModes, put } from '../text.js';
 
@@ -66,6 +66,7 @@ export const livePage = {
   },
   changed(facts) {
     S.facts = facts;
+    listAgents();
     const { run } = S;
     $('slider').max = Math.max(0, run.rows - 1);
     if (run.newIncidents) {
