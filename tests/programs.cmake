@@ -86,6 +86,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/lost_files_test.cc
     process/modes_test.cc
     process/page_attack_test.cc
+    process/page_control_test.cc
     process/commands/logs_test.cc
     process/no_metric_test.cc
     process/commands/replay_test.cc

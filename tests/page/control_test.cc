@@ -78,9 +78,10 @@ TEST_F(ControlledPage, PausesResumesAndStopsATeamFromAPhonesWindow) {
   EXPECT_TRUE(summary()["reason"].get<std::string>().starts_with("stopped by anna on the page of"))
       << summary()["reason"];
   EXPECT_EQ(summary()["holds"].size(), 1U) << summary()["holds"];
-  for (const char* line : {"control: anna takes control at tick", "control: anna asks for: pause, at",
-                           "control: pause of anna, asked for at", ": 4 of 4 stand",
-                           "control: resume of anna", "control: stop of anna"}) {
+  for (const char* line :
+       {"control: anna takes control at tick", "control: anna asks for: pause, at",
+        "control: pause of anna, asked for at", ": 4 of 4 stand", "control: resume of anna",
+        "control: stop of anna"}) {
     EXPECT_NE(text_of(out() / "log/run.log").find(line), std::string::npos) << line;
   }
   expect_no_errors();
@@ -89,10 +90,10 @@ TEST_F(ControlledPage, PausesResumesAndStopsATeamFromAPhonesWindow) {
 TEST_F(ControlledPage, StopsAtOnceWithOnePressThatIsAlwaysInSight) {
   control();
   js("scrollTo(0, document.body.scrollHeight)");
-  const auto in_sight = js(
-      "const box = document.getElementById('stopNow').getBoundingClientRect();"
-      "return box.top >= 0 && box.bottom <= innerHeight && box.left >= 0 && "
-      "box.right <= innerWidth && box.height >= 40");
+  const auto in_sight =
+      js("const box = document.getElementById('stopNow').getBoundingClientRect();"
+         "return box.top >= 0 && box.bottom <= innerHeight && box.left >= 0 && "
+         "box.right <= innerWidth && box.height >= 40");
   EXPECT_EQ(in_sight, true);
   browser_->click("#stopNow");  // also without control
   end_with_the_mission();
@@ -142,8 +143,9 @@ TEST_F(ControlledPage, AnotherOperatorTakesOverVisibly) {
         .status;
   };
   const Tick tick = js("return ergocast.S.facts.state.world_tick");
-  EXPECT_EQ(post({{"operator", 5}, {"name", "bert"}, {"number", 1}, {"tick", tick}, {"act", "take"}}),
-            202);
+  EXPECT_EQ(
+      post({{"operator", 5}, {"name", "bert"}, {"number", 1}, {"tick", tick}, {"act", "take"}}),
+      202);
   EXPECT_TRUE(becomes("holder", "bert has control"));
   EXPECT_TRUE(becomes("controlText", "bert has taken control from you"));
   EXPECT_FALSE(visible("#orders"));
