@@ -28,9 +28,8 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
 }
 
 /// Shows the progress on the terminal; a signal ends the simulation.
-std::variant<SimulatedRecord, std::string> simulate_and_show(RunRecord& record,
-                                                             const Scenario& scenario,
-                                                             bool event_log) {
+Result<SimulatedRecord> simulate_and_show(RunRecord& record, const Scenario& scenario,
+                                          bool event_log) {
   StopSignals signals;
   ProgressDisplay display;
   std::optional<SimulatedEvents> events;
@@ -46,19 +45,13 @@ int simulate(const MissionOptions& options, bool event_log) {
   const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
   const auto prepared = prepare_run_directory(options.out, *scenario);
-  if (const auto* problem = std::get_if<std::string>(&prepared)) {
-    return report_error(kExitBadInput, *problem);
-  }
-  const auto& folder = std::get<std::filesystem::path>(prepared);
+  if (!prepared) return report_error(kExitBadInput, prepared.error());
+  const auto& folder = *prepared;
   auto created = RunRecord::create(folder);
-  if (const auto* problem = std::get_if<std::string>(&created)) {
-    return report_error(kExitBadInput, *problem);
-  }
-  const auto simulated = simulate_and_show(*std::get<0>(created), *scenario, event_log);
-  if (const auto* error = std::get_if<std::string>(&simulated)) {
-    return report_error(kExitFailed, *error);
-  }
-  const auto& result = std::get<SimulatedRecord>(simulated);
+  if (!created) return report_error(kExitBadInput, created.error());
+  const auto simulated = simulate_and_show(**created, *scenario, event_log);
+  if (!simulated) return report_error(kExitFailed, simulated.error());
+  const auto& result = *simulated;
   conclude(folder, result.summary, *scenario);
   return result.failed ? kExitFailed : kExitDone;
 }

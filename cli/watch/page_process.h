@@ -9,11 +9,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "cli/watch/page_socket.h"
 #include "cli/watch/progress.h"
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "runtime/bus/lcm_url.h"
 #include "runtime/process/child.h"
 
@@ -41,8 +41,7 @@ class PageProcess {
   };
 
   /// Returns an error if the page's address cannot be used.
-  static std::variant<std::unique_ptr<PageProcess>, std::string> start(const Setup& setup,
-                                                                       ProgressDisplay& display);
+  static Result<std::unique_ptr<PageProcess>> start(const Setup& setup, ProgressDisplay& display);
   PageProcess(const PageProcess&) = delete;
   PageProcess& operator=(const PageProcess&) = delete;
   /// Ends the process.

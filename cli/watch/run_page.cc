@@ -63,21 +63,19 @@ int run_page(const RunPageOptions& options) {
   StopSignals signals;
   const char* token = std::getenv(kPageToken);
   auto socket = PageSocket::inherited(kPageSocket, options.listen, token != nullptr ? token : "");
-  if (const auto* problem = std::get_if<std::string>(&socket)) {
-    return report_error(kExitBadInput, *problem + "; `ergocast run --watch` starts this command");
+  if (!socket) {
+    return report_error(kExitBadInput,
+                        socket.error() + "; `ergocast run --watch` starts this command");
   }
   auto mission = recorded_mission_or_complain(options.run_dir);
   if (!mission) return kExitBadInput;
   auto density = read_target_density(options.run_dir / kTargetDensityFile);
-  const bool drawn = std::holds_alternative<Field>(density);
-  auto opened = LiveWatch::open({options, options.run_dir, std::move(*mission),
-                                 drawn ? std::get<Field>(std::move(density)) : Field()});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  LiveWatch& watch = *std::get<0>(opened);
+  auto opened = LiveWatch::open(
+      {options, options.run_dir, std::move(*mission), std::move(density).value_or(Field())});
+  if (!opened) return report_error(kExitUnavailable, opened.error());
+  LiveWatch& watch = **opened;
   const rlimit former = limit_memory();
-  const auto server = PageServer::make(std::get<PageSocket>(std::move(socket)), watch.content());
+  const auto server = PageServer::make(*std::move(socket), watch.content());
   serve_until_stop(*server, signals, [&, over = false]() mutable {
     watch.listen(server->fd());
     if (over || !closed(kPageUntil)) return;

@@ -44,17 +44,13 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
   const auto mission = recorded_mission_or_complain(options.run_dir);
   if (!mission) return kExitBadInput;
   auto data = recorded_page_data(options.run_dir, *mission);
-  if (const auto* problem = std::get_if<std::string>(&data)) {
-    return report_error(kExitBadInput, *problem);
-  }
-  const Connections::Text page = recorded_page(std::get<Json>(data));
+  if (!data) return report_error(kExitBadInput, data.error());
+  const Connections::Text page = recorded_page(*data);
   auto socket = PageSocket::open(options.page);
-  if (const auto* problem = std::get_if<std::string>(&socket)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  announce(std::get<PageSocket>(socket).url());
+  if (!socket) return report_error(kExitUnavailable, socket.error());
+  announce(socket->url());
   const auto server =
-      PageServer::make(std::get<PageSocket>(std::move(socket)),
+      PageServer::make(*std::move(socket),
                        {[&page] { return page; }, content_security_policy(run_web_page()), {}, {}});
   pollfd waiting[]{{server->fd(), POLLIN, 0}, {signals.fd(), POLLIN, 0}};
   serve_until_stop(*server, signals, [&waiting] { poll(waiting, std::size(waiting), kServeMs); });
@@ -64,16 +60,12 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
 /// @param run_dir  the team's run directory; empty: not known here
 int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals& signals) {
   auto opened = LiveWatch::open({options, run_dir, {}, {}});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  LiveWatch& watch = *std::get<0>(opened);
+  if (!opened) return report_error(kExitUnavailable, opened.error());
+  LiveWatch& watch = **opened;
   auto socket = PageSocket::open(options.page);
-  if (const auto* problem = std::get_if<std::string>(&socket)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  announce(std::get<PageSocket>(socket).url());
-  const auto server = PageServer::make(std::get<PageSocket>(std::move(socket)), watch.content());
+  if (!socket) return report_error(kExitUnavailable, socket.error());
+  announce(socket->url());
+  const auto server = PageServer::make(*std::move(socket), watch.content());
   serve_until_stop(*server, signals, [&] {
     watch.listen(server->fd());
     if (watch.over()) watch.finish();

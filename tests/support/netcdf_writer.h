@@ -69,11 +69,11 @@ class NetcdfWriter {
     all += word(variable.attributes.size());
     for (const auto& [key, what] : variable.attributes) {
       all += name(key);
-      if (const auto* text = std::get_if<std::string>(&what)) {
-        all += word(static_cast<std::uint32_t>(NetcdfType::kText)) + name(*text);
+      if (!what) {
+        all += word(static_cast<std::uint32_t>(NetcdfType::kText)) + name(what.error());
       } else {
         all += word(static_cast<std::uint32_t>(NetcdfType::kDouble)) + word(1) +
-               value(std::get<double>(what), NetcdfType::kDouble);
+               value(*what, NetcdfType::kDouble);
       }
     }
     return all;
