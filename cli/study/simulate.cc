@@ -44,16 +44,14 @@ Result<SimulatedRecord> simulate_and_show(RunRecord& record, const Scenario& sce
 int simulate(const MissionOptions& options, bool event_log) {
   const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
-  const auto prepared = prepare_run_directory(options.out, *scenario);
-  if (!prepared) return report_error(kExitBadInput, prepared.error());
-  const auto& folder = *prepared;
-  auto created = RunRecord::create(folder);
-  if (!created) return report_error(kExitBadInput, created.error());
-  const auto simulated = simulate_and_show(**created, *scenario, event_log);
+  const auto folder = prepare_run_directory(options.out, *scenario);
+  if (!folder) return report_error(kExitBadInput, folder.error());
+  const auto record = RunRecord::create(*folder);
+  if (!record) return report_error(kExitBadInput, record.error());
+  const auto simulated = simulate_and_show(**record, *scenario, event_log);
   if (!simulated) return report_error(kExitFailed, simulated.error());
-  const auto& result = *simulated;
-  conclude(folder, result.summary, *scenario);
-  return result.failed ? kExitFailed : kExitDone;
+  conclude(*folder, simulated->summary, *scenario);
+  return simulated->failed ? kExitFailed : kExitDone;
 }
 
 }  // namespace

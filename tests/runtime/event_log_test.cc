@@ -177,7 +177,7 @@ TEST_F(EventLogTest, AFullDiskCostsEventsButTearsNone) {
 /// The names of all events that the reader finds, and its problem.
 std::string read_back(const fs::path& folder) {
   auto opened = EventLogReader::open(folder);
-  if (!opened) return failure(opened.error());
+  if (!opened) return opened.error();
   auto& reader = *opened;
   std::string printed;
   while (const LoggedEvent* event = reader.next()) {
