@@ -40,7 +40,7 @@ Coordinator::Coordinator(CoordinatorIdentity identity, std::vector<std::byte> pl
       plan_(std::move(plan)),
       search_(takeover),
       admission_(std::move(identity.version)) {
-  if (!plan_.empty()) mission_ = std::get<Mission>(decode_plan(plan_));
+  if (!plan_.empty()) mission_ = decode_plan(plan_).value();
   ERGOCAST_REQUIRE(mission_ || takeover == Takeover::kMust);
 }
 

@@ -194,9 +194,9 @@ int main(int argc, char** argv) {
     return kExitBadInput;
   }
   const auto loaded = Scenario::load(file, overrides);
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
-    for (const Problem& problem : *problems) spdlog::error("{}", to_string(problem));
+  if (!loaded) {
+    for (const Problem& problem : loaded.error()) spdlog::error("{}", to_string(problem));
     return kExitBadInput;
   }
-  return run(node, encode_plan(std::get<Scenario>(loaded).mission()), takeover_of(node, resume));
+  return run(node, encode_plan(loaded->mission()), takeover_of(node, resume));
 }

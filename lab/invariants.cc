@@ -198,14 +198,13 @@ void Invariants::digest_received(const Author& listener, const Digest& digest) {
   relays_allowed_[listener] += static_cast<std::int64_t>(digest.entry_count) * block_count_;
 }
 
-void Invariants::decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged) {
-  const auto* refusal = std::get_if<Refusal>(&result);
-  if (!damaged && refusal != nullptr) {
-    violate(t_s, Invariant::kWholeMessagesAccepted, "the codec", to_string(*refusal));
+void Invariants::decoded(double t_s, const Decoded& result, bool damaged) {
+  if (!damaged && !result) {
+    violate(t_s, Invariant::kWholeMessagesAccepted, "the codec", to_string(result.error()));
   }
-  if (damaged && refusal == nullptr) {
+  if (damaged && result) {
     violate(t_s, Invariant::kDamagedMessagesRefused, "the codec",
-            text("a message of type ", std::get<Message>(result).index()));
+            text("a message of type ", result->index()));
   }
 }
 

@@ -14,7 +14,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "agent/anti_entropy.h"
@@ -24,6 +23,7 @@
 #include "lab/shadow.h"
 #include "lab/table_view.h"
 #include "lab/wire_modes.h"
+#include "lcmtypes/codec.h"
 #include "logger/recorder.h"
 #include "team/mission_follower.h"
 #include "team/state_assembler.h"
@@ -160,7 +160,7 @@ class Invariants {
   /// An agent has received a digest.
   void digest_received(const Author& listener, const Digest& digest);
   /// Bytes were decoded: whole messages are accepted, damaged ones refused.
-  void decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged);
+  void decoded(double t_s, const Decoded& result, bool damaged);
   /// A message has reached an agent, whose knowledge is now `listener`; its c_k is not read. Call
   /// it for each MISSION, because one of them admits the agent and names its first tick.
   void received(const TableView& listener, const Message& message);

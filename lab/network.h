@@ -13,11 +13,11 @@
 #include <optional>
 #include <span>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "core/base/ids.h"
 #include "lab/faults.h"
+#include "lcmtypes/codec.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {
@@ -32,9 +32,6 @@ struct MessageFaults {
   std::int64_t lost = 0, cut = 0, duplicated = 0, replayed = 0, corrupted = 0, delayed = 0,
                reordered = 0, clogs = 0, clogged = 0;
 };
-
-/// The result of decoding the bytes of a message.
-using Decoded = std::variant<Message, Refusal>;
 
 struct Delivery {
   Bus bus;

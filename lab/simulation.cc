@@ -28,7 +28,7 @@ Simulation::Simulation(SimulationOptions options, std::ostream& trajectory, std:
       trajectory_(trajectory),
       metrics_(metrics),
       observer_(observer),
-      mission_(std::get<Mission>(decode_plan_with_table(options_.plan))),
+      mission_(decode_plan_with_table(options_.plan).value()),
       run_(identity(mission_, ~0U, 0)),
       agent_count_(static_cast<int>(mission_.starts_m.size())),
       network_(mission_.seed, options_.faults, node_count(), options_.latency),
@@ -154,7 +154,7 @@ void Simulation::publish(NodeId from) {
   for (const Outgoing& sent : outbox_) {
     auto decoded = wire_.pass(sent.message);
     if (observer_ != nullptr) observer_->decoded(*decoded, false);
-    if (std::holds_alternative<Refusal>(*decoded)) continue;
+    if (!*decoded) continue;
     note(from, sent);
     const AgentId sender = header_of(sent.message).sender;
     const int corrupted =
@@ -189,7 +189,7 @@ void Simulation::note(NodeId from, const Outgoing& sent) {
 void Simulation::deliver_due() {
   while (network_.next() <= now_) {
     Delivery delivery = network_.pop();
-    const Message& message = std::get<Message>(*delivery.read);
+    const Message& message = **delivery.read;
     const auto reaches = [&](NodeId node) {
       return delivery.to[static_cast<std::size_t>(node)] && at(node).up;
     };

@@ -26,7 +26,7 @@ class Trial : SimulationObserver {
  public:
   Trial(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics)
       : faults_(options.faults),
-        mission_(std::get<Mission>(decode_plan_with_table(options.plan))),
+        mission_(decode_plan_with_table(options.plan).value()),
         invariants_(mission_),
         agents_(mission_.starts_m.size()),
         simulation_(std::move(options), trajectory, metrics, this) {}

@@ -37,9 +37,9 @@ AgentId sender_of(const TeamStatus&) { return kCoordinator; }
 /// copied.
 /// @tparam Form  whose fields the bytes are
 template <class Plain, class Form>
-std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
-  std::variant<Message, Refusal> result;
-  auto& plain = result.emplace<Message>().emplace<Plain>();
+Decoded decode_as(std::span<const std::byte> bytes) {
+  Decoded result;
+  auto& plain = result->emplace<Plain>();
   Reader reader(bytes.subspan(sizeof(std::uint64_t)));
   Fields<Header>::list(reader, plain.header);
   Fields<Form>::list(reader, plain);
@@ -47,9 +47,9 @@ std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
     plain.encoding = ContributionEncoding::kFixed16;
   const bool can_be_true = reader.plausible() && plain.header.sender == sender_of(plain);
   if (!reader.complete()) {
-    result = Refusal::kSize;
+    result = failure(Refusal::kSize);
   } else if (!can_be_true) {
-    result = Refusal::kRange;
+    result = failure(Refusal::kRange);
   }
   return result;
 }
@@ -64,7 +64,7 @@ constexpr bool kSigned = requires(Plain message) {
 struct Decoder {
   std::uint64_t fingerprint;
   bool is_signed;
-  std::variant<Message, Refusal> (*decode)(std::span<const std::byte>);
+  Decoded (*decode)(std::span<const std::byte>);
 };
 
 template <class Plain, class Form = Plain>
@@ -129,20 +129,20 @@ void encode(const Message& message, std::vector<std::byte>& out,
       message);
 }
 
-std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run,
-                                      const MessageAuthenticator& authenticator,
-                                      std::string_view channel, KnownSignatures* known) noexcept {
-  if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return Refusal::kSize;
+Decoded decode(std::span<const std::byte> bytes, RunId run,
+               const MessageAuthenticator& authenticator, std::string_view channel,
+               KnownSignatures* known) noexcept {
+  if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return failure(Refusal::kSize);
   const Decoder* decoder = decoder_for(read64(bytes.data()));
-  if (decoder == nullptr) return Refusal::kType;
-  if (const auto refusal = authenticator.check_tag(bytes, channel)) return *refusal;
-  if (run != 0 && read64(bytes.data() + 8) != run) return Refusal::kRun;
+  if (decoder == nullptr) return failure(Refusal::kType);
+  if (const auto refusal = authenticator.check_tag(bytes, channel)) return failure(*refusal);
+  if (run != 0 && read64(bytes.data() + 8) != run) return failure(Refusal::kRun);
   try {
     if (decoder->is_signed && !authenticator.signature_holds(bytes, known))
-      return Refusal::kUnsigned;
+      return failure(Refusal::kUnsigned);
     return decoder->decode(bytes);
   } catch (...) {  // only memory exhaustion can throw here
-    return Refusal::kLimit;
+    return failure(Refusal::kLimit);
   }
 }
 

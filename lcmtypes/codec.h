@@ -10,9 +10,9 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "lcmtypes/message_authenticator.h"
 #include "team/messages.h"
 
@@ -24,14 +24,16 @@ namespace ergocast {
 void encode(const Message& message, std::vector<std::byte>& out,
             const MessageAuthenticator& authenticator = {}, std::string_view channel = {});
 
+/// A message, or why its bytes are refused.
+using Decoded = Result<Message, Refusal>;
+
 /// The message in `bytes`, or why it is refused. Never throws, whatever the bytes are.
 /// @param run  the only run accepted; 0 accepts any (for monitors and processes that have not
 ///             joined)
 /// @param channel  on which it arrived; only a keyed tag covers it
 /// @param known  signatures that need not be checked again; may be null
-std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run,
-                                      const MessageAuthenticator& authenticator = {},
-                                      std::string_view channel = {},
-                                      KnownSignatures* known = nullptr) noexcept;
+Decoded decode(std::span<const std::byte> bytes, RunId run,
+               const MessageAuthenticator& authenticator = {}, std::string_view channel = {},
+               KnownSignatures* known = nullptr) noexcept;
 
 }  // namespace ergocast

@@ -43,24 +43,25 @@ struct Past {
 
 /// The readable rows of the record. An error if the mission of the record is unknown.
 /// @param plan  of the record, in place of the folder's; empty: the folder's
-std::variant<Past, std::string> read_past(const fs::path& folder, std::vector<std::byte> plan) {
+Result<Past> read_past(const fs::path& folder, std::vector<std::byte> plan) {
   Past past;
   past.plan = std::move(plan);
   if (segment_count(folder) == 0) return past;
   const auto damage = read_up_to_damage(folder, past.rows);
   if (past.plan.empty()) {
     const auto file = read_whole(folder / kPlanFile, kMaxPlanBytes);
-    if (const auto* bytes = std::get_if<std::string>(&file)) {
-      const auto all = std::as_bytes(std::span(*bytes));
+    if (file) {
+      const auto all = std::as_bytes(std::span(*file));
       past.plan.assign(all.begin(), all.end());
     }
   }
   const bool begun = damage || !past.rows.empty() || !past.rows.metrics.empty();
-  const bool known = std::holds_alternative<Mission>(decode_plan(past.plan));
+  const bool known = decode_plan(past.plan).has_value();
   if (!known && (begun || !past.plan.empty())) {
-    return (folder / kPlanFile).string() +
-           ": missing or not readable, so it is not known which mission's record this is; copy it "
-           "back, or choose another folder with --out";
+    return failure(
+        (folder / kPlanFile).string() +
+        ": missing or not readable, so it is not known which mission's record this is; copy it "
+        "back, or choose another folder with --out");
   }
   if (damage)
     spdlog::warn("{}; the record goes on in a new segment, and the rows before the damage are kept",
@@ -238,14 +239,12 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
   std::optional<Past> past;
   if (resume) {
     auto read = read_past(folder, std::move(plan));
-    if (const auto* problem = std::get_if<std::string>(&read))
-      return refuse(kExitBadInput, *problem);
-    past = std::get<Past>(std::move(read));
+    if (!read) return refuse(kExitBadInput, read.error());
+    past = *std::move(read);
   }
   auto created = resume ? RunRecord::go_on(folder) : RunRecord::create(folder);
-  if (const auto* problem = std::get_if<std::string>(&created))
-    return refuse(kExitBadInput, *problem);
-  RunLogger logger(node.run, *std::get<0>(created), std::move(past), limits);
+  if (!created) return refuse(kExitBadInput, created.error());
+  RunLogger logger(node.run, **created, std::move(past), limits);
   Recorder& recorder = logger.recorder();
   const auto connected = connect(
       recorder, node,

@@ -147,31 +147,31 @@ double RunData::end_s() const {
   return end_s;
 }
 
-std::variant<Mission, std::string> read_mission(const std::filesystem::path& run_dir) {
+Result<Mission> read_mission(const std::filesystem::path& run_dir) {
   const auto file = run_dir / kPlanFile;
   const std::string name = file.string() + ": ";
   const auto plan = read_whole(file, kMaxPlanBytes);
-  if (const auto* problem = std::get_if<FileProblem>(&plan)) {
-    const bool missing = problem->kind == FileProblem::Kind::kMissing;
-    return name + (missing ? "missing or not readable" : problem->what) +
-           ": is this a run directory?";
+  if (!plan) {
+    const bool missing = plan.error().kind == FileProblem::Kind::kMissing;
+    return failure(name + (missing ? "missing or not readable" : plan.error().what) +
+                   ": is this a run directory?");
   }
-  auto read = decode_plan(std::as_bytes(std::span(std::get<std::string>(plan))));
-  if (const auto* problem = std::get_if<std::string>(&read)) return name + *problem;
-  Mission& mission = std::get<Mission>(read);
+  auto read = decode_plan(std::as_bytes(std::span(*plan)));
+  if (!read) return failure(name + read.error());
+  Mission& mission = *read;
   if (mission.basis.free_domain) {
     auto table = load_table(run_dir / table_file_name(mission.basis.table_hash));
-    if (auto* kept = std::get_if<ModesTable>(&table)) keep_table(std::move(*kept));
+    if (table) keep_table(*std::move(table));
   }
-  if (const auto problem = provide_table(mission)) return name + *problem;
+  if (const auto problem = provide_table(mission)) return failure(name + *problem);
   return read;
 }
 
-std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir) {
+Result<RunData> read_tracks(const std::filesystem::path& run_dir) {
   RunData run;
   auto problem = read_table(run_dir, kTrajectoryFile, trajectory_headers(),
                             [&run](const Fields& fields) { return add_point(run, fields); });
-  if (problem) return *problem;
+  if (problem) return failure(*problem);
   return run;
 }
 
@@ -185,12 +185,11 @@ std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_di
   return trajectory ? trajectory : metrics;
 }
 
-std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir) {
+Result<RunData> read_run(const std::filesystem::path& run_dir) {
   RunData run;
-  if (auto problem = read_up_to_damage(run_dir, run)) return *problem;
+  if (auto problem = read_up_to_damage(run_dir, run)) return failure(*problem);
   const auto summary = read_summary(run_dir);
-  const auto* json = std::get_if<nlohmann::ordered_json>(&summary);
-  run.holds = recorded_holds(run_dir, json != nullptr ? *json : nlohmann::ordered_json());
+  run.holds = recorded_holds(run_dir, summary.value_or(nlohmann::ordered_json()));
   return run;
 }
 

@@ -8,10 +8,10 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "core/basis/basis.h"
 #include "core/mission/hold.h"
 #include "core/mission/mission.h"
@@ -49,15 +49,15 @@ struct RunData {
 };
 
 /// The mission of the record's plan.binpb, or an error that names the file.
-std::variant<Mission, std::string> read_mission(const std::filesystem::path& run_dir);
+Result<Mission> read_mission(const std::filesystem::path& run_dir);
 
 /// Reads trajectory.csv and metrics.csv with all their segments, and which ticks do not count.
 /// Otherwise returns the file and line of an error, with the remedy. A file's last line without its
 /// line break comes from a killed process and is ignored.
-std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir);
+Result<RunData> read_run(const std::filesystem::path& run_dir);
 
 /// Reads only trajectory.csv in the same way.
-std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir);
+Result<RunData> read_tracks(const std::filesystem::path& run_dir);
 
 /// Reads the same into `run`, but of each file only the rows before its first bad line. Returns the
 /// problem of the first such line of all files, or nothing if there is none.

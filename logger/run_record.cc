@@ -63,9 +63,9 @@ RunRecord::Created RunRecord::begin(const fs::path& folder, int segment, const c
                               std::pair{&record->metrics_, record->metrics_file()}}) {
     std::error_code error;
     const bool taken = fs::file_size(file, error) > 0 && !error;
-    if (taken) return file.string() + ": " + if_taken;
+    if (taken) return failure(file.string() + ": " + if_taken);
     stream->open(file);
-    if (!*stream) return error_at(file, stream->error());
+    if (!*stream) return failure(error_at(file, stream->error()));
   }
   return record;
 }

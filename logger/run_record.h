@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 
+#include "core/base/result.h"
 #include "logger/line_file.h"
 
 namespace ergocast {
@@ -32,7 +32,7 @@ int segment_count(const std::filesystem::path& folder);
 
 class RunRecord {
  public:
-  using Created = std::variant<std::unique_ptr<RunRecord>, std::string>;
+  using Created = Result<std::unique_ptr<RunRecord>>;
 
   /// Begins trajectory.csv and metrics.csv in an existing folder. An error names the file. An
   /// existing record stays unchanged.

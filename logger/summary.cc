@@ -244,19 +244,19 @@ void add_motion(const Recorder& recorder, const Mission& mission, Json& summary)
 // ---- reading ----
 
 /// Null if there is no such file.
-std::variant<Json, std::string> read_json(const std::filesystem::path& file) {
+Result<Json> read_json(const std::filesystem::path& file) {
   const auto read = read_whole(file, kMostSummaryBytes);
-  if (const auto* problem = std::get_if<FileProblem>(&read)) {
-    if (problem->kind == FileProblem::Kind::kMissing) return Json(nullptr);
-    return problem->sentence(file);
+  if (!read) {
+    if (read.error().kind == FileProblem::Kind::kMissing) return Json(nullptr);
+    return failure(read.error().sentence(file));
   }
   try {
-    return parse_bounded<Json>(std::get<std::string>(read), kMostSummaryValues);
+    return parse_bounded<Json>(*read, kMostSummaryValues);
   } catch (const JsonTooLarge& problem) {
-    return file.string() + ": " + problem.what() + "; remove it";
+    return failure(file.string() + ": " + problem.what() + "; remove it");
   } catch (const Json::exception& error) {
-    return file.string() + ": is not JSON: " + error.what() +
-           ": copy it again from where the run was recorded, or remove it";
+    return failure(file.string() + ": is not JSON: " + error.what() +
+                   ": copy it again from where the run was recorded, or remove it");
   }
 }
 
@@ -294,7 +294,7 @@ const char* name_of_basis(const Basis& basis) {
   return basis.free_domain ? "modes of the free domain" : "cosines";
 }
 
-std::variant<Json, std::string> read_summary(const std::filesystem::path& run_dir) {
+Result<Json> read_summary(const std::filesystem::path& run_dir) {
   return read_json(run_dir / kSummaryFile);
 }
 
@@ -307,8 +307,7 @@ Json holds_json(std::span<const Hold> holds) {
 
 std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir, const Json& summary) {
   const auto early = read_json(run_dir / kHoldsFile);
-  const Json* list = std::get_if<Json>(&early);
-  if (list != nullptr && list->is_array()) return holds_in(*list);
+  if (early && early->is_array()) return holds_in(*early);
   return summary.is_object() ? holds_in(summary.value("holds", Json())) : std::vector<Hold>();
 }
 

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "logger/recorder.h"
 #include "team/messages.h"
 
@@ -50,7 +50,6 @@ std::string to_text(const nlohmann::ordered_json& summary);
 
 /// The summary of a run directory: any JSON value if the file is JSON, null if there is no file.
 /// Otherwise an error that names the file.
-std::variant<nlohmann::ordered_json, std::string> read_summary(
-    const std::filesystem::path& run_dir);
+Result<nlohmann::ordered_json> read_summary(const std::filesystem::path& run_dir);
 
 }  // namespace ergocast

@@ -30,9 +30,9 @@ class GridBuilder {
     grid_.rows = cells_along(kCellsAlongSide / shape);
   }
 
-  std::variant<FreeGrid, std::string> run() {
+  Result<FreeGrid> run() {
     look();
-    if (auto problem = keep_the_largest_part()) return *std::move(problem);
+    if (auto problem = keep_the_largest_part()) return failure(*problem);
     number_cells();
     set_around();
     set_owners();
@@ -207,7 +207,7 @@ class GridBuilder {
 
 }  // namespace
 
-std::variant<FreeGrid, std::string> free_grid(const Box& domain, const Sees& sees) {
+Result<FreeGrid> free_grid(const Box& domain, const Sees& sees) {
   return GridBuilder(domain, sees).run();
 }
 

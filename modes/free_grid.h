@@ -7,10 +7,10 @@
 #include <functional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "core/base/geometry.h"
+#include "core/base/result.h"
 
 namespace ergocast {
 
@@ -33,6 +33,6 @@ struct FreeGrid {
 /// free. Two neighbours see each other if their middles do. Free cells that are cut off from the
 /// largest part count as walls.
 /// @return  or a sentence: nothing is free, or more than a hundredth of it is cut off
-std::variant<FreeGrid, std::string> free_grid(const Box& domain, const Sees& sees);
+Result<FreeGrid> free_grid(const Box& domain, const Sees& sees);
 
 }  // namespace ergocast

@@ -82,36 +82,36 @@ Rings walls_from_corner(const Mission& mission) {
   return walls;
 }
 
-std::variant<ModesTable, std::string> computed(const Mission& mission) {
+Result<ModesTable> computed(const Mission& mission) {
   const Rings walls = walls_from_corner(mission);
   auto grid = free_grid(mission.domain, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return sees(walls, a, b);
   });
-  if (auto* problem = std::get_if<std::string>(&grid)) return std::move(*problem);
-  const FreeGrid& cells = std::get<FreeGrid>(grid);
+  if (!grid) return failure(grid.error());
+  const FreeGrid& cells = *grid;
   const int modes = mission.basis.mode_count();
   if (modes > cells.cell_count() / 4) {
-    return "it has only " + std::to_string(cells.cell_count()) + " cells for " +
-           std::to_string(modes) + " modes";
+    return failure("it has only " + std::to_string(cells.cell_count()) + " cells for " +
+                   std::to_string(modes) + " modes");
   }
   const auto found = eigen_modes(cells, modes);
-  if (!found) return "its modes do not converge";
+  if (!found) return failure("its modes do not converge");
   const auto bytes =
       std::make_shared<const std::vector<std::byte>>(encode_table(cells, *found, key_of(mission)));
   return decode_table(*bytes, bytes);
 }
 
 /// The table as this process computes it, once, independent of tables that were handed over.
-std::variant<ModesTable, std::string> own_table(const Mission& mission) {
+Result<ModesTable> own_table(const Mission& mission) {
   const std::uint64_t key = key_of(mission);
   const auto fits = [=](const ModesTable& table) { return table->key == key; };
   if (ModesTable known = known_table(fits, &Shelf::computed)) return known;
   auto table = computed(mission);
-  if (const auto* made = std::get_if<ModesTable>(&table)) {
-    keep_table(*made);
+  if (table) {
+    keep_table(*table);
     Shelf& all = shelf();
     const std::lock_guard lock(all.access);
-    all.computed.push_back(*made);
+    all.computed.push_back(*table);
   }
   return table;
 }
@@ -125,7 +125,7 @@ void keep_table(ModesTable table) {
   if (std::ranges::none_of(all.tables, same)) all.tables.push_back(std::move(table));
 }
 
-std::variant<ModesTable, std::string> table_of(const Mission& mission) {
+Result<ModesTable> table_of(const Mission& mission) {
   const std::uint64_t key = key_of(mission);
   const auto fits = [=](const ModesTable& table) { return table->key == key; };
   if (ModesTable known = known_table(fits)) return known;
@@ -142,9 +142,8 @@ std::optional<std::string> provide_table(Mission& mission) {
     // A table that was handed over is not used: its file may come from another computer, or may
     // have changed.
     auto made = own_table(mission);
-    if (auto* problem = std::get_if<std::string>(&made))
-      return "the modes of the free domain cannot be computed: " + *problem;
-    table = std::get<ModesTable>(std::move(made));
+    if (!made) return "the modes of the free domain cannot be computed: " + made.error();
+    table = *std::move(made);
   }
   if (table->hash != hash || table->mode_count != basis.mode_count() ||
       table->size_m != mission.domain.size_m.head<2>() ||

@@ -8,8 +8,8 @@
 
 #include <optional>
 #include <string>
-#include <variant>
 
+#include "core/base/result.h"
 #include "core/mission/mission.h"
 #include "modes/table.h"
 
@@ -22,7 +22,7 @@ void keep_table(ModesTable table);
 /// unless it is known.
 /// @return  or why there is none, as a sentence
 /// @pre mission.basis.free_domain, kMostFreeModes modes at most
-std::variant<ModesTable, std::string> table_of(const Mission& mission);
+Result<ModesTable> table_of(const Mission& mission);
 
 /// Sets mission.basis.table to the table of its hash: one that was handed over, or the one that
 /// this program computes.

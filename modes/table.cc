@@ -145,17 +145,17 @@ std::vector<std::byte> encode_table(const FreeGrid& grid, const EigenModes& mode
   return bytes;
 }
 
-std::variant<ModesTable, std::string> decode_table(std::span<const std::byte> bytes,
-                                                   std::shared_ptr<const void> storage) {
+Result<ModesTable> decode_table(std::span<const std::byte> bytes,
+                                std::shared_ptr<const void> storage) {
   const std::string damaged = "it is no table of modes, or a damaged one";
   TableHeader header;
-  if (bytes.size() < sizeof header) return damaged;
+  if (bytes.size() < sizeof header) return failure(damaged);
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.magic != kMagic) return damaged;
+  if (header.magic != kMagic) return failure(damaged);
   if (header.format != kFormat || header.version != own_version()) {
-    return "it is another version's table of modes: this program is " ERGOCAST_VERSION;
+    return failure("it is another version's table of modes: this program is " ERGOCAST_VERSION);
   }
-  if (!is_sound(header)) return damaged;
+  if (!is_sound(header)) return failure(damaged);
   auto modes = std::make_shared<FreeModes>();
   modes->origin_m << header.origin_m[0], header.origin_m[1];
   modes->size_m << header.size_m[0], header.size_m[1];
@@ -173,7 +173,7 @@ std::variant<ModesTable, std::string> decode_table(std::span<const std::byte> by
   modes->eigenvalues_per_m2 = reader.take<double>(header.modes);
   modes->mean_squares = reader.take<double>(header.modes);
   modes->values = reader.take<float>(cells * header.modes);
-  if (!reader.whole() || !is_sound(*modes)) return damaged;
+  if (!reader.whole() || !is_sound(*modes)) return failure(damaged);
   modes->hash = XXH3_64bits(bytes.data(), bytes.size());
   modes->file = bytes;
   modes->storage = std::move(storage);

@@ -13,9 +13,9 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/basis/free_modes.h"
 #include "modes/eigen_modes.h"
 #include "modes/free_grid.h"
@@ -30,7 +30,7 @@ std::vector<std::byte> encode_table(const FreeGrid& grid, const EigenModes& mode
 
 /// The table in these bytes, which point into `storage`. Anybody may have written them. Returns a
 /// sentence if they are no table, have another version, or contain a number that no table has.
-std::variant<ModesTable, std::string> decode_table(std::span<const std::byte> bytes,
-                                                   std::shared_ptr<const void> storage);
+Result<ModesTable> decode_table(std::span<const std::byte> bytes,
+                                std::shared_ptr<const void> storage);
 
 }  // namespace ergocast

@@ -77,12 +77,12 @@ Loaded loaded(const std::filesystem::path& file) {
 
 std::string table_file_name(std::uint64_t hash) { return "modes-" + to_hex(hash) + ".bin"; }
 
-std::variant<ModesTable, std::string> load_table(const std::filesystem::path& file) {
+Result<ModesTable> load_table(const std::filesystem::path& file) {
   Loaded found = loaded(file);
-  if (found.storage == nullptr) return file.string() + ": cannot be read as a table of modes";
+  if (found.storage == nullptr)
+    return failure(file.string() + ": cannot be read as a table of modes");
   auto table = decode_table(found.bytes, std::move(found.storage));
-  if (const auto* problem = std::get_if<std::string>(&table))
-    return file.string() + ": " + *problem;
+  if (!table) return failure(file.string() + ": " + table.error());
   return table;
 }
 

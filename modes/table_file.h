@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 
+#include "core/base/result.h"
 #include "modes/table.h"
 
 namespace ergocast {
@@ -19,7 +19,7 @@ namespace ergocast {
 std::string table_file_name(std::uint64_t hash);
 
 /// The table in `file`, checked; or a sentence that names the file and the problem.
-std::variant<ModesTable, std::string> load_table(const std::filesystem::path& file);
+Result<ModesTable> load_table(const std::filesystem::path& file);
 
 /// Writes the table into `folder`, unless it is there. The file appears completely or not at all.
 /// @return  why it could not

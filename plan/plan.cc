@@ -316,16 +316,16 @@ std::vector<std::byte> encode_plan(const Mission& mission) {
   return {all.begin(), all.end()};
 }
 
-std::variant<Mission, std::string> decode_plan(std::span<const std::byte> bytes) noexcept try {
-  if (bytes.size() > kMaxPlanBytes) return unreadable_plan();
+Result<Mission> decode_plan(std::span<const std::byte> bytes) noexcept try {
+  if (bytes.size() > kMaxPlanBytes) return failure(unreadable_plan());
   const PlanReader plan({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   // Only the version itself can read the other fields.
   std::string version;
   plan.value(kVersionField, version);
-  if (!is_version(version)) return unreadable_plan();
+  if (!is_version(version)) return failure(unreadable_plan());
   if (version != ERGOCAST_VERSION) {
-    return "the mission's plan is of version " + version + ", this program is " ERGOCAST_VERSION +
-           kRemedy;
+    return failure("the mission's plan is of version " + version +
+                   ", this program is " ERGOCAST_VERSION + kRemedy);
   }
   Mission mission;
   PlanFields fields(plan);
@@ -333,21 +333,19 @@ std::variant<Mission, std::string> decode_plan(std::span<const std::byte> bytes)
   // A mission has exactly one encoding: bytes that differ from it were not written by
   // encode_plan().
   if (!within_limits(mission) || !std::ranges::equal(encode_plan(mission), bytes))
-    return broken_plan();
+    return failure(broken_plan());
   return mission;
 } catch (...) {
-  return "out of memory";
+  return failure("out of memory");
 }
 
-std::variant<Mission, std::string> decode_plan_with_table(std::span<const std::byte> plan) noexcept
-    try {
+Result<Mission> decode_plan_with_table(std::span<const std::byte> plan) noexcept try {
   auto decoded = decode_plan(plan);
-  if (auto* mission = std::get_if<Mission>(&decoded)) {
-    if (auto problem = provide_table(*mission)) return *std::move(problem);
-  }
+  if (!decoded) return decoded;
+  if (auto problem = provide_table(*decoded)) return failure(*problem);
   return decoded;
 } catch (...) {
-  return "out of memory";
+  return failure("out of memory");
 }
 
 std::string plan_hash(std::span<const std::byte> plan) {

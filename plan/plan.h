@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/mission/mission.h"
 
 namespace ergocast {
@@ -22,11 +22,11 @@ std::vector<std::byte> encode_plan(const Mission& mission);
 /// The mission of a plan, bit for bit, within its limits. Returns an error for bytes that are no
 /// plan, are of another version, break a limit, or differ from the encoding of their mission. Plans
 /// come from the network.
-std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept;
+Result<Mission> decode_plan(std::span<const std::byte> plan) noexcept;
 
 /// Decodes a plan and adds the table of its modes, if it needs one, by provide_table() of
 /// modes/provide.h. An error if this program has no table with that hash.
-std::variant<Mission, std::string> decode_plan_with_table(std::span<const std::byte> plan) noexcept;
+Result<Mission> decode_plan_with_table(std::span<const std::byte> plan) noexcept;
 
 /// 32 hex digits that identify a plan: XXH3-128 of its bytes.
 std::string plan_hash(std::span<const std::byte> plan);

@@ -33,9 +33,9 @@ struct Refused : std::runtime_error {
 };
 
 template <class Value>
-Value value_or_throw(std::variant<Value, std::string> read) {
-  if (const auto* problem = std::get_if<std::string>(&read)) throw Refused(*problem);
-  return std::get<Value>(std::move(read));
+Value value_or_throw(Result<Value> read) {
+  if (!read) throw Refused(read.error());
+  return *std::move(read);
 }
 
 // ---- records ----
@@ -178,9 +178,9 @@ Scenario load(const fs::path& file, std::optional<std::uint64_t> seed, const Fie
   Overrides overrides{.seed = seed};
   for (const auto& [path, value, flag] : fields) overrides.fields.push_back({path, value, flag});
   auto loaded = Scenario::load(name, overrides);
-  if (auto* scenario = std::get_if<Scenario>(&loaded)) return std::move(*scenario);
+  if (loaded) return *std::move(loaded);
   std::string text;
-  for (const Problem& problem : std::get<std::vector<Problem>>(loaded))
+  for (const Problem& problem : loaded.error())
     text += (text.empty() ? "" : "\n") + to_string(problem);
   throw Refused(text);
 }

@@ -19,41 +19,39 @@ struct Record {
   Field target;
 };
 
-std::variant<Record, std::string> read_record(const fs::path& run_dir) {
+Result<Record> read_record(const fs::path& run_dir) {
   auto run = read_run(run_dir);
-  if (auto* problem = std::get_if<std::string>(&run)) return std::move(*problem);
+  if (!run) return failure(run.error());
   auto summary = read_summary(run_dir);
-  if (auto* problem = std::get_if<std::string>(&summary)) return std::move(*problem);
+  if (!summary) return failure(summary.error());
   auto target = read_target_density(run_dir / kTargetDensityFile);
-  if (auto* problem = std::get_if<std::string>(&target)) return std::move(*problem);
-  return Record{std::get<RunData>(std::move(run)),
-                std::get<nlohmann::ordered_json>(std::move(summary)),
-                std::get<Field>(std::move(target))};
+  if (!target) return failure(target.error());
+  return Record{*std::move(run), *std::move(summary), *std::move(target)};
 }
 
 }  // namespace
 
-std::variant<ReportPage, std::string> draw_report(const fs::path& run_dir, const Mission& mission,
-                                                  const nlohmann::ordered_json& team) {
+Result<ReportPage> draw_report(const fs::path& run_dir, const Mission& mission,
+                               const nlohmann::ordered_json& team) {
   auto read = read_record(run_dir);
-  if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
-  const auto& [run, summary, target] = std::get<Record>(read);
+  if (!read) return failure(read.error());
+  const auto& [run, summary, target] = *read;
   return ReportPage{report_page(run, mission, summary, target, team)};
 }
 
-std::variant<nlohmann::ordered_json, std::string> read_page_record(
-    const fs::path& run_dir, const Mission& mission, const nlohmann::ordered_json& team) {
+Result<nlohmann::ordered_json> read_page_record(const fs::path& run_dir, const Mission& mission,
+                                                const nlohmann::ordered_json& team) {
   auto read = read_record(run_dir);
-  if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
-  const auto& [run, summary, target] = std::get<Record>(read);
+  if (!read) return failure(read.error());
+  const auto& [run, summary, target] = *read;
   return page_record(run, mission, summary, target, team);
 }
 
 std::optional<std::string> write_report(const fs::path& run_dir, const Mission& mission,
                                         const nlohmann::ordered_json& team) {
   const auto drawn = draw_report(run_dir, mission, team);
-  if (const auto* problem = std::get_if<std::string>(&drawn)) return *problem;
-  return write_file(run_dir / kReportFile, std::get<ReportPage>(drawn).html);
+  if (!drawn) return drawn.error();
+  return write_file(run_dir / kReportFile, drawn->html);
 }
 
 }  // namespace ergocast

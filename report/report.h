@@ -6,8 +6,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <variant>
 
+#include "core/base/result.h"
 #include "core/mission/mission.h"
 
 namespace ergocast {
@@ -25,14 +25,13 @@ struct ReportPage {
 /// @param team  how the agents were over time, for the page (cli/team/recorded_team.h); may be
 /// null
 /// @pre `mission` is that of the run's plan.
-std::variant<ReportPage, std::string> draw_report(const std::filesystem::path& run_dir,
-                                                  const Mission& mission,
-                                                  const nlohmann::ordered_json& team);
+Result<ReportPage> draw_report(const std::filesystem::path& run_dir, const Mission& mission,
+                               const nlohmann::ordered_json& team);
 
 /// The page's data of a record, or the error; see page.h.
-std::variant<nlohmann::ordered_json, std::string> read_page_record(
-    const std::filesystem::path& run_dir, const Mission& mission,
-    const nlohmann::ordered_json& team);
+Result<nlohmann::ordered_json> read_page_record(const std::filesystem::path& run_dir,
+                                                const Mission& mission,
+                                                const nlohmann::ordered_json& team);
 
 /// Writes report.html into `run_dir`, as a whole or not at all. Nothing on success, otherwise the
 /// error.

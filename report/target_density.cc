@@ -23,16 +23,16 @@ std::optional<std::string> write_target_density(const std::filesystem::path& fil
   return write_file(file, target_density_text(density));
 }
 
-std::variant<Field, std::string> read_target_density(const std::filesystem::path& file) {
+Result<Field> read_target_density(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return Field();
   OpenedMap opened = open_map(file);
-  if (const auto* problem = std::get_if<MapProblem>(&opened)) return text_of(*problem);
-  MapFile& map = *std::get<0>(opened);
+  if (!opened) return failure(text_of(opened.error()));
+  MapFile& map = **opened;
   Field field(map.columns(), map.rows());
   std::vector<double> row(static_cast<std::size_t>(map.columns()));
   for (Eigen::Index j = field.cols(); j-- > 0;) {
-    if (const auto problem = map.next_row(row)) return text_of(*problem);
+    if (const auto problem = map.next_row(row)) return failure(text_of(*problem));
     field.col(j) = Eigen::Map<const Eigen::VectorXd>(row.data(), field.rows());
   }
   return field;

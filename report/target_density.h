@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
+
+#include "core/base/result.h"
 
 namespace ergocast {
 
@@ -25,6 +26,6 @@ std::optional<std::string> write_target_density(const std::filesystem::path& fil
                                                 const Field& density);
 
 /// An empty field if there is no such file; an error if it cannot be read.
-std::variant<Field, std::string> read_target_density(const std::filesystem::path& file);
+Result<Field> read_target_density(const std::filesystem::path& file);
 
 }  // namespace ergocast

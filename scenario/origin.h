@@ -4,9 +4,9 @@
 
 #include <filesystem>
 #include <optional>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "scenario/scenario.h"
 #include "target/geo/local_plane.h"
 
@@ -14,7 +14,7 @@ namespace ergocast {
 
 /// The origin in a scenario's file, of which nothing else needs to be valid; nothing if it has
 /// none. Problems if the file cannot be read or the origin is no place.
-std::variant<std::optional<GeoPlace>, std::vector<Problem>> read_origin(
+Result<std::optional<GeoPlace>, std::vector<Problem>> read_origin(
     const std::filesystem::path& file);
 
 }  // namespace ergocast

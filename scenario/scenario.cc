@@ -27,14 +27,14 @@ namespace {
 using Problems = std::vector<Problem>;
 
 /// The contents of `file`, or why it cannot be read.
-std::variant<std::string, Problem> read_file(const std::filesystem::path& file) {
+Result<std::string, Problem> read_file(const std::filesystem::path& file) {
   auto read = read_whole(file, kMaxScenarioBytes);
-  if (auto* text = std::get_if<std::string>(&read)) return std::move(*text);
-  auto& problem = std::get<FileProblem>(read);
+  if (read) return *std::move(read);
+  FileProblem& problem = read.error();
   std::error_code error;
   if (std::filesystem::is_directory(file, error))
     problem.remedy = "name a file, such as " + (file / "scenario.textproto").string();
-  return Problem{file.string(), std::move(problem.what), std::move(problem.remedy)};
+  return failure(Problem{file.string(), std::move(problem.what), std::move(problem.remedy)});
 }
 
 }  // namespace
@@ -64,18 +64,18 @@ struct Scenario::State {
   }
 };
 
-std::variant<Scenario, Problems> Scenario::load(const std::filesystem::path& file,
-                                                const Overrides& overrides) {
-  std::variant<std::string, Problem> text = read_file(file);
-  if (auto* problem = std::get_if<Problem>(&text)) return Problems{std::move(*problem)};
-  return parse(std::get<std::string>(text), file.string(), overrides);
+Result<Scenario, Problems> Scenario::load(const std::filesystem::path& file,
+                                          const Overrides& overrides) {
+  const auto text = read_file(file);
+  if (!text) return failure(Problems{text.error()});
+  return parse(*text, file.string(), overrides);
 }
 
-std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const std::string& file,
-                                                 const Overrides& overrides) {
+Result<Scenario, Problems> Scenario::parse(std::string_view text, const std::string& file,
+                                           const Overrides& overrides) {
   Findings findings(file);
   proto::Scenario scenario;
-  if (!read_text(text, scenario, findings)) return findings.take();
+  if (!read_text(text, scenario, findings)) return failure(findings.take());
   put_over(overrides, scenario, findings);
   std::vector<std::filesystem::path> by_whole_path;
   for (const std::string* name : file_names(scenario)) {
@@ -91,38 +91,39 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   }
   if (target && findings.empty())
     validate_free_region(mission_of(scenario), target->density, checks);
-  if (!findings.empty()) return findings.take();
+  if (!findings.empty()) return failure(findings.take());
 
   make_walls(scenario);
   const int listed_starts = scenario.agents().starts_size();
   draw_starts(scenario);
   validate_ways_home(mission_of(scenario), checks);
-  if (std::vector<Problem> unreachable = findings.take(); !unreachable.empty()) return unreachable;
+  if (std::vector<Problem> unreachable = findings.take(); !unreachable.empty())
+    return failure(unreachable);
   auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
   state->polygon_files = std::move(polygon_files);
   state->by_whole_path = std::move(by_whole_path);
   if (auto problem = use_free_domain(state->target_density, state->mission)) {
     findings.add("basis.free_domain", "the free domain has no modes: " + *problem,
                  "widen the narrowest way, or write free_domain: false");
-    return findings.take();
+    return failure(findings.take());
   }
   warn(state->mission, state->target_density, findings);
   state->warnings = findings.take();
   return Scenario(std::move(state));
 }
 
-std::variant<std::optional<GeoPlace>, Problems> read_origin(const std::filesystem::path& file) {
-  std::variant<std::string, Problem> text = read_file(file);
-  if (auto* problem = std::get_if<Problem>(&text)) return Problems{std::move(*problem)};
+Result<std::optional<GeoPlace>, Problems> read_origin(const std::filesystem::path& file) {
+  const auto text = read_file(file);
+  if (!text) return failure(Problems{text.error()});
   Findings findings(file.string());
   proto::Scenario scenario;
-  if (!read_text(std::get<std::string>(text), scenario, findings)) return findings.take();
+  if (!read_text(*text, scenario, findings)) return failure(findings.take());
   if (!scenario.has_origin()) return std::optional<GeoPlace>();
   const GeoPlace place{scenario.origin().latitude_deg(), scenario.origin().longitude_deg()};
   Checks checks(findings);
   checks.in_range("origin.latitude_deg", place.latitude_deg, {limits::between(-90, 90)});
   checks.in_range("origin.longitude_deg", place.longitude_deg, {limits::between(-180, 180)});
-  if (!findings.empty()) return findings.take();
+  if (!findings.empty()) return failure(findings.take());
   return std::optional(place);
 }
 

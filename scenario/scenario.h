@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/mission/mission.h"
 #include "scenario/parse/problem.h"
 #include "scenario/parse/source.h"
@@ -23,12 +23,12 @@ class Scenario {
  public:
   /// Reads a file of at most kMaxScenarioBytes, applies `overrides`, validates the result and
   /// integrates its target, which reads the maps. Returns all problems at once.
-  static std::variant<Scenario, std::vector<Problem>> load(const std::filesystem::path& file,
-                                                           const Overrides& overrides = {});
+  static Result<Scenario, std::vector<Problem>> load(const std::filesystem::path& file,
+                                                     const Overrides& overrides = {});
   /// The same for text; problems name it as `file`, and maps are in its folder.
-  static std::variant<Scenario, std::vector<Problem>> parse(std::string_view text,
-                                                            const std::string& file,
-                                                            const Overrides& overrides = {});
+  static Result<Scenario, std::vector<Problem>> parse(std::string_view text,
+                                                      const std::string& file,
+                                                      const Overrides& overrides = {});
 
   /// The same with another seed and new random starts: the result of load() with that seed.
   Scenario with_seed(std::uint64_t seed) const;

@@ -167,8 +167,8 @@ std::vector<WorldState> Fleet::snapshot() const {
 std::optional<std::string> Fleet::make_physics(const Mission& mission) {
   if (!physics_maker_ || physics_) return {};
   auto made = physics_maker_(mission);
-  if (auto* problem = std::get_if<std::string>(&made)) return std::move(*problem);
-  physics_ = std::move(std::get<0>(made));
+  if (!made) return made.error();
+  physics_ = *std::move(made);
   return {};
 }
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <variant>
 
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "core/mission/mission.h"
 
 namespace ergocast {
@@ -41,7 +41,6 @@ class Physics {
 };
 
 /// Makes the physics of a mission, or returns why it cannot, with the remedy.
-using PhysicsMaker =
-    std::function<std::variant<std::unique_ptr<Physics>, std::string>(const Mission&)>;
+using PhysicsMaker = std::function<Result<std::unique_ptr<Physics>>(const Mission&)>;
 
 }  // namespace ergocast

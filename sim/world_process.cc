@@ -56,8 +56,8 @@ class OtherWorldWatch {
                         {.on_message = [this](const Message& message, Bus, AgentId) {
                           meet(std::get<WorldState>(message));
                         }});
-    done_ = opened.index() != 0;
-    if (!done_) listener_ = std::get<0>(std::move(opened));
+    done_ = !opened;
+    if (!done_) listener_ = *std::move(opened);
   }
 
   /// A tick beyond the team's answers comes from a running world. Neither a recording nor a world

@@ -140,7 +140,7 @@ StudyFigures run_without_messages(const Mission& mission) {
 }
 
 StudyFigures run_with_messages(std::span<const std::byte> plan) {
-  const Mission mission = std::get<Mission>(decode_plan_with_table(plan));
+  const Mission mission = decode_plan_with_table(plan).value();
   const Mission judged = in_cosines(mission);
   Observer observer(judged);
   NullBuffer nowhere;
@@ -149,7 +149,7 @@ StudyFigures run_with_messages(std::span<const std::byte> plan) {
 }
 
 StudyFigures run_study_mission(std::span<const std::byte> plan) {
-  const Mission mission = std::get<Mission>(decode_plan_with_table(plan));
+  const Mission mission = decode_plan_with_table(plan).value();
   if (lab::IdealTeam::stands_for(mission)) return run_without_messages(mission);
   return run_with_messages(plan);
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
 
 #include "plan/plan.h"
 
@@ -149,8 +148,11 @@ bool MissionFollower::commit(const MissionPart& newest, std::vector<MissionPart>
     return true;
   }
   auto decoded = needs_table_ ? decode_plan_with_table(plan_) : decode_plan(plan_);
-  if (auto* mission = std::get_if<Mission>(&decoded)) mission_ = std::move(*mission);
-  if (auto* problem = std::get_if<std::string>(&decoded)) plan_problem_ = std::move(*problem);
+  if (decoded) {
+    mission_ = *std::move(decoded);
+  } else {
+    plan_problem_ = decoded.error();
+  }
   return true;
 }
 

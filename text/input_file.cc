@@ -60,26 +60,26 @@ std::optional<FileProblem> why_not_regular(const std::filesystem::path& file) {
   return stat(file.c_str(), &status) == 0 ? problem_of(status) : std::nullopt;
 }
 
-std::variant<StdioFile, FileProblem> open_input(const std::filesystem::path& file) {
+Result<StdioFile, FileProblem> open_input(const std::filesystem::path& file) {
   std::optional<FileProblem> problem;
   const int opened = open_regular(file, problem);
-  if (problem) return *std::move(problem);
+  if (problem) return failure(*problem);
   if (std::FILE* stream = fdopen(opened, "rb")) return StdioFile(stream, &std::fclose);
   problem = system_problem(errno);
   close(opened);
-  return *std::move(problem);
+  return failure(*problem);
 }
 
-std::variant<std::string, FileProblem> read_whole(const std::filesystem::path& file,
-                                                  std::size_t most_bytes) {
+Result<std::string, FileProblem> read_whole(const std::filesystem::path& file,
+                                            std::size_t most_bytes) {
   auto opened = open_input(file);
-  if (auto* problem = std::get_if<FileProblem>(&opened)) return std::move(*problem);
-  std::FILE* const stream = std::get<StdioFile>(opened).get();
+  if (!opened) return failure(opened.error());
+  std::FILE* const stream = opened->get();
   struct stat status {};
   // Some files of the system have a size of 0 and bytes nevertheless.
   const bool sized = fstat(fileno(stream), &status) == 0 && status.st_size > 0;
   const auto size = sized ? static_cast<std::size_t>(status.st_size) : std::size_t{0};
-  if (size > most_bytes) return too_large(most_bytes);
+  if (size > most_bytes) return failure(too_large(most_bytes));
   std::string content;
   content.reserve(size);
   std::array<char, 1 << 16> piece;
@@ -87,8 +87,8 @@ std::variant<std::string, FileProblem> read_whole(const std::filesystem::path& f
     got = std::fread(piece.data(), 1, piece.size(), stream);
     content.append(piece.data(), got);
   }
-  if (std::ferror(stream) != 0) return system_problem(errno);
-  if (content.size() > most_bytes) return too_large(most_bytes);
+  if (std::ferror(stream) != 0) return failure(system_problem(errno));
+  if (content.size() > most_bytes) return failure(too_large(most_bytes));
   return content;
 }
 

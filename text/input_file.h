@@ -13,7 +13,8 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
+
+#include "core/base/result.h"
 
 namespace ergocast {
 
@@ -36,11 +37,11 @@ std::optional<FileProblem> why_not_regular(const std::filesystem::path& file);
 using StdioFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 /// The file for the functions of C.
-std::variant<StdioFile, FileProblem> open_input(const std::filesystem::path& file);
+Result<StdioFile, FileProblem> open_input(const std::filesystem::path& file);
 
 /// All bytes of a file of at most `most_bytes`. A larger file is refused before it takes memory.
-std::variant<std::string, FileProblem> read_whole(const std::filesystem::path& file,
-                                                  std::size_t most_bytes);
+Result<std::string, FileProblem> read_whole(const std::filesystem::path& file,
+                                            std::size_t most_bytes);
 
 /// The file as a stream, which is bad() if there is a problem().
 class InputFile : public std::istream {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "runtime/bus/lcm_url.h"
 #include "scenario/scenario.h"
 
@@ -28,8 +28,8 @@ std::string roles_of(const DeployHost& host);
 /// Reads a hosts file, one computer in each line: `name [user@computer] role…` with the roles
 /// `coordinator`, `logger`, `sim`, `driver`, `agent N…` and `agents=COUNT` (which takes free
 /// numbers). `#` begins a comment. Returns all problems at once; they name the file as `file`.
-std::variant<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::string_view text,
-                                                                        const std::string& file);
+Result<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::string_view text,
+                                                                  const std::string& file);
 
 /// The mission to deploy.
 struct DeployMission {

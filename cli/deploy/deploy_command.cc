@@ -96,11 +96,11 @@ DeployMission mission_of(const Scenario& scenario, const DeployOptions& options,
   return mission;
 }
 
-std::variant<std::vector<DeployHost>, std::vector<Problem>> read_hosts(const fs::path& file) {
+Result<std::vector<DeployHost>, std::vector<Problem>> read_hosts(const fs::path& file) {
   const auto read = read_whole(file, kMaxHostsBytes);
-  if (const auto* problem = std::get_if<FileProblem>(&read))
-    return std::vector<Problem>{{file.string(), problem->what, problem->remedy}};
-  return parse_hosts(std::get<std::string>(read), file.string());
+  if (!read)
+    return failure(std::vector<Problem>{{file.string(), read.error().what, read.error().remedy}});
+  return parse_hosts(*read, file.string());
 }
 
 int print(const std::vector<TextFile>& files) {
@@ -163,9 +163,8 @@ int deploy(const DeployOptions& options) {
   const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
   const auto read = read_hosts(options.hosts);
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&read))
-    return report_error(kExitBadInput, *problems);
-  const auto& hosts = std::get<std::vector<DeployHost>>(read);
+  if (!read) return report_error(kExitBadInput, read.error());
+  const auto& hosts = *read;
 
   std::vector<Problem> problems;
   DeployMission mission = mission_of(*scenario, options, problems);
@@ -221,10 +220,8 @@ void add_deploy(CLI::App& app, Action& action) {
           "--lcm-url",
           [options](const std::string& text) {
             auto parsed = LcmUrl::parse(text);
-            if (const auto* problem = std::get_if<std::string>(&parsed)) {
-              throw CLI::ValidationError("--lcm-url", *problem);
-            }
-            options->url = std::get<LcmUrl>(parsed);
+            if (!parsed) throw CLI::ValidationError("--lcm-url", parsed.error());
+            options->url = *parsed;
           },
           "Base URL of the three buses (default: LCM's own group, with ttl=1 if it takes one)")
       ->type_name("URL");

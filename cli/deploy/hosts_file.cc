@@ -56,7 +56,7 @@ class HostsReader {
  public:
   explicit HostsReader(std::string file) : file_(std::move(file)) {}
 
-  std::variant<std::vector<DeployHost>, std::vector<Problem>> read(std::string_view text) {
+  Result<std::vector<DeployHost>, std::vector<Problem>> read(std::string_view text) {
     while (!text.empty()) {
       ++line_;
       const std::size_t end = std::min(text.find('\n'), text.size());
@@ -69,7 +69,7 @@ class HostsReader {
           {file_, "names no host", "write one host a line: name user@computer roles"});
     }
     if (problems_.empty()) number_agents();
-    if (!problems_.empty()) return std::move(problems_);
+    if (!problems_.empty()) return failure(std::move(problems_));
     return std::move(hosts_);
   }
 
@@ -181,8 +181,8 @@ class HostsReader {
 
 }  // namespace
 
-std::variant<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::string_view text,
-                                                                        const std::string& file) {
+Result<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::string_view text,
+                                                                  const std::string& file) {
   return HostsReader(file).read(text);
 }
 

@@ -43,13 +43,12 @@ void Overheard::take(std::span<const std::byte> datagram) {
   const auto lcm = parse_datagram(datagram);
   if (!lcm || lcm->channel.empty()) return;
   const auto decoded = decode(lcm->message, 0, authenticator_, lcm->channel);
-  if (const auto* message = std::get_if<Message>(&decoded)) return take(*message);
-  const Refusal refusal = std::get<Refusal>(decoded);
-  if (refusal == Refusal::kUnkeyed) {
+  if (decoded) return take(*decoded);
+  if (decoded.error() == Refusal::kUnkeyed) {
     ++unkeyed_;
     return;
   }
-  if (refusal == Refusal::kTag) {
+  if (decoded.error() == Refusal::kTag) {
     ++other_key_;
     return;
   }

@@ -3,7 +3,6 @@
 #include "cli/launch/key_pair.h"
 
 #include <filesystem>
-#include <variant>
 
 #include "runtime/process/key_file.h"
 #include "runtime/process/node.h"
@@ -22,8 +21,8 @@ std::optional<std::string> problem_of_key_pair(const std::string& name) {
       return file + ": there is no such file; `ergocast keygen " + name + "` makes both";
     }
     const auto read = read_key_file(file);
-    if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
-    keys[file == coordinator] = std::get<MissionKey>(read);
+    if (!read) return read.error();
+    keys[file == coordinator] = *read;
   }
   if (keys[0].signing) {
     return team + ": with this key every host could begin and end missions; leave that to " +

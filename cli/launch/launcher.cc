@@ -95,8 +95,8 @@ std::optional<std::string> Launcher::launch(Process& process, bool resume) {
   Child::Program program = process.program;
   if (resume) program.command.push_back("--resume");
   auto started = Child::start(program);
-  if (auto* problem = std::get_if<std::string>(&started)) return std::move(*problem);
-  process.child = std::get<Child>(std::move(started));
+  if (!started) return started.error();
+  process.child = *std::move(started);
   process.end_noted = false;
   return std::nullopt;
 }

@@ -107,13 +107,12 @@ nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
 /// The summary that this run's logger has written. Any other file of that name does not count.
 std::optional<nlohmann::ordered_json> loggers_summary(const Launcher::Setup& setup) {
   auto read = read_summary(setup.run_dir);
-  auto* const summary = std::get_if<nlohmann::ordered_json>(&read);
-  if (summary == nullptr || !summary->is_object()) return std::nullopt;
+  if (!read || !read->is_object()) return std::nullopt;
   for (const char* key : {"run_id", "result", "reason"}) {
-    if (!summary->contains(key) || !(*summary)[key].is_string()) return std::nullopt;
+    if (!read->contains(key) || !(*read)[key].is_string()) return std::nullopt;
   }
-  if ((*summary)["run_id"] != to_hex(setup.run)) return std::nullopt;
-  return std::move(*summary);
+  if ((*read)["run_id"] != to_hex(setup.run)) return std::nullopt;
+  return *std::move(read);
 }
 
 /// The logger's summary with the values that only the launcher knows.
@@ -169,14 +168,14 @@ LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
 }
 
 /// The page of the mission, if it is wanted; an error if it cannot be served.
-std::variant<std::unique_ptr<ControlledPage>, std::string> begin_page(const RunOptions& options,
-                                                                      const Launcher::Setup& setup,
-                                                                      ProgressDisplay& display) {
+Result<std::unique_ptr<ControlledPage>> begin_page(const RunOptions& options,
+                                                   const Launcher::Setup& setup,
+                                                   ProgressDisplay& display) {
   if (!options.watch) return std::unique_ptr<ControlledPage>();
   const BusOptions team{setup.url, setup.run, options.authenticator, options.key_file};
   auto started = ControlledPage::start(team, setup.run_dir, options.page, options.control, display);
-  if (auto* started_page = std::get_if<0>(&started)) {
-    PageProcess& page = (*started_page)->page();
+  if (started) {
+    PageProcess& page = (*started)->page();
     display.print("  page     " + page.url());
     display.also_to([&page](const std::string& line) { page.print(line); });
   }
@@ -193,13 +192,12 @@ void show_record(PageProcess& page, StopSignals& signals) {
 }
 
 /// The program that replaces the world; an error if it does not exist.
-std::variant<fs::path, std::string> world_program(const fs::path& wanted,
-                                                  const fs::path& programs) {
+Result<fs::path> world_program(const fs::path& wanted, const fs::path& programs) {
   if (wanted.empty()) return programs / "ergocast-sim";
   const fs::path program = wanted.has_parent_path() ? fs::absolute(wanted) : programs / wanted;
   if (access(program.c_str(), X_OK) == 0 && fs::is_regular_file(program)) return program;
-  return "--world " + wanted.string() + ": there is no program " + program.string() +
-         " (name one that takes --lcm-url and --run-id, with its folder)";
+  return failure("--world " + wanted.string() + ": there is no program " + program.string() +
+                 " (name one that takes --lcm-url and --run-id, with its folder)");
 }
 
 /// Makes the sealed files that the processes inherit, from the data in this process. An error if
@@ -211,8 +209,8 @@ std::optional<std::string> seal_files(const RunOptions& options, const Mission& 
   const auto keep = [&problem](const std::string& name, std::span<const std::byte> bytes,
                                std::optional<SealedFile>& file) {
     auto made = SealedFile::make(name, bytes);
-    if (auto* sealed = std::get_if<SealedFile>(&made)) file = std::move(*sealed);
-    if (auto* why = std::get_if<std::string>(&made)) problem = std::move(*why);
+    if (made) file = *made;
+    if (!made) problem = made.error();
   };
   keep(kPlanFile, encode_plan(mission), setup.plan);
   if (const auto& table = mission.basis.table)
@@ -231,31 +229,27 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display,
                        scenario.mission().basis.free_domain);
-  auto opened = Transport::open(
+  const auto transport = Transport::open(
       setup.url, setup.run, authenticator, subscriptions_of(MissionWatch::kRole),
       {.on_message = [&mission](const Message& message, Bus bus, AgentId transmitter) {
         mission.receive(message, bus, transmitter, now());
       }});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    return report_error(kExitUnavailable, *problem);
-  }
+  if (!transport) return report_error(kExitUnavailable, transport.error());
   announce(setup, scenario, display);
   const auto watching = begin_page(options, setup, display);
-  if (const auto* problem = std::get_if<std::string>(&watching)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  ControlledPage* const page = std::get<0>(watching).get();
+  if (!watching) return report_error(kExitUnavailable, watching.error());
+  ControlledPage* const page = watching->get();
   auto entry = RunEntry::write(live_run(setup, scenario));
-  if (const auto* problem = std::get_if<std::string>(&entry)) {
-    display.print("warning: " + *problem + "; give the other commands --lcm-url");
+  if (!entry) {
+    display.print("warning: " + entry.error() + "; give the other commands --lcm-url");
   }
   Launcher launcher(setup, display);
   if (const auto problem = launcher.start()) {
     launcher.escalate(2);
     return report_error(kExitFailed, *problem);
   }
-  supervise(launcher, mission, *std::get<0>(opened), page, signals, display);
-  entry = std::string();
+  supervise(launcher, mission, **transport, page, signals, display);
+  if (entry) entry->reset();
   display.end();
 
   const auto summary = amended_summary(scenario, setup, launcher, mission);
@@ -286,9 +280,8 @@ int run(const RunOptions& options) {
   Launcher::Setup setup;
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
   const auto world = world_program(options.world, setup.programs);
-  if (const auto* problem = std::get_if<std::string>(&world))
-    return report_error(kExitBadInput, *problem);
-  setup.world = std::get<fs::path>(world);
+  if (!world) return report_error(kExitBadInput, world.error());
+  setup.world = *world;
   setup.world_arguments = options.world_arguments;
   setup.agents = static_cast<int>(scenario->mission().starts_m.size());
   for (const AgentKind& kind : scenario->mission().kinds)
@@ -307,10 +300,8 @@ int run(const RunOptions& options) {
     setup.url.base_port = ports->base_port();
   }
   const auto prepared = prepare_run_directory(options.out, *scenario);
-  if (const auto* problem = std::get_if<std::string>(&prepared)) {
-    return report_error(kExitBadInput, *problem);
-  }
-  setup.run_dir = std::get<fs::path>(prepared);
+  if (!prepared) return report_error(kExitBadInput, prepared.error());
+  setup.run_dir = *prepared;
   if (const auto problem = seal_files(options, scenario->mission(), setup))
     return report_error(kExitFailed, *problem);
   return run_mission(options, *scenario, setup, signals);
@@ -322,10 +313,8 @@ void add_run_url_option(CLI::App& command, RunOptions& options) {
           "--lcm-url",
           [&options](const std::string& text) {
             auto parsed = LcmUrl::parse(text);
-            if (const auto* problem = std::get_if<std::string>(&parsed)) {
-              throw CLI::ValidationError("--lcm-url", *problem);
-            }
-            options.url = std::get<LcmUrl>(parsed);
+            if (!parsed) throw CLI::ValidationError("--lcm-url", parsed.error());
+            options.url = *parsed;
           },
           "Base URL of the three buses (default: this host, free ports of the run's own)")
       ->type_name("URL");

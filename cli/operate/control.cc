@@ -20,10 +20,10 @@ constexpr auto kStatePeriod = 500ms;
 
 }  // namespace
 
-std::variant<std::unique_ptr<Control>, std::string> Control::open(
-    const BusOptions& team, std::function<void(const std::string&)> print) {
+Result<std::unique_ptr<Control>> Control::open(const BusOptions& team,
+                                               std::function<void(const std::string&)> print) {
   auto links = ControlLink::pair();
-  if (!links) return std::string("no page with control: the system has no descriptors left");
+  if (!links) return failure("no page with control: the system has no descriptors left");
   std::unique_ptr<Control> control(new Control(team.run, std::move(*links), std::move(print)));
   auto opened = listen_to_teams(
       team,
@@ -32,8 +32,8 @@ std::variant<std::unique_ptr<Control>, std::string> Control::open(
           monitored->receive(message, bus, transmitter, now());
       },
       [](const Message&, Bus, AgentId) {});
-  if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
-  control->transport_ = std::get<0>(std::move(opened));
+  if (!opened) return failure(std::move(opened).error());
+  control->transport_ = *std::move(opened);
   return control;
 }
 

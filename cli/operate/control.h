@@ -7,12 +7,12 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "cli/operate/control_desk.h"
 #include "cli/team/team_monitor.h"
 #include "cli/watch/control_link.h"
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "runtime/bus/transport.h"
 #include "runtime/process/node.h"
 
@@ -23,8 +23,8 @@ class Control {
   /// @param team   its run is known, and its key can sign
   /// @param print  gets the lines of the log
   /// An error if LCM cannot be used, or the system has no descriptors.
-  static std::variant<std::unique_ptr<Control>, std::string> open(
-      const BusOptions& team, std::function<void(const std::string&)> print);
+  static Result<std::unique_ptr<Control>> open(const BusOptions& team,
+                                               std::function<void(const std::string&)> print);
 
   /// Takes requests in, follows orders and tells the page. Call at least ten times a second.
   void attend(Instant now);

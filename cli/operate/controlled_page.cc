@@ -12,16 +12,18 @@ namespace ergocast::cli {
 namespace {
 
 /// The page's process checks what it receives, and cannot sign.
-std::variant<SealedFile, std::string> key_of_page(const MissionKey& key) {
+Result<SealedFile> key_of_page(const MissionKey& key) {
   const std::string text = key_text(key, false);
   return SealedFile::make("page-key", std::as_bytes(std::span(text)));
 }
 
 }  // namespace
 
-std::variant<std::unique_ptr<ControlledPage>, std::string> ControlledPage::start(
-    const BusOptions& team, const std::filesystem::path& run_dir, const PageOptions& page,
-    bool with_control, ProgressDisplay& display) {
+Result<std::unique_ptr<ControlledPage>> ControlledPage::start(const BusOptions& team,
+                                                              const std::filesystem::path& run_dir,
+                                                              const PageOptions& page,
+                                                              bool with_control,
+                                                              ProgressDisplay& display) {
   auto controlled = std::make_unique<ControlledPage>();
   PageProcess::Setup setup;
   setup.program = std::filesystem::read_symlink("/proc/self/exe");
@@ -31,19 +33,19 @@ std::variant<std::unique_ptr<ControlledPage>, std::string> ControlledPage::start
   setup.page = page;
   if (const MissionKey* key = team.authenticator.key()) {
     auto sealed = key_of_page(*key);
-    if (auto* problem = std::get_if<std::string>(&sealed)) return std::move(*problem);
-    setup.key = std::get<SealedFile>(std::move(sealed));
+    if (!sealed) return failure(std::move(sealed).error());
+    setup.key = *std::move(sealed);
   }
   if (with_control) {
     auto opened = Control::open(team, [&display](const std::string& line) { display.print(line); });
-    if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
-    controlled->control_ = std::get<0>(std::move(opened));
+    if (!opened) return failure(std::move(opened).error());
+    controlled->control_ = *std::move(opened);
     setup.control = &controlled->control_->page_end();
     setup.control_token = controlled->control_->token();
   }
   auto started = PageProcess::start(setup, display);
-  if (auto* problem = std::get_if<std::string>(&started)) return std::move(*problem);
-  controlled->page_ = std::get<0>(std::move(started));
+  if (!started) return failure(std::move(started).error());
+  controlled->page_ = *std::move(started);
   return controlled;
 }
 

@@ -5,12 +5,12 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "cli/operate/control.h"
 #include "cli/watch/page_process.h"
 #include "cli/watch/progress.h"
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "runtime/process/node.h"
 
 namespace ergocast::cli {
@@ -20,9 +20,10 @@ class ControlledPage {
   /// Starts the page's process. The page shows `team`, and with control gives orders to it.
   /// An error if the page's address or LCM cannot be used.
   /// @param display  gets the lines about the page and about control; it outlives the page
-  static std::variant<std::unique_ptr<ControlledPage>, std::string> start(
-      const BusOptions& team, const std::filesystem::path& run_dir, const PageOptions& page,
-      bool with_control, ProgressDisplay& display);
+  static Result<std::unique_ptr<ControlledPage>> start(const BusOptions& team,
+                                                       const std::filesystem::path& run_dir,
+                                                       const PageOptions& page, bool with_control,
+                                                       ProgressDisplay& display);
 
   PageProcess& page() { return *page_; }
   /// Null: the page only shows.

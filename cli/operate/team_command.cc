@@ -31,9 +31,8 @@ std::optional<int> TeamCommand::open() {
         receive(message, bus, transmitter);
       },
       [this](const Message& message, Bus, AgentId) { replay_ = header_of(message).run; });
-  if (const auto* problem = std::get_if<std::string>(&opened))
-    return report_error(kExitUnavailable, *problem);
-  transport_ = std::get<0>(std::move(opened));
+  if (!opened) return report_error(kExitUnavailable, opened.error());
+  transport_ = *std::move(opened);
   since_ = now();
   return std::nullopt;
 }

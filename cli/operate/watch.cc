@@ -53,17 +53,13 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
   const auto mission = recorded_mission_or_complain(options.run_dir);
   if (!mission) return kExitBadInput;
   auto data = recorded_page_data(options.run_dir, *mission);
-  if (const auto* problem = std::get_if<std::string>(&data)) {
-    return report_error(kExitBadInput, *problem);
-  }
-  const Connections::Text page = recorded_page(std::get<Json>(data));
+  if (!data) return report_error(kExitBadInput, data.error());
+  const Connections::Text page = recorded_page(*data);
   auto socket = PageSocket::open(options.page);
-  if (const auto* problem = std::get_if<std::string>(&socket)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  announce(std::get<PageSocket>(socket).url());
+  if (!socket) return report_error(kExitUnavailable, socket.error());
+  announce(socket->url());
   const auto server =
-      PageServer::make(std::get<PageSocket>(std::move(socket)),
+      PageServer::make(*std::move(socket),
                        {[&page] { return page; }, content_security_policy(run_web_page()), {}, {}});
   pollfd waiting[]{{server->fd(), POLLIN, 0}, {signals.fd(), POLLIN, 0}};
   serve_until_stop(*server, signals, [&waiting] { poll(waiting, std::size(waiting), kServeMs); });
@@ -73,16 +69,12 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
 /// @param run_dir  the team's run directory; empty: not known here
 int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals& signals) {
   auto opened = LiveWatch::open({options, run_dir, {}, {}});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  LiveWatch& watch = *std::get<0>(opened);
+  if (!opened) return report_error(kExitUnavailable, opened.error());
+  LiveWatch& watch = **opened;
   auto socket = PageSocket::open(options.page);
-  if (const auto* problem = std::get_if<std::string>(&socket)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  announce(std::get<PageSocket>(socket).url());
-  const auto server = PageServer::make(std::get<PageSocket>(std::move(socket)), watch.content());
+  if (!socket) return report_error(kExitUnavailable, socket.error());
+  announce(socket->url());
+  const auto server = PageServer::make(*std::move(socket), watch.content());
   serve_until_stop(*server, signals, [&] {
     watch.listen(server->fd());
     if (watch.over()) watch.finish();
@@ -107,10 +99,8 @@ int control_team(WatchOptions options, const fs::path& run_dir, StopSignals& sig
   options.run = finder.run();
   ProgressDisplay display;
   auto started = ControlledPage::start(options, run_dir, options.page, true, display);
-  if (const auto* problem = std::get_if<std::string>(&started)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  ControlledPage& watched = *std::get<0>(started);
+  if (!started) return report_error(kExitUnavailable, started.error());
+  ControlledPage& watched = **started;
   announce(watched.page().url());
   std::optional<Instant> over_since;
   while (signals.take() == 0) {
@@ -135,8 +125,10 @@ void add_watch(CLI::App& app, Action& action) {
   add_control_option(*command, options->control);
   command->get_option("--control")->excludes("RUN_DIR");
   command->footer(
-      "Serves the page until Ctrl-C. Sends nothing, unless --control is given. Exit codes: 0 done;\n"
-      "2 no record, or it is damaged, or several runs are found; 3 LCM or the address cannot be used;\n"
+      "Serves the page until Ctrl-C. Sends nothing, unless --control is given. Exit codes: 0 "
+      "done;\n"
+      "2 no record, or it is damaged, or several runs are found; 3 LCM or the address cannot be "
+      "used;\n"
       "4 --control finds no team.");
   command->callback([&action, options, command] {
     action = [options, command] {

@@ -69,9 +69,8 @@ int export_run(const ExportOptions& options) {
   std::error_code none;
   if (!origin && fs::exists(scenario, none)) {
     auto read = read_origin(scenario);
-    if (const auto* problems = std::get_if<std::vector<Problem>>(&read))
-      return report_error(kExitBadInput, *problems);
-    origin = std::get<0>(read);
+    if (!read) return report_error(kExitBadInput, read.error());
+    origin = *read;
   }
   if (!origin && options.to == "geojson") {
     print_message(
@@ -80,12 +79,11 @@ int export_run(const ExportOptions& options) {
     origin = GeoPlace{0, 0};
   }
   auto record = read_export_record(options.run_dir, *mission, origin);
-  if (const auto* problem = std::get_if<std::string>(&record))
-    return report_error(kExitBadInput, *problem);
+  if (!record) return report_error(kExitBadInput, record.error());
   fs::path out = options.out;
   if (out.empty())
     out = options.run_dir / (options.to == "csv" ? "export" : "export." + options.to);
-  if (const auto problem = write(std::get<ExportRecord>(record), options.to, out))
+  if (const auto problem = write(*record, options.to, out))
     return report_error(kExitFailed, *problem);
   std::printf("%s\n", printable(fs::absolute(out).string()).c_str());
   return kExitDone;

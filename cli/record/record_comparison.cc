@@ -63,9 +63,8 @@ FileComparison compare_text(const fs::path& run_dir, const std::string& name,
                             const std::string& expected, const char* compared) {
   const fs::path file = run_dir / name;
   const auto read = read_whole(file, expected.size() + kMostSurplusBytes);
-  if (const auto* recorded = std::get_if<std::string>(&read))
-    return {name, compared, "", text_difference(file, *recorded, expected)};
-  const auto& problem = std::get<FileProblem>(read);
+  if (read) return {name, compared, "", text_difference(file, *read, expected)};
+  const FileProblem& problem = read.error();
   if (problem.kind == FileProblem::Kind::kTooLarge)
     return {name, compared, "",
             file.string() + " is longer than what it should hold, " +
@@ -178,24 +177,22 @@ std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Missi
     }
   }
   const auto read = read_whole(run_dir / kScenarioFile, kMaxScenarioBytes);
-  if (const auto* problem = std::get_if<FileProblem>(&read))
-    return {hash, {kScenarioFile, "", why_left_out(*problem), ""}};
-  if (std::get<std::string>(read) == mission_text(mission))
+  if (!read) return {hash, {kScenarioFile, "", why_left_out(read.error()), ""}};
+  if (*read == mission_text(mission))
     return {hash, {kScenarioFile, "all but the target, which it lacks", "", ""}};
   const auto loaded = Scenario::load(run_dir / kScenarioFile);
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
-    const std::string problem = to_string(problems->front());
-    if (lacks_a_map(*problems)) {
+  if (!loaded) {
+    const std::string problem = to_string(loaded.error().front());
+    if (lacks_a_map(loaded.error())) {
       return {hash,
               {kScenarioFile, "", problem, ""},
               {kTargetDensityFile, "", "its maps are missing", ""}};
     }
     return {hash, {kScenarioFile, "", "", problem + '\n'}};
   }
-  const Scenario& scenario = std::get<Scenario>(loaded);
-  return {compare_plan(run_dir, mission, scenario, hash),
-          compare_text(run_dir, kScenarioFile, scenario.print(), "with the plan"),
-          compare_text(run_dir, kTargetDensityFile, target_density_text(scenario.target_density()),
+  return {compare_plan(run_dir, mission, *loaded, hash),
+          compare_text(run_dir, kScenarioFile, loaded->print(), "with the plan"),
+          compare_text(run_dir, kTargetDensityFile, target_density_text(loaded->target_density()),
                        "with the scenario's target")};
 }
 
@@ -274,12 +271,10 @@ FileComparison compare_summary(const fs::path& run_dir, const Mission& mission,
 
 FileComparison compare_report(const fs::path& run_dir, const Mission& mission) {
   const auto drawn = draw_report(run_dir, mission, recorded_team(run_dir, mission));
-  if (const auto* problem = std::get_if<std::string>(&drawn))
-    return {kReportFile, "", "", *problem + '\n'};
+  if (!drawn) return {kReportFile, "", "", drawn.error() + '\n'};
   const bool sources_are_there =
       fs::exists(run_dir / kSummaryFile) && fs::exists(run_dir / kTargetDensityFile);
-  const FileComparison compared =
-      compare_text(run_dir, kReportFile, std::get<ReportPage>(drawn).html, "drawn anew");
+  const FileComparison compared = compare_text(run_dir, kReportFile, drawn->html, "drawn anew");
   if (compared.difference.empty() || sources_are_there) return compared;
   return {kReportFile, "", "a file that it may have been drawn from is not there", ""};
 }

@@ -45,14 +45,14 @@ struct ReplayOptions {
 };
 
 /// Whether any process sends on the URL; an error if LCM cannot be used.
-std::variant<bool, std::string> is_taken(const LcmUrl& url, StopSignals& signals) {
+Result<bool> is_taken(const LcmUrl& url, StopSignals& signals) {
   BusOptions bus;
   bus.url = url;
   bool heard = false;
   const OnMessage on_message = [&heard](const Message&, Bus, AgentId) { heard = true; };
   auto opened = listen_to_teams(bus, on_message, on_message);
-  if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
-  Transport& transport = *std::get<0>(opened);
+  if (!opened) return failure(opened.error());
+  Transport& transport = **opened;
   const Instant until = now() + kReplayLookAround;
   while (!heard && now() < until) transport.deliver_until(until, signals.fd());
   const RefusalCounts& refused = transport.refused();
@@ -150,14 +150,12 @@ void announce(const LcmUrl& url, const Mission& mission, const ReplayOptions& op
 int play(const ReplayOptions& options, const LcmUrl& url, const Mission& mission,
          StopSignals& signals) {
   auto source = ReplaySource::open(options.run_dir, mission, options.authenticator);
-  if (const auto* problem = std::get_if<std::string>(&source))
-    return report_error(kExitBadInput, *problem);
+  if (!source) return report_error(kExitBadInput, source.error());
   auto writer = BusWriter::open(url);
-  if (const auto* problem = std::get_if<std::string>(&writer))
-    return report_error(kExitUnavailable, *problem);
+  if (!writer) return report_error(kExitUnavailable, writer.error());
   announce(url, mission, options);
-  ReplaySource& messages = std::get<ReplaySource>(source);
-  Player player(messages, *std::get<0>(writer), signals, mission, options);
+  ReplaySource& messages = *source;
+  Player player(messages, **writer, signals, mission, options);
   const std::int64_t sent = player.play();
   if (messages.problem()) return report_error(kExitBadInput, *messages.problem());
   if (sent == 0 && options.from_s > player.t_s()) {
@@ -183,9 +181,8 @@ int replay(const ReplayOptions& options) {
     return play(options, url, *mission, signals);
   }
   const auto taken = is_taken(url, signals);
-  if (const auto* problem = std::get_if<std::string>(&taken))
-    return report_error(kExitUnavailable, *problem);
-  if (std::get<bool>(taken)) {
+  if (!taken) return report_error(kExitUnavailable, taken.error());
+  if (*taken) {
     return report_error(
         kExitBadInput,
         url.base() +
@@ -197,13 +194,11 @@ int replay(const ReplayOptions& options) {
 /// A URL of this host only.
 LcmUrl replay_url(const std::string& text) {
   auto parsed = LcmUrl::parse(text);
-  if (const auto* problem = std::get_if<std::string>(&parsed)) {
-    throw CLI::ValidationError("--lcm-url", *problem);
-  }
-  if (std::get<LcmUrl>(parsed).ttl != 0) {
+  if (!parsed) throw CLI::ValidationError("--lcm-url", parsed.error());
+  if (parsed->ttl != 0) {
     throw CLI::ValidationError("--lcm-url", "a replay stays on this host: write ttl=0");
   }
-  return std::get<LcmUrl>(parsed);
+  return *parsed;
 }
 
 }  // namespace

@@ -24,12 +24,12 @@ std::vector<Bus> buses_of(const Message& message) {
 
 }  // namespace
 
-std::variant<ReplaySource, std::string> ReplaySource::open(
-    const std::filesystem::path& run_dir, const Mission& mission,
-    const MessageAuthenticator& authenticator) {
+Result<ReplaySource> ReplaySource::open(const std::filesystem::path& run_dir,
+                                        const Mission& mission,
+                                        const MessageAuthenticator& authenticator) {
   auto reader = EventLogReader::open(run_dir);
-  if (auto* problem = std::get_if<std::string>(&reader)) return std::move(*problem);
-  return ReplaySource(std::get<EventLogReader>(std::move(reader)), mission, authenticator);
+  if (!reader) return failure(reader.error());
+  return ReplaySource(*std::move(reader), mission, authenticator);
 }
 
 const ReplayedMessage* ReplaySource::refuse(Refusal why) {
@@ -52,8 +52,8 @@ const ReplayedMessage* ReplaySource::next() {
     return nullptr;
   }
   const auto decoded = decode(event->bytes, run_, authenticator_, event->channel, &signatures_);
-  if (const auto* refusal = std::get_if<Refusal>(&decoded)) return refuse(*refusal);
-  const Message& message = std::get<Message>(decoded);
+  if (!decoded) return refuse(decoded.error());
+  const Message& message = *decoded;
   if (!transmitter_of(message, event->channel)) return refuse(Refusal::kType);
   run_ = header_of(message).run;
   if (std::holds_alternative<WorldState>(message)) {

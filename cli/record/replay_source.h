@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/mission/mission.h"
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/record/event_log_reader.h"
@@ -28,9 +28,8 @@ struct ReplayedMessage {
 class ReplaySource {
  public:
   /// @param seal  has the team's key, if the run had one
-  static std::variant<ReplaySource, std::string> open(const std::filesystem::path& run_dir,
-                                                      const Mission& mission,
-                                                      const MessageAuthenticator& authenticator);
+  static Result<ReplaySource> open(const std::filesystem::path& run_dir, const Mission& mission,
+                                   const MessageAuthenticator& authenticator);
 
   /// Valid until the next call; null at the end and after a problem.
   const ReplayedMessage* next();

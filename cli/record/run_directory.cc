@@ -120,42 +120,42 @@ void print_summary(const Json& summary) {
 
 std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& overrides) {
   auto loaded = Scenario::load(file, overrides);
-  if (auto* scenario = std::get_if<Scenario>(&loaded)) return std::move(*scenario);
-  const auto& problems = std::get<std::vector<Problem>>(loaded);
-  report_error(kExitBadInput, problems);
-  report_error(kExitBadInput,
-               std::to_string(problems.size()) + (problems.size() == 1 ? " problem" : " problems"));
+  if (loaded) return *std::move(loaded);
+  const std::size_t count = loaded.error().size();
+  report_error(kExitBadInput, loaded.error());
+  report_error(kExitBadInput, std::to_string(count) + (count == 1 ? " problem" : " problems"));
   return std::nullopt;
 }
 
 std::optional<Mission> recorded_mission_or_complain(const fs::path& run_dir) {
   auto read = read_mission(run_dir);
-  if (auto* mission = std::get_if<Mission>(&read)) return std::move(*mission);
-  report_error(kExitBadInput, std::get<std::string>(read));
+  if (read) return *std::move(read);
+  report_error(kExitBadInput, read.error());
   return std::nullopt;
 }
 
-std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted,
-                                                          const Scenario& scenario) {
+Result<fs::path> prepare_run_directory(const fs::path& wanted, const Scenario& scenario) {
   const fs::path folder = wanted.empty() ? default_folder(scenario.name()) : wanted;
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
-    return "--out " + folder.string() + ": is a file; give a new folder";
+    return failure("--out " + folder.string() + ": is a file; give a new folder");
   }
   if (fs::exists(folder, error) && !fs::is_empty(folder, error)) {
-    return "--out " + folder.string() + ": is not empty; give a new folder, or empty this one";
+    return failure("--out " + folder.string() +
+                   ": is not empty; give a new folder, or empty this one");
   }
   fs::create_directories(folder / "log", error);
-  if (error) return "--out " + folder.string() + ": " + error.message() + "; give another folder";
+  if (error)
+    return failure("--out " + folder.string() + ": " + error.message() + "; give another folder");
   const std::vector<std::byte> bytes = encode_plan(scenario.mission());
   const std::string_view plan(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (auto problem = write_file(folder / kScenarioFile, scenario.print())) return *problem;
-  if (auto problem = write_file(folder / kPlanFile, plan)) return *problem;
+  if (auto problem = write_file(folder / kScenarioFile, scenario.print())) return failure(*problem);
+  if (auto problem = write_file(folder / kPlanFile, plan)) return failure(*problem);
   if (auto problem = write_target_density(folder / kTargetDensityFile, scenario.target_density())) {
-    return *problem;
+    return failure(*problem);
   }
   if (const auto& table = scenario.mission().basis.table) {
-    if (auto problem = save_table(*table, folder)) return *problem;
+    if (auto problem = save_table(*table, folder)) return failure(*problem);
   }
   return folder;
 }

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <variant>
 
+#include "core/base/result.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::cli {
@@ -20,8 +20,8 @@ std::optional<Mission> recorded_mission_or_complain(const std::filesystem::path&
 
 /// Makes the folder (`wanted`, or runs/<scenario>-<time> if empty) and writes scenario.textproto,
 /// plan.binpb and target_density.csv into it. An error if it cannot be written or is not empty.
-std::variant<std::filesystem::path, std::string> prepare_run_directory(
-    const std::filesystem::path& wanted, const Scenario& scenario);
+Result<std::filesystem::path> prepare_run_directory(const std::filesystem::path& wanted,
+                                                    const Scenario& scenario);
 
 /// Writes the report, prints how the run ended, and prints the paths of all results.
 void conclude(const std::filesystem::path& run_dir, const nlohmann::ordered_json& summary,

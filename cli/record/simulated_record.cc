@@ -33,9 +33,9 @@ nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scen
 
 }  // namespace
 
-std::variant<SimulatedRecord, std::string> simulate_into(
-    RunRecord& record, const Scenario& scenario, const std::function<void(lab::Simulation&)>& look,
-    SimulatedEvents* events) {
+Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
+                                      const std::function<void(lab::Simulation&)>& look,
+                                      SimulatedEvents* events) {
   lab::Simulation simulation(
       {.plan = encode_plan(scenario.mission()), .version = version(), .host = host_name()},
       record.trajectory(), record.metrics(), events);
@@ -53,7 +53,7 @@ std::variant<SimulatedRecord, std::string> simulate_into(
   auto error = record.flush();
   if (!error && events) error = events->flush();
   if (!error) error = write_file(record.folder() / kSummaryFile, to_text(result.summary));
-  if (error) return *error + "; the record is incomplete";
+  if (error) return failure(*error + "; the record is incomplete");
   return result;
 }
 

@@ -5,9 +5,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <variant>
 
 #include "cli/record/simulated_events.h"
+#include "core/base/result.h"
 #include "lab/simulation.h"
 #include "logger/run_record.h"
 #include "scenario/scenario.h"
@@ -26,8 +26,8 @@ struct SimulatedRecord {
 /// @param look    called every few hundred events; it may end the simulation
 /// @param events  writes the event log, too; may be null
 /// @return        the error if the record is incomplete
-std::variant<SimulatedRecord, std::string> simulate_into(
-    RunRecord& record, const Scenario& scenario, const std::function<void(lab::Simulation&)>& look,
-    SimulatedEvents* events = nullptr);
+Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
+                                      const std::function<void(lab::Simulation&)>& look,
+                                      SimulatedEvents* events = nullptr);
 
 }  // namespace ergocast::cli

@@ -217,9 +217,8 @@ int verify(const fs::path& run_dir) {
     if (problem) return report_error(kExitBadInput, *problem);
   }
   auto read = read_summary(run_dir);
-  if (const auto* problem = std::get_if<std::string>(&read))
-    return report_error(kExitBadInput, *problem);
-  Json& summary = std::get<Json>(read);
+  if (!read) return report_error(kExitBadInput, read.error());
+  Json& summary = *read;
   Repetition repetition(*mission, recorded_holds(run_dir, summary));
   if (!summary.is_object()) {
     print_message(run_dir.string() + ": no " + kSummaryFile +
@@ -244,11 +243,9 @@ int verify(const fs::path& run_dir) {
   }
   files.push_back({kTrajectoryFile, std::to_string(comparison.rows()) + " rows", "", ""});
   auto rows = read_tracks(run_dir);
-  if (const auto* problem = std::get_if<std::string>(&rows)) {
-    return report_difference(run_dir, *problem + '\n', summary);
-  }
-  auto rest = compare_the_rest(run_dir, *mission, std::get<RunData>(std::move(rows)), repetition,
-                               comparison, summary);
+  if (!rows) return report_difference(run_dir, rows.error() + '\n', summary);
+  auto rest =
+      compare_the_rest(run_dir, *mission, *std::move(rows), repetition, comparison, summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, files);
 }

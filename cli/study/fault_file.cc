@@ -42,13 +42,14 @@ std::string take(const CLI::ConfigItem& item, lab::Faults& faults) {
 
 }  // namespace
 
-std::variant<lab::Faults, std::vector<std::string>> read_faults(const std::filesystem::path& file) {
+Result<lab::Faults, std::vector<std::string>> read_faults(const std::filesystem::path& file) {
   const std::string where = file.string() + ": ";
   const auto read = read_whole(file, kMostFaultBytes);
-  if (const auto* problem = std::get_if<FileProblem>(&read)) {
-    return std::vector{where + problem->what + " (give the name of a file, or \"swarm\")"};
+  if (!read) {
+    return failure(
+        std::vector{where + read.error().what + " (give the name of a file, or \"swarm\")"});
   }
-  std::istringstream stream(std::get<std::string>(read));
+  std::istringstream stream(*read);
   lab::Faults faults;
   std::vector<std::string> problems;
   try {
@@ -59,7 +60,7 @@ std::variant<lab::Faults, std::vector<std::string>> read_faults(const std::files
   } catch (const CLI::Error& error) {
     problems.push_back(where + error.what());
   }
-  if (!problems.empty()) return problems;
+  if (!problems.empty()) return failure(problems);
   return faults;
 }
 

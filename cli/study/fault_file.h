@@ -4,14 +4,14 @@
 
 #include <filesystem>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "lab/faults.h"
 
 namespace ergocast::cli {
 
 /// The faults in a file, or all its problems, "file: field: what is wrong (remedy)".
-std::variant<lab::Faults, std::vector<std::string>> read_faults(const std::filesystem::path& file);
+Result<lab::Faults, std::vector<std::string>> read_faults(const std::filesystem::path& file);
 
 }  // namespace ergocast::cli

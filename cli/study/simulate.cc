@@ -28,9 +28,8 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
 }
 
 /// Shows the progress on the terminal; a signal ends the simulation.
-std::variant<SimulatedRecord, std::string> simulate_and_show(RunRecord& record,
-                                                             const Scenario& scenario,
-                                                             bool event_log) {
+Result<SimulatedRecord> simulate_and_show(RunRecord& record, const Scenario& scenario,
+                                          bool event_log) {
   StopSignals signals;
   ProgressDisplay display;
   std::optional<SimulatedEvents> events;
@@ -45,22 +44,14 @@ std::variant<SimulatedRecord, std::string> simulate_and_show(RunRecord& record,
 int simulate(const MissionOptions& options, bool event_log) {
   const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
-  const auto prepared = prepare_run_directory(options.out, *scenario);
-  if (const auto* problem = std::get_if<std::string>(&prepared)) {
-    return report_error(kExitBadInput, *problem);
-  }
-  const auto& folder = std::get<std::filesystem::path>(prepared);
-  auto created = RunRecord::create(folder);
-  if (const auto* problem = std::get_if<std::string>(&created)) {
-    return report_error(kExitBadInput, *problem);
-  }
-  const auto simulated = simulate_and_show(*std::get<0>(created), *scenario, event_log);
-  if (const auto* error = std::get_if<std::string>(&simulated)) {
-    return report_error(kExitFailed, *error);
-  }
-  const auto& result = std::get<SimulatedRecord>(simulated);
-  conclude(folder, result.summary, *scenario);
-  return result.failed ? kExitFailed : kExitDone;
+  const auto folder = prepare_run_directory(options.out, *scenario);
+  if (!folder) return report_error(kExitBadInput, folder.error());
+  const auto record = RunRecord::create(*folder);
+  if (!record) return report_error(kExitBadInput, record.error());
+  const auto simulated = simulate_and_show(**record, *scenario, event_log);
+  if (!simulated) return report_error(kExitFailed, simulated.error());
+  conclude(*folder, simulated->summary, *scenario);
+  return simulated->failed ? kExitFailed : kExitDone;
 }
 
 }  // namespace

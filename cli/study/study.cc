@@ -153,10 +153,8 @@ void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
 
 int study(const StudyOptions& options) {
   auto compiled = study_points(options);
-  if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled)) {
-    return report_error(kExitBadInput, *problems);
-  }
-  auto& points = std::get<StudyPoints>(compiled);
+  if (!compiled) return report_error(kExitBadInput, compiled.error());
+  auto& points = *compiled;
   const std::size_t count = points.scenarios.size();
   if (options.seeds.count() > kMostStudyRuns / count) {
     return report_error(kExitBadInput, "--seeds: " + std::to_string(count) + " points with " +
@@ -170,9 +168,8 @@ int study(const StudyOptions& options) {
                              options.seeds.last,   command,           points.missions};
   }
   auto opened = StudyDirectory::open(options.out, points.identity);
-  if (const auto* problem = std::get_if<std::string>(&opened))
-    return report_error(kExitBadInput, *problem);
-  StudyDirectory& directory = *std::get<0>(opened);
+  if (!opened) return report_error(kExitBadInput, opened.error());
+  StudyDirectory& directory = **opened;
 
   StudyRunner runner(points, missing_runs(count, options, directory.done()), directory);
   runner.run_all(options.jobs);

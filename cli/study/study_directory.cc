@@ -128,9 +128,8 @@ std::optional<std::string> objection(const fs::path& folder, const StudyIdentity
                           "is not empty and no study; give a new folder, or empty this one");
     return std::nullopt;
   }
-  const auto read = read_identity(folder);
-  const auto* theirs = std::get_if<StudyIdentity>(&read);
-  std::string why = theirs == nullptr ? std::get<std::string>(read) : difference(ours, *theirs);
+  const auto theirs = read_identity(folder);
+  std::string why = theirs ? difference(ours, *theirs) : theirs.error();
   if (why.empty() && name_of(ours.shard) != name_of(theirs->shard)) {
     why = "its study is " + name_of(theirs->shard) + ", this one " + name_of(ours.shard);
   }
@@ -170,41 +169,40 @@ std::string difference(const StudyIdentity& our_identity, const StudyIdentity& t
   return "";
 }
 
-std::variant<StudyIdentity, std::string> read_identity(const fs::path& folder) {
+Result<StudyIdentity> read_identity(const fs::path& folder) {
   const fs::path file = folder / kIdentityFile;
   std::error_code error;
-  if (!fs::exists(file, error)) return "is no study: there is no study.json";
+  if (!fs::exists(file, error)) return failure("is no study: there is no study.json");
   const auto read = read_whole(file, kMostIdentityBytes);
-  if (const auto* problem = std::get_if<FileProblem>(&read))
-    return "its study.json " + problem->what;
+  if (!read) return failure("its study.json " + read.error().what);
   try {
-    const Json json = parse_bounded<Json>(std::get<std::string>(read), kMostIdentityValues);
+    const Json json = parse_bounded<Json>(*read, kMostIdentityValues);
     StudyIdentity identity = identity_from(json);
     if (is_sound(identity)) return identity;
   } catch (const JsonTooLarge& problem) {
-    return std::string("its study.json ") + problem.what();
+    return failure(std::string("its study.json ") + problem.what());
   } catch (const Json::exception&) {  // a key is missing, or its value is of another type
   }
-  return "its study.json is damaged";
+  return failure("its study.json is damaged");
 }
 
-std::variant<std::unique_ptr<StudyDirectory>, std::string> StudyDirectory::open(
-    const fs::path& folder, const StudyIdentity& identity) {
-  if (auto problem = objection(folder, identity)) return *problem;
+Result<std::unique_ptr<StudyDirectory>> StudyDirectory::open(const fs::path& folder,
+                                                             const StudyIdentity& identity) {
+  if (auto problem = objection(folder, identity)) return failure(*problem);
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) return problem_with(folder, error.message() + "; give another folder");
+  if (error) return failure(problem_with(folder, error.message() + "; give another folder"));
   if (!fs::exists(folder / kIdentityFile)) {
     if (auto problem = write_file(folder / kIdentityFile, to_json(identity).dump(2) + '\n'))
-      return *problem;
+      return failure(*problem);
   }
   const int lock = ::open((folder / kIdentityFile).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (lock < 0 || flock(lock, LOCK_EX | LOCK_NB) != 0) {
     if (lock >= 0) close(lock);
-    return problem_with(folder, "another ergocast study is at work there; wait for it");
+    return failure(problem_with(folder, "another ergocast study is at work there; wait for it"));
   }
   std::unique_ptr<StudyDirectory> directory(new StudyDirectory(folder, identity, lock));
-  if (auto problem = directory->read_rows()) return *problem;
+  if (auto problem = directory->read_rows()) return failure(*problem);
   return directory;
 }
 
@@ -219,11 +217,9 @@ StudyDirectory::~StudyDirectory() {
 std::optional<std::string> StudyDirectory::read_rows() {
   const fs::path path = folder_ / kTableFile;
   auto read = read_whole(path, kMostTableBytes);
-  const auto* problem = std::get_if<FileProblem>(&read);
   // A file that cannot be read is not overwritten.
-  if (problem != nullptr && problem->kind != FileProblem::Kind::kMissing)
-    return problem->sentence(path);
-  std::string text = problem == nullptr ? std::get<std::string>(std::move(read)) : "";
+  if (!read && read.error().kind != FileProblem::Kind::kMissing) return read.error().sentence(path);
+  std::string text = std::move(read).value_or("");
   text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
   if (text.empty()) text = table_.header() + '\n';
   std::string_view rest = text;

@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "studies/study_table.h"
 
 namespace ergocast::cli {
@@ -45,7 +45,7 @@ struct StudyIdentity {
 std::string difference(const StudyIdentity& ours, const StudyIdentity& theirs);
 
 /// Reads and checks the study in `folder`; an error is one sentence.
-std::variant<StudyIdentity, std::string> read_identity(const std::filesystem::path& folder);
+Result<StudyIdentity> read_identity(const std::filesystem::path& folder);
 
 class StudyDirectory {
  public:
@@ -53,8 +53,8 @@ class StudyDirectory {
   /// removed. An error if the folder belongs to another study, contains other files, or is in use
   /// by another process.
   /// @param identity  outlives this object
-  static std::variant<std::unique_ptr<StudyDirectory>, std::string> open(
-      const std::filesystem::path& folder, const StudyIdentity& identity);
+  static Result<std::unique_ptr<StudyDirectory>> open(const std::filesystem::path& folder,
+                                                      const StudyIdentity& identity);
   StudyDirectory(const StudyDirectory&) = delete;
   StudyDirectory& operator=(const StudyDirectory&) = delete;
   ~StudyDirectory();

@@ -23,14 +23,15 @@ struct Part {
 };
 
 /// The shards in the order of the command line, or the error of the first folder that is no shard.
-std::variant<std::vector<Part>, std::string> parts_of(const std::vector<fs::path>& folders) {
+Result<std::vector<Part>> parts_of(const std::vector<fs::path>& folders) {
   std::vector<Part> parts;
   for (const fs::path& folder : folders) {
     auto read = read_identity(folder);
     const std::string name = folder.string() + ": ";
-    if (const auto* problem = std::get_if<std::string>(&read)) return name + *problem;
-    parts.push_back({folder, std::get<StudyIdentity>(std::move(read))});
-    if (!parts.back().identity.shard) return name + "is no shard of a study (give --shard to it)";
+    if (!read) return failure(name + read.error());
+    parts.push_back({folder, *std::move(read)});
+    if (!parts.back().identity.shard)
+      return failure(name + "is no shard of a study (give --shard to it)");
   }
   return parts;
 }
@@ -67,10 +68,10 @@ std::optional<std::string> mismatch(const std::vector<Part>& parts) {
 }
 
 /// The rows of a complete shard, or an error.
-std::variant<std::vector<studies::StudyRow>, std::string> rows_of(const Part& part) {
+Result<std::vector<studies::StudyRow>> rows_of(const Part& part) {
   const auto opened = StudyDirectory::open(part.folder, part.identity);
-  if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
-  const StudyDirectory& directory = *std::get<0>(opened);
+  if (!opened) return failure(opened.error());
+  const StudyDirectory& directory = **opened;
   const StudyShard& shard = part.shard();
   const std::uint64_t points = part.identity.study.points.size();
   std::uint64_t runs = (shard.last_seed - shard.first_seed + 1) * points, own = 0;
@@ -81,22 +82,22 @@ std::variant<std::vector<studies::StudyRow>, std::string> rows_of(const Part& pa
     const bool foreign = seed < shard.first_seed || seed > shard.last_seed ||
                          !shard.has((seed - shard.first_seed) * points + point);
     if (foreign || (i > 0 && done[i] == done[i - 1])) {
-      return part.folder.string() + ": its study.csv has a run that is " +
-             (foreign ? "of another shard" : "there already") + ", of seed " +
-             std::to_string(seed) + " (remove the line)";
+      return failure(part.folder.string() + ": its study.csv has a run that is " +
+                     (foreign ? "of another shard" : "there already") + ", of seed " +
+                     std::to_string(seed) + " (remove the line)");
     }
   }
   if (done.size() == own) return directory.rows();
-  return part.folder.string() + ": " + std::to_string(own - done.size()) + " of its " +
-         std::to_string(own) + " runs are missing (the command that made it runs them)";
+  return failure(part.folder.string() + ": " + std::to_string(own - done.size()) + " of its " +
+                 std::to_string(own) + " runs are missing (the command that made it runs them)");
 }
 
-std::variant<std::vector<studies::StudyRow>, std::string> all_rows(const std::vector<Part>& parts) {
+Result<std::vector<studies::StudyRow>> all_rows(const std::vector<Part>& parts) {
   std::vector<studies::StudyRow> rows;
   for (const Part& part : parts) {
     auto read = rows_of(part);
-    if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
-    const auto& more = std::get<std::vector<studies::StudyRow>>(read);
+    if (!read) return failure(read.error());
+    const auto& more = *read;
     rows.insert(rows.end(), more.begin(), more.end());
   }
   return rows;
@@ -106,13 +107,11 @@ std::variant<std::vector<studies::StudyRow>, std::string> all_rows(const std::ve
 
 int merge_studies(const MergeOptions& options) {
   const auto read = parts_of(options.shards);
-  if (const auto* problem = std::get_if<std::string>(&read))
-    return report_error(kExitBadInput, *problem);
-  const auto& parts = std::get<std::vector<Part>>(read);
+  if (!read) return report_error(kExitBadInput, read.error());
+  const auto& parts = *read;
   if (const auto problem = mismatch(parts)) return report_error(kExitBadInput, *problem);
   const auto merged = all_rows(parts);
-  if (const auto* problem = std::get_if<std::string>(&merged))
-    return report_error(kExitBadInput, *problem);
+  if (!merged) return report_error(kExitBadInput, merged.error());
 
   std::error_code error;
   if (fs::exists(options.out, error) && !fs::is_empty(options.out, error)) {
@@ -122,11 +121,10 @@ int merge_studies(const MergeOptions& options) {
   StudyIdentity whole = parts.front().identity;
   whole.shard.reset();
   const auto opened = StudyDirectory::open(options.out, whole);
-  if (const auto* problem = std::get_if<std::string>(&opened))
-    return report_error(kExitBadInput, *problem);
-  StudyDirectory& directory = *std::get<0>(opened);
+  if (!opened) return report_error(kExitBadInput, opened.error());
+  StudyDirectory& directory = **opened;
   std::optional<std::string> problem;
-  for (const auto& row : std::get<std::vector<studies::StudyRow>>(merged)) {
+  for (const auto& row : *merged) {
     if (!problem) problem = directory.add(row);
   }
   const StudyShard& shard = parts.front().shard();

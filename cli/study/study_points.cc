@@ -110,9 +110,9 @@ class Compiler {
     points_.identity.version = version();
   }
 
-  std::variant<StudyPoints, Problems> run() {
+  Result<StudyPoints, Problems> run() {
     for (const auto& file : options_.scenarios) compile(file);
-    if (!problems_.empty()) return problems_;
+    if (!problems_.empty()) return failure(problems_);
     return std::move(points_);
   }
 
@@ -124,12 +124,12 @@ class Compiler {
       Overrides overrides{.duration_s = options_.duration_s, .fields = options_.settings};
       overrides.fields.insert(overrides.fields.end(), varied.begin(), varied.end());
       const auto loaded = Scenario::load(file, overrides);
-      if (const auto* scenario = std::get_if<Scenario>(&loaded)) {
-        add(*scenario, varied, file);
+      if (loaded) {
+        add(*loaded, varied, file);
         points_.missions.push_back("ergocast run " + shell_word(file.string()) +
                                    options_of(overrides));
       } else {
-        complaints.add(std::get<std::vector<Problem>>(loaded), words_of(varied));
+        complaints.add(loaded.error(), words_of(varied));
       }
     }
     complaints.add_to(combinations_, problems_);
@@ -170,9 +170,9 @@ class Compiler {
 
 }  // namespace
 
-std::variant<StudyPoints, Problems> study_points(const StudyOptions& options) {
+Result<StudyPoints, Problems> study_points(const StudyOptions& options) {
   Problems problems = problems_of(options);
-  if (!problems.empty()) return problems;
+  if (!problems.empty()) return failure(problems);
   return Compiler(options).run();
 }
 

@@ -4,11 +4,11 @@
 
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "cli/study/study_directory.h"
 #include "cli/study/study_options.h"
+#include "core/base/result.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::cli {
@@ -20,6 +20,6 @@ struct StudyPoints {
 };
 
 /// Returns the points, or all problems of all points, each once.
-std::variant<StudyPoints, std::vector<std::string>> study_points(const StudyOptions& options);
+Result<StudyPoints, std::vector<std::string>> study_points(const StudyOptions& options);
 
 }  // namespace ergocast::cli

@@ -35,11 +35,11 @@ std::optional<std::function<lab::Faults(std::uint64_t)>> faults_by_seed(const st
   if (source == kSwarm) return lab::drawn;
   if (source.empty()) return [](std::uint64_t) { return lab::Faults(); };
   const auto read = read_faults(source);
-  if (const auto* problems = std::get_if<std::vector<std::string>>(&read)) {
-    report_error(kExitBadInput, *problems);
+  if (!read) {
+    report_error(kExitBadInput, read.error());
     return std::nullopt;
   }
-  return [faults = std::get<lab::Faults>(read)](std::uint64_t) { return faults; };
+  return [faults = *read](std::uint64_t) { return faults; };
 }
 
 TrialReport report_of(const lab::TrialResult& result) {

@@ -47,8 +47,7 @@ std::optional<Message> accepted(std::span<const std::byte> bytes, std::vector<st
   copy.assign(bytes.begin(), bytes.end());
   MessageAuthenticator().close(copy, false, {});
   auto decoded = decode(copy, 0);
-  if (auto* message = std::get_if<Message>(&decoded)) return std::move(*message);
-  return {};
+  return decoded ? std::optional(*std::move(decoded)) : std::nullopt;
 }
 
 class Listener {
@@ -170,8 +169,7 @@ Json Listener::json() const {
 
 Json recorded_team(const std::filesystem::path& run_dir, const Mission& mission,
                    std::string* problem) {
-  auto opened = EventLogReader::open(run_dir);
-  auto* log = std::get_if<EventLogReader>(&opened);
+  auto log = EventLogReader::open(run_dir);
   if (!log) return nullptr;
   Listener listener(mission);
   while (const LoggedEvent* event = log->next()) {

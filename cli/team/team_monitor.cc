@@ -24,9 +24,8 @@ std::string name_of(AgentId sender) {
 
 }  // namespace
 
-std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
-                                                                      OnMessage on_message,
-                                                                      OnMessage on_replayed) {
+Result<std::unique_ptr<Transport>> listen_to_teams(const BusOptions& options, OnMessage on_message,
+                                                   OnMessage on_replayed) {
   return Transport::open(
       options.url, options.run, options.authenticator, subscriptions_of(Role::kMonitor),
       {.on_message = std::move(on_message), .on_replayed = std::move(on_replayed)});

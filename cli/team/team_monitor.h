@@ -9,10 +9,10 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "runtime/bus/transport.h"
 #include "runtime/process/node.h"
 #include "team/messages.h"
@@ -30,9 +30,8 @@ using OnMessage = std::function<void(const Message&, Bus, AgentId transmitter)>;
 
 /// Receives all messages about the state of teams, and those of replays. An error if LCM cannot be
 /// used.
-std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
-                                                                      OnMessage on_message,
-                                                                      OnMessage on_replayed);
+Result<std::unique_ptr<Transport>> listen_to_teams(const BusOptions& options, OnMessage on_message,
+                                                   OnMessage on_replayed);
 
 /// The messages received from one run.
 class MonitoredRun {

@@ -23,11 +23,11 @@ std::optional<int> take_key(const CLI::App& command, const LiveRun& run, BusOpti
   const CLI::Option* option = command.get_option_no_throw("--key-file");
   if (option == nullptr || option->count() > 0 || run.key_file.empty()) return std::nullopt;
   const auto key = read_key_file(run.key_file);
-  if (const auto* problem = std::get_if<std::string>(&key)) {
+  if (!key) {
     return report_error(kExitBadInput, "run " + to_hex(run.run) + " of " + run.scenario +
-                                           " has a mission key: " + *problem);
+                                           " has a mission key: " + key.error());
   }
-  options.authenticator = MessageAuthenticator(std::get<MissionKey>(key));
+  options.authenticator = MessageAuthenticator(*key);
   options.key_file = run.key_file;
   return std::nullopt;
 }

@@ -50,8 +50,8 @@ struct RecordedPage {
 RecordedPage read_page(const std::filesystem::path& run_dir, const Mission& mission) {
   try {
     const auto read = recorded_page_data(run_dir, mission);
-    if (const auto* data = std::get_if<Json>(&read)) {
-      return {recorded_page(*data), shared_text(dumped((*data)["record"]))};
+    if (read) {
+      return {recorded_page(*read), shared_text(dumped((*read)["record"]))};
     }
   } catch (const std::exception&) {
     // The page keeps the data that it has received.
@@ -70,8 +70,8 @@ class Watch final : public LiveWatch {
 
   std::optional<std::string> open() {
     auto opened = listen_to_teams(source_.bus, receiver(false), receiver(true));
-    if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
-    transport_ = std::get<0>(std::move(opened));
+    if (!opened) return opened.error();
+    transport_ = *std::move(opened);
     return {};
   }
 
@@ -169,9 +169,9 @@ void Watch::look() {
 
 }  // namespace
 
-std::variant<std::unique_ptr<LiveWatch>, std::string> LiveWatch::open(Source source) {
+Result<std::unique_ptr<LiveWatch>> LiveWatch::open(Source source) {
   auto watch = std::make_unique<Watch>(std::move(source));
-  if (auto problem = watch->open()) return std::move(*problem);
+  if (auto problem = watch->open()) return failure(*problem);
   return std::unique_ptr<LiveWatch>(std::move(watch));
 }
 
@@ -180,15 +180,14 @@ Connections::Text recorded_page(const Json& data) {
   return shared_text(html_file(run_web_page(), title, data));
 }
 
-std::variant<Json, std::string> recorded_page_data(const std::filesystem::path& run_dir,
-                                                   const Mission& mission) {
+Result<Json> recorded_page_data(const std::filesystem::path& run_dir, const Mission& mission) {
   auto record = read_page_record(run_dir, mission, recorded_team(run_dir, mission));
-  if (auto* problem = std::get_if<std::string>(&record)) return std::move(*problem);
+  if (!record) return failure(record.error());
   std::vector<std::string> lines = LogLines(run_dir / "log").take();
   if (lines.size() > LiveTeam::kMostLines) {
     lines.erase(lines.begin(), lines.end() - static_cast<std::ptrdiff_t>(LiveTeam::kMostLines));
   }
-  return Json{{"record", std::get<Json>(std::move(record))}, {"log", std::move(lines)}};
+  return Json{{"record", *std::move(record)}, {"log", std::move(lines)}};
 }
 
 }  // namespace ergocast::cli

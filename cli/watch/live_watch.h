@@ -7,9 +7,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "cli/watch/page_server.h"
+#include "core/base/result.h"
 #include "core/mission/mission.h"
 #include "report/target_density.h"
 #include "runtime/process/node.h"
@@ -28,7 +28,7 @@ class LiveWatch {
   };
 
   /// Returns an error if LCM cannot be used.
-  static std::variant<std::unique_ptr<LiveWatch>, std::string> open(Source source);
+  static Result<std::unique_ptr<LiveWatch>> open(Source source);
   virtual ~LiveWatch() = default;
 
   /// The content for a server; valid as long as this object.
@@ -43,8 +43,8 @@ class LiveWatch {
 };
 
 /// The data of a record's page, {"record", "log"}; or the error.
-std::variant<nlohmann::ordered_json, std::string> recorded_page_data(
-    const std::filesystem::path& run_dir, const Mission& mission);
+Result<nlohmann::ordered_json> recorded_page_data(const std::filesystem::path& run_dir,
+                                                  const Mission& mission);
 
 /// The page with these data.
 Connections::Text recorded_page(const nlohmann::ordered_json& data);

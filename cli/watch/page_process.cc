@@ -42,12 +42,11 @@ std::shared_ptr<spdlog::logger> open_log(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::variant<std::unique_ptr<PageProcess>, std::string> PageProcess::start(
-    const Setup& setup, ProgressDisplay& display) {
+Result<std::unique_ptr<PageProcess>> PageProcess::start(const Setup& setup,
+                                                        ProgressDisplay& display) {
   auto opened = PageSocket::open(setup.page);
-  if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
-  std::unique_ptr<PageProcess> page(
-      new PageProcess(setup, std::get<PageSocket>(std::move(opened)), display));
+  if (!opened) return failure(opened.error());
+  std::unique_ptr<PageProcess> page(new PageProcess(setup, *std::move(opened), display));
   page->launch(now());
   return page;
 }
@@ -97,8 +96,8 @@ PageProcess::~PageProcess() {
 
 void PageProcess::launch(Instant now) {
   auto started = Child::start(program_);
-  if (auto* child = std::get_if<Child>(&started)) {
-    child_ = *child;
+  if (started) {
+    child_ = *started;
   } else {
     restart_at_ = now + restart_delay(ends_++);
   }

@@ -9,12 +9,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "cli/watch/control_link.h"
 #include "cli/watch/page_socket.h"
 #include "cli/watch/progress.h"
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "runtime/bus/lcm_url.h"
 #include "runtime/process/child.h"
 #include "runtime/process/sealed_file.h"
@@ -47,8 +47,7 @@ class PageProcess {
   };
 
   /// Returns an error if the page's address cannot be used.
-  static std::variant<std::unique_ptr<PageProcess>, std::string> start(const Setup& setup,
-                                                                       ProgressDisplay& display);
+  static Result<std::unique_ptr<PageProcess>> start(const Setup& setup, ProgressDisplay& display);
   PageProcess(const PageProcess&) = delete;
   PageProcess& operator=(const PageProcess&) = delete;
   /// Ends the process.

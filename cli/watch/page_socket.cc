@@ -25,13 +25,13 @@ std::string address_in(const PageOptions& options) {
 }
 
 /// A listening socket, or the error as errno.
-std::variant<Socket, int> listening(const std::string& address, int port) {
+Result<Socket, int> listening(const std::string& address, int port) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
   wanted.ai_flags = AI_PASSIVE;
   addrinfo* found = nullptr;
   if (getaddrinfo(address.c_str(), std::to_string(port).c_str(), &wanted, &found) != 0) {
-    return EADDRNOTAVAIL;
+    return failure(EADDRNOTAVAIL);
   }
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(found, &freeaddrinfo);
   Socket socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK);
@@ -39,7 +39,7 @@ std::variant<Socket, int> listening(const std::string& address, int port) {
   if (socket.fd() < 0 || setsockopt(socket.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
       bind(socket.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
       listen(socket.fd(), kWaiting) != 0) {
-    return errno;
+    return failure(errno);
   }
   return socket;
 }
@@ -88,28 +88,27 @@ PageSocket::PageSocket(Socket socket, const std::string& listen, std::string tok
       token_(std::move(token)),
       port_(port_of(socket_.fd())) {}
 
-std::variant<PageSocket, std::string> PageSocket::open(const PageOptions& options) {
+Result<PageSocket> PageSocket::open(const PageOptions& options) {
   const std::string address = address_in(options);
   auto opened = listening(address, options.port > 0 ? options.port : kUsualPort);
-  if (options.port == 0 && std::holds_alternative<int>(opened)) opened = listening(address, 0);
-  if (auto* socket = std::get_if<Socket>(&opened)) {
-    return PageSocket(std::move(*socket), options.listen,
+  if (options.port == 0 && !opened) opened = listening(address, 0);
+  if (opened) {
+    return PageSocket(*std::move(opened), options.listen,
                       options.listen.empty() ? "" : random_token());
   }
-  if (options.port > 0 && std::get<int>(opened) != EADDRNOTAVAIL) {
-    return "port " + std::to_string(options.port) + " of " + address +
-           " is not free; choose another with --port";
+  if (options.port > 0 && opened.error() != EADDRNOTAVAIL) {
+    return failure("port " + std::to_string(options.port) + " of " + address +
+                   " is not free; choose another with --port");
   }
-  return "cannot listen on " + address + ": is it an address of this host?";
+  return failure("cannot listen on " + address + ": is it an address of this host?");
 }
 
-std::variant<PageSocket, std::string> PageSocket::inherited(int fd, const std::string& listen,
-                                                            std::string token) {
+Result<PageSocket> PageSocket::inherited(int fd, const std::string& listen, std::string token) {
   int listens = 0;
   socklen_t length = sizeof listens;
   const bool there = getsockopt(fd, SOL_SOCKET, SO_ACCEPTCONN, &listens, &length) == 0;
-  if (!there || listens == 0) return "no page's socket was handed over";
-  if (!listen.empty() && token.empty()) return "no page's token was handed over";
+  if (!there || listens == 0) return failure("no page's socket was handed over");
+  if (!listen.empty() && token.empty()) return failure("no page's token was handed over");
   return PageSocket(Socket(fd), listen, std::move(token));
 }
 

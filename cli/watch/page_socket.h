@@ -3,8 +3,8 @@
 #pragma once
 
 #include <string>
-#include <variant>
 
+#include "core/base/result.h"
 #include "runtime/bus/socket.h"
 
 namespace ergocast::cli {
@@ -23,12 +23,11 @@ class PageSocket {
   static constexpr int kUsualPort = 8765;
 
   /// A new listening socket with a new token; an error if it cannot listen.
-  static std::variant<PageSocket, std::string> open(const PageOptions& options);
+  static Result<PageSocket> open(const PageOptions& options);
 
   /// A socket that another process has opened for `listen`, with its token. An error if `fd` is no
   /// such socket.
-  static std::variant<PageSocket, std::string> inherited(int fd, const std::string& listen,
-                                                         std::string token);
+  static Result<PageSocket> inherited(int fd, const std::string& listen, std::string token);
 
   int fd() const { return socket_.fd(); }  ///< non-blocking
   const std::string& address() const { return address_; }

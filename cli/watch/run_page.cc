@@ -73,26 +73,23 @@ int run_page(const RunPageOptions& options) {
   StopSignals signals;
   const char* token = std::getenv(kPageToken);
   auto socket = PageSocket::inherited(kPageSocket, options.listen, token != nullptr ? token : "");
-  if (const auto* problem = std::get_if<std::string>(&socket)) {
-    return report_error(kExitBadInput, *problem + "; `ergocast run --watch` starts this command");
+  if (!socket) {
+    return report_error(kExitBadInput,
+                        socket.error() + "; `ergocast run --watch` starts this command");
   }
   LiveWatch::Source source{options, options.run_dir, {}, {}};
   if (!options.run_dir.empty()) {
     source.mission = recorded_mission_or_complain(options.run_dir);
     if (!source.mission) return kExitBadInput;
-    auto density = read_target_density(options.run_dir / kTargetDensityFile);
-    if (auto* drawn = std::get_if<Field>(&density)) source.density = std::move(*drawn);
+    source.density = read_target_density(options.run_dir / kTargetDensityFile).value_or(Field());
   }
   auto opened = LiveWatch::open(std::move(source));
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    return report_error(kExitUnavailable, *problem);
-  }
-  LiveWatch& watch = *std::get<0>(opened);
+  if (!opened) return report_error(kExitUnavailable, opened.error());
+  LiveWatch& watch = **opened;
   const rlimit former = limit_memory();
   auto control = page_control();
-  const auto server =
-      PageServer::make(std::get<PageSocket>(std::move(socket)),
-                       control ? control->joined(watch.content()) : watch.content());
+  const auto server = PageServer::make(
+      *std::move(socket), control ? control->joined(watch.content()) : watch.content());
   serve_until_stop(*server, signals, [&, over = false]() mutable {
     watch.listen(server->fd());
     if (control) control->listen();

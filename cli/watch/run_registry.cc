@@ -57,7 +57,7 @@ bool is_ours_alone(const struct stat& folder) {
 }
 
 /// A descriptor of the registry; −1 if it does not exist; an error if it is not this user's alone.
-std::variant<int, std::string> open_registry(const fs::path& folder) {
+Result<int> open_registry(const fs::path& folder) {
   const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (fd < 0 && errno == ENOENT) return -1;
   struct stat status {};
@@ -66,7 +66,8 @@ std::variant<int, std::string> open_registry(const fs::path& folder) {
   const std::string why =
       is_folder ? "other users own it, read it or write to it" : "is no folder that can be read";
   if (is_folder) close(fd);
-  return folder.string() + ": " + why + "; remove it, and it is made anew with the right owner";
+  return failure(folder.string() + ": " + why +
+                 "; remove it, and it is made anew with the right owner");
 }
 
 std::string name_of(RunId run) { return to_hex(run) + kSuffix; }
@@ -121,8 +122,8 @@ void look_at(int folder, const std::string& name, const std::string& path, LiveR
   };
   if (!sound) return foreign("is no file of this user");
   const auto read = live_run_from(contents_of(file.get()));
-  if (const auto* problem = std::get_if<std::string>(&read)) return foreign(*problem);
-  const LiveRun& run = std::get<LiveRun>(read);
+  if (!read) return foreign(read.error());
+  const LiveRun& run = *read;
   if (name != name_of(run.run)) return foreign("is not named after its run, " + to_hex(run.run));
   if (flock(file.get(), LOCK_SH | LOCK_NB) != 0) {
     found.runs.push_back(run);
@@ -147,32 +148,35 @@ std::string to_json_text(const LiveRun& run) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-std::variant<LiveRun, std::string> live_run_from(std::string_view text) {
-  if (text.size() > kMostEntryBytes) return "is larger than an entry can be";
+Result<LiveRun> live_run_from(std::string_view text) {
+  if (text.size() > kMostEntryBytes) return failure("is larger than an entry can be");
   const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) return "is no entry of a run";
+  if (!json.is_object()) return failure("is no entry of a run");
   std::map<std::string, std::string> texts;
   for (const char* key : {"version", "run_id", "scenario", "started", "lcm_url", "run_dir"}) {
     const auto value = text_in(json, key);
-    if (!value) return std::string("is no entry of a run: ") + key + " is missing or no text";
+    if (!value)
+      return failure(std::string("is no entry of a run: ") + key + " is missing or no text");
     texts[key] = *value;
   }
   LiveRun run;
   run.run = std::strtoull(texts["run_id"].c_str(), nullptr, 16);
-  if (run.run == 0 || to_hex(run.run) != texts["run_id"]) return "run_id is no number of a run";
-  if (!is_name(texts["scenario"])) return "scenario is no name";
+  if (run.run == 0 || to_hex(run.run) != texts["run_id"])
+    return failure("run_id is no number of a run");
+  if (!is_name(texts["scenario"])) return failure("scenario is no name");
   auto url = LcmUrl::parse(texts["lcm_url"]);
-  if (const auto* problem = std::get_if<std::string>(&url)) return "lcm_url: " + *problem;
-  run.url = std::get<LcmUrl>(url);
+  if (!url) return failure("lcm_url: " + url.error());
+  run.url = *url;
   run.scenario = texts["scenario"];
   run.version = texts["version"];
   run.started = texts["started"];
   run.run_dir = texts["run_dir"];
   run.key_file = text_in(json, "key_file").value_or("");
-  if (!run.run_dir.is_absolute()) return "run_dir is no absolute path";
-  if (!run.key_file.empty() && !run.key_file.is_absolute()) return "key_file is no absolute path";
+  if (!run.run_dir.is_absolute()) return failure("run_dir is no absolute path");
+  if (!run.key_file.empty() && !run.key_file.is_absolute())
+    return failure("key_file is no absolute path");
   const auto pid = json.find("pid");
-  if (pid == json.end() || !pid->is_number_integer()) return "pid is missing or no number";
+  if (pid == json.end() || !pid->is_number_integer()) return failure("pid is missing or no number");
   run.pid = pid->get<int>();
   return run;
 }
@@ -187,20 +191,22 @@ fs::path run_registry() {
   return "/tmp/ergocast-" + std::to_string(geteuid());
 }
 
-std::variant<std::unique_ptr<RunEntry>, std::string> RunEntry::write(const LiveRun& run) {
+Result<std::unique_ptr<RunEntry>> RunEntry::write(const LiveRun& run) {
   const fs::path registry = run_registry();
-  const auto failed = [&registry] { return registry.string() + ": " + std::strerror(errno); };
+  const auto failed = [&registry] {
+    return failure(registry.string() + ": " + std::strerror(errno));
+  };
   if (mkdir(registry.c_str(), 0700) != 0 && errno != EEXIST) return failed();
   const auto opened = open_registry(registry);
-  if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
-  Descriptor folder(std::get<int>(opened));
+  if (!opened) return failure(opened.error());
+  Descriptor folder(*opened);
   const std::string name = name_of(run.run), unfinished = '.' + name;
   Descriptor file(openat(folder.get(), unfinished.c_str(),
                          O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (file.get() < 0) return failed();
   if (flock(file.get(), LOCK_EX | LOCK_NB) != 0 || !write_all(file.get(), to_json_text(run)) ||
       renameat(folder.get(), unfinished.c_str(), folder.get(), name.c_str()) != 0) {
-    const std::string problem = failed();
+    const auto problem = failed();
     unlinkat(folder.get(), unfinished.c_str(), 0);
     return problem;
   }
@@ -220,11 +226,11 @@ LiveRuns live_runs() {
   LiveRuns found;
   const fs::path registry = run_registry();
   const auto opened = open_registry(registry);
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    found.warnings.push_back(*problem);
+  if (!opened) {
+    found.warnings.push_back(opened.error());
     return found;
   }
-  const Descriptor folder(std::get<int>(opened));
+  const Descriptor folder(*opened);
   if (folder.get() < 0) return found;
   for (const std::string& name : names_in(folder.get())) {
     look_at(folder.get(), name, (registry / name).string(), found);

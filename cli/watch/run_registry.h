@@ -10,10 +10,10 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "runtime/bus/lcm_url.h"
 
 namespace ergocast::cli {
@@ -30,7 +30,7 @@ struct LiveRun {
 
 std::string to_json_text(const LiveRun& run);
 /// The run, or the error in the text.
-std::variant<LiveRun, std::string> live_run_from(std::string_view text);
+Result<LiveRun> live_run_from(std::string_view text);
 
 /// The folder, whether it exists or not.
 std::filesystem::path run_registry();
@@ -40,7 +40,7 @@ class RunEntry {
  public:
   /// Makes the folder if it is missing. An error if the folder is not this user's alone, or if it
   /// cannot be written.
-  static std::variant<std::unique_ptr<RunEntry>, std::string> write(const LiveRun& run);
+  static Result<std::unique_ptr<RunEntry>> write(const LiveRun& run);
   RunEntry(const RunEntry&) = delete;
   RunEntry& operator=(const RunEntry&) = delete;
   ~RunEntry();

@@ -43,8 +43,8 @@ class Listener {
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
     auto opened = listen_to_teams(options_, receiver(false), receiver(true));
-    if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
-    transport_ = std::get<0>(std::move(opened));
+    if (!opened) return opened.error();
+    transport_ = *std::move(opened);
     since_ = now();
     return std::nullopt;
   }

@@ -42,10 +42,9 @@ static void take(Agent& agent, Bus bus, std::string_view datagram) {
   const std::size_t end = datagram.find('\0', 8);
   if (!datagram.starts_with("LC02") || end == datagram.npos) return;
   const auto read = decode(std::as_bytes(std::span(datagram.substr(end + 1))), agent.run());
-  if (std::holds_alternative<Refusal>(read)) return agent.count_refused(std::get<Refusal>(read));
-  const auto& message = std::get<Message>(read);
-  const auto transmitter = transmitter_of(message, datagram.substr(8, end - 8));
-  if (transmitter) agent.receive(message, bus, *transmitter, now());
+  if (!read) return agent.count_refused(read.error());
+  const auto transmitter = transmitter_of(*read, datagram.substr(8, end - 8));
+  if (transmitter) agent.receive(*read, bus, *transmitter, now());
 }
 
 int main() {

@@ -142,7 +142,7 @@ int film_mission(const Mission& mission, const RobotDesign& design, const Film& 
   std::ostringstream trajectory, metrics;
   lab::Simulation simulation(
       {.plan = encode_plan(mission),
-       .physics = [&](const Mission& flown) -> std::variant<std::unique_ptr<Physics>, std::string> {
+       .physics = [&](const Mission& flown) -> Result<std::unique_ptr<Physics>> {
          return std::make_unique<FilmedPhysics>(flown, design, film);
        }},
       trajectory, metrics);
@@ -164,8 +164,8 @@ int run(int argc, char** argv) {
     return 2;
   }
   const auto loaded = Scenario::load(argv[1], {});
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
-    for (const Problem& problem : *problems)
+  if (!loaded) {
+    for (const Problem& problem : loaded.error())
       std::fprintf(stderr, "%s\n", to_string(problem).c_str());
     return 2;
   }
@@ -181,7 +181,7 @@ int run(int argc, char** argv) {
   }
   if (argc > 6) film.still = argv[5];
   const bool rolls = std::strcmp(argv[2], "discs") == 0;
-  return film_mission(std::get<Scenario>(loaded).mission(), rolls ? kDiscs : kQuadrotors, film);
+  return film_mission(loaded->mission(), rolls ? kDiscs : kQuadrotors, film);
 }
 
 }  // namespace

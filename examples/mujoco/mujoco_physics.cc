@@ -191,20 +191,25 @@ std::string MujocoPhysics::summary() const {
 }
 
 PhysicsMaker mujoco_physics(const RobotDesign& design, MujocoPhysics** made) {
-  return [=](const Mission& mission) -> std::variant<std::unique_ptr<Physics>, std::string> {
+  return [=](const Mission& mission) -> Result<std::unique_ptr<Physics>> {
     if (!mission.domain.planar())
-      return "the mission is in space, and these robots move in a plane: remove domain.size_z_m";
+      return failure(
+          "the mission is in space, and these robots move in a plane: remove domain.size_z_m");
     if (any_but_points(mission))
-      return "the mission is for other vehicles: give it vehicle { kind: POINT } and "
-             "separation.response_s";
+      return failure(
+          "the mission is for other vehicles: give it vehicle { kind: POINT } and "
+          "separation.response_s");
     const double distance_m = mission.separation.distance_m;
     if (distance_m > 0 && distance_m < 2 * design.radius_m)
-      return "separation.distance_m is less than a robot's diameter: robots that keep it touch";
+      return failure(
+          "separation.distance_m is less than a robot's diameter: robots that keep it touch");
     if (!mission.walls.empty() && mission.wall_clearance_m < design.radius_m)
-      return "world.wall_clearance_m is less than a robot's radius: robots that keep it touch "
-             "walls";
+      return failure(
+          "world.wall_clearance_m is less than a robot's radius: robots that keep it touch "
+          "walls");
     if (mission.starts_m.size() > kMostRobots)
-      return "the mission has more than " + std::to_string(kMostRobots) + " robots: use fewer";
+      return failure("the mission has more than " + std::to_string(kMostRobots) +
+                     " robots: use fewer");
     auto physics = std::make_unique<MujocoPhysics>(mission, design);
     if (made != nullptr) *made = physics.get();
     return physics;

@@ -11,7 +11,6 @@
 #include <set>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "examples/mujoco/pilot.h"

@@ -92,27 +92,26 @@ std::uint64_t start_of(const nlohmann::ordered_json& summary) {
 
 }  // namespace
 
-std::variant<ExportRecord, std::string> read_export_record(const fs::path& run_dir,
-                                                           const Mission& mission,
-                                                           const std::optional<GeoPlace>& origin) {
+Result<ExportRecord> read_export_record(const fs::path& run_dir, const Mission& mission,
+                                        const std::optional<GeoPlace>& origin) {
   ExportRecord record;
   record.mission = in_cosines(mission);  // for the maps; φ² over time stays as recorded
   record.metric_basis = name_of_basis(mission.basis);
   record.origin = origin;
   auto run = read_run(run_dir);
-  if (auto* problem = std::get_if<std::string>(&run)) return std::move(*problem);
-  record.run = std::get<RunData>(std::move(run));
+  if (!run) return failure(run.error());
+  record.run = *std::move(run);
   if (record.run.empty()) {
-    return (run_dir / kTrajectoryFile).string() +
-           ": has no rows yet, so there is nothing to export; wait for the first tick";
+    return failure((run_dir / kTrajectoryFile).string() +
+                   ": has no rows yet, so there is nothing to export; wait for the first tick");
   }
   auto summary = read_summary(run_dir);
-  if (auto* problem = std::get_if<std::string>(&summary)) return std::move(*problem);
-  record.summary = std::get<nlohmann::ordered_json>(std::move(summary));
+  if (!summary) return failure(summary.error());
+  record.summary = *std::move(summary);
   record.start_ns = start_of(record.summary);
   auto target = read_target_density(run_dir / kTargetDensityFile);
-  if (auto* problem = std::get_if<std::string>(&target)) return std::move(*problem);
-  record.target = std::get<Field>(std::move(target));
+  if (!target) return failure(target.error());
+  record.target = *std::move(target);
   if (record.target.size() == 0) {
     const Mission& cosines = record.mission;
     const auto [columns, rows] = coverage_cells(cosines);

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/mission/mission.h"
 #include "logger/run_data.h"
 #include "target/geo/local_plane.h"
@@ -43,9 +43,9 @@ struct ExportRecord {
 };
 
 /// Reads a run directory with the plan `mission`. An error names file, line and remedy.
-std::variant<ExportRecord, std::string> read_export_record(const std::filesystem::path& run_dir,
-                                                           const Mission& mission,
-                                                           const std::optional<GeoPlace>& origin);
+Result<ExportRecord> read_export_record(const std::filesystem::path& run_dir,
+                                        const Mission& mission,
+                                        const std::optional<GeoPlace>& origin);
 
 /// Σ a_k f_k / mean(f_k²), at the centres of the cells; for a box, averaged along z.
 DensityCells density_of(const Coefficients& coefficients, const Mission& mission,

@@ -28,11 +28,12 @@ BusReader::BusReader(Bus bus, MessageTypes types, bool replays)
   }
 }
 
-std::variant<std::unique_ptr<BusReader>, std::string> BusReader::open(const LcmUrl& url, Bus bus,
-                                                                      MessageTypes types,
-                                                                      bool replays) {
+Result<std::unique_ptr<BusReader>> BusReader::open(const LcmUrl& url, Bus bus, MessageTypes types,
+                                                   bool replays) {
   std::unique_ptr<BusReader> reader(new BusReader(bus, types, replays));
-  const auto failed = [&url, bus](const std::string& why) { return url.of(bus) + ": " + why; };
+  const auto failed = [&url, bus](const std::string& why) {
+    return failure(url.of(bus) + ": " + why);
+  };
   if (reader->fd() < 0) return failed(no_socket(errno));
   reader->set_receive_buffer(url);
   // The filter is set before the socket has a port, so that nothing passes it.

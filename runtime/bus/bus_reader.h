@@ -11,8 +11,8 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <variant>
 
+#include "core/base/result.h"
 #include "runtime/bus/datagram_filter.h"
 #include "runtime/bus/lcm_datagram.h"
 #include "runtime/bus/lcm_url.h"
@@ -26,9 +26,8 @@ class BusReader {
  public:
   /// Opens the socket. The kernel passes on the channels of `types` only, with `replays` also those
   /// of `ergocast replay`. An error names its cause.
-  static std::variant<std::unique_ptr<BusReader>, std::string> open(const LcmUrl& url, Bus bus,
-                                                                    MessageTypes types,
-                                                                    bool replays = false);
+  static Result<std::unique_ptr<BusReader>> open(const LcmUrl& url, Bus bus, MessageTypes types,
+                                                 bool replays = false);
 
   int fd() const { return socket_.fd(); }
   Bus bus() const { return bus_; }

@@ -21,9 +21,9 @@ BusWriter::BusWriter(const LcmUrl& url) : socket_(AF_INET, SOCK_DGRAM) {
   setsockopt(socket_.fd(), IPPROTO_IP, IP_MULTICAST_LOOP, &loop, sizeof loop);
 }
 
-std::variant<std::unique_ptr<BusWriter>, std::string> BusWriter::open(const LcmUrl& url) {
+Result<std::unique_ptr<BusWriter>> BusWriter::open(const LcmUrl& url) {
   std::unique_ptr<BusWriter> writer(new BusWriter(url));
-  if (writer->socket_.fd() < 0) return url.base() + ": " + no_socket(errno);
+  if (writer->socket_.fd() < 0) return failure(url.base() + ": " + no_socket(errno));
   return writer;
 }
 

@@ -12,8 +12,8 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 
+#include "core/base/result.h"
 #include "runtime/bus/lcm_datagram.h"
 #include "runtime/bus/lcm_url.h"
 #include "runtime/bus/socket.h"
@@ -24,7 +24,7 @@ namespace ergocast {
 class BusWriter {
  public:
   /// An error names its cause.
-  static std::variant<std::unique_ptr<BusWriter>, std::string> open(const LcmUrl& url);
+  static Result<std::unique_ptr<BusWriter>> open(const LcmUrl& url);
 
   /// Keeps a message until flush(); sends what it keeps when it has no more room.
   /// @pre as write_datagram()

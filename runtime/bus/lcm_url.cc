@@ -71,10 +71,10 @@ int lock_ports(int base_port) {
 
 }  // namespace
 
-std::variant<LcmUrl, std::string> LcmUrl::parse(std::string_view text) {
+Result<LcmUrl> LcmUrl::parse(std::string_view text) {
   const auto wrong = [text](const std::string& what) {
-    return "'" + std::string(text) + "' is not an LCM URL: " + what + "; for example " +
-           std::string(kExample);
+    return failure("'" + std::string(text) + "' is not an LCM URL: " + what + "; for example " +
+                   std::string(kExample));
   };
   constexpr std::string_view kScheme = "udpm://";
   if (!text.starts_with(kScheme)) return wrong("it must begin with udpm://");

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 
+#include "core/base/result.h"
 #include "team/messages.h"
 
 namespace ergocast {
@@ -32,7 +32,7 @@ struct LcmUrl {
   int receive_buffer_bytes = 0;  ///< 0: not given
 
   /// The URL, or what is wrong with it and how to write it.
-  static std::variant<LcmUrl, std::string> parse(std::string_view text);
+  static Result<LcmUrl> parse(std::string_view text);
 
   int receive_buffer() const {
     return receive_buffer_bytes > 0 ? receive_buffer_bytes : kReceiveBufferBytes;

@@ -98,16 +98,16 @@ class BusTransport final : public Transport {
 std::optional<std::string> BusTransport::connect(const LcmUrl& url,
                                                  const Subscriptions& subscriptions) {
   auto writer = BusWriter::open(url);
-  if (const auto* problem = std::get_if<std::string>(&writer)) return *problem;
-  writer_ = std::get<0>(std::move(writer));
+  if (!writer) return writer.error();
+  writer_ = *std::move(writer);
   std::vector<int> sockets;
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
     const MessageTypes types = subscriptions[static_cast<std::size_t>(bus)];
     if (types == 0) continue;
     auto opened = BusReader::open(url, bus, types, handlers_.on_replayed != nullptr);
-    if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
+    if (!opened) return opened.error();
     if (auto problem = why_deaf(url, bus)) return problem;
-    lines_.push_back({std::get<0>(std::move(opened)), types, RepeatGuard(bus)});
+    lines_.push_back({*std::move(opened), types, RepeatGuard(bus)});
     sockets.push_back(lines_.back().reader->fd());
     ready_.push_back({sockets.back(), POLLIN, 0});
   }
@@ -156,11 +156,11 @@ void BusTransport::cut_repeats(Line& line) {
 void BusTransport::take(Line& line, const LcmDatagram& datagram, bool is_replay) {
   const auto& [channel, bytes] = datagram;
   const auto decoded = decode(bytes, run_, authenticator_, channel, &signatures_);
-  if (const auto* refusal = std::get_if<Refusal>(&decoded)) {
-    if (*refusal == Refusal::kType) note_unknown_format(channel);
-    return refuse(*refusal);
+  if (!decoded) {
+    if (decoded.error() == Refusal::kType) note_unknown_format(channel);
+    return refuse(decoded.error());
   }
-  const Message& message = std::get<Message>(decoded);
+  const Message& message = *decoded;
   const auto transmitter = transmitter_of(message, channel);
   if (!transmitter) return refuse(Refusal::kType);
   const Instant received_at = now();
@@ -243,12 +243,13 @@ Instant BusTransport::deliver_until(Instant deadline, int wake_fd) {
 
 }  // namespace
 
-std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
-    const LcmUrl& url, RunId run, const MessageAuthenticator& authenticator,
-    const Subscriptions& subscriptions, Handlers handlers) {
-  if (const auto problem = why_unreachable(url)) return *problem;
+Result<std::unique_ptr<Transport>> Transport::open(const LcmUrl& url, RunId run,
+                                                   const MessageAuthenticator& authenticator,
+                                                   const Subscriptions& subscriptions,
+                                                   Handlers handlers) {
+  if (const auto problem = why_unreachable(url)) return failure(*problem);
   auto transport = std::make_unique<BusTransport>(run, authenticator, std::move(handlers));
-  if (const auto problem = transport->connect(url, subscriptions)) return *problem;
+  if (const auto problem = transport->connect(url, subscriptions)) return failure(*problem);
   return std::unique_ptr<Transport>(std::move(transport));
 }
 

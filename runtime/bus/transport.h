@@ -10,9 +10,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 
 #include "core/base/ids.h"
+#include "core/base/result.h"
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/bus/gathering.h"
 #include "runtime/bus/lcm_url.h"
@@ -41,9 +41,10 @@ class Transport {
   /// its remedy.
   /// @param run  the only run accepted; 0 accepts any until set_run()
   /// @param seal  signs and tags published messages; messages that it does not verify are refused
-  static std::variant<std::unique_ptr<Transport>, std::string> open(
-      const LcmUrl& url, RunId run, const MessageAuthenticator& authenticator,
-      const Subscriptions& subscriptions, Handlers handlers);
+  static Result<std::unique_ptr<Transport>> open(const LcmUrl& url, RunId run,
+                                                 const MessageAuthenticator& authenticator,
+                                                 const Subscriptions& subscriptions,
+                                                 Handlers handlers);
   virtual ~Transport() = default;
 
   virtual void set_run(RunId run) = 0;

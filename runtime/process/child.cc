@@ -95,7 +95,7 @@ std::string Child::Program::hand(int descriptor) {
   return "/proc/self/fd/" + std::to_string(kFirst - 1 + std::ssize(descriptors));
 }
 
-std::variant<Child, std::string> Child::start(const Program& program) {
+Result<Child> Child::start(const Program& program) {
   std::vector<std::string> command = program.command, environment;
   for (char** variable = environ; *variable != nullptr; ++variable) {
     environment.emplace_back(*variable);
@@ -113,7 +113,7 @@ std::variant<Child, std::string> Child::start(const Program& program) {
                     getpid()};
   const pid_t pid = fork();
   if (pid == 0) become(start);
-  if (pid < 0) return command.front() + ": " + std::strerror(errno);
+  if (pid < 0) return failure(command.front() + ": " + std::strerror(errno));
   return Child(pid);
 }
 

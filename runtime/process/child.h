@@ -8,8 +8,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
+
+#include "core/base/result.h"
 
 namespace ergocast {
 
@@ -29,7 +30,7 @@ class Child {
   /// Starts the program in its own process group, so that Ctrl-C reaches only this process. An
   /// error if the system cannot create a process. executed() tells later whether it ran the
   /// program.
-  static std::variant<Child, std::string> start(const Program& program);
+  static Result<Child> start(const Program& program);
 
   pid_t pid() const { return pid_; }
   /// Whether it runs; if it has ended, the result is stored.

@@ -11,7 +11,6 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "runtime/bus/clock.h"
 #include "runtime/bus/transport.h"
@@ -35,11 +34,11 @@ std::unique_ptr<Transport> connect(Core& core, const NodeOptions& node,
   };
   auto opened = Transport::open(node.url, node.run, node.authenticator,
                                 subscriptions_of(Core::kRole), std::move(more));
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    spdlog::error("{}", *problem);
+  if (!opened) {
+    spdlog::error("{}", opened.error());
     return nullptr;
   }
-  return std::get<0>(std::move(opened));
+  return *std::move(opened);
 }
 
 /// Runs `core` until it has finished. A core has kRole, receive(), advance(now, out), next_wakeup()

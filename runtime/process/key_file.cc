@@ -100,14 +100,14 @@ bool halves_match(const MissionKey& key) {
   return half == key.coordinator;
 }
 
-std::variant<MissionKey, std::string> parse(const std::string& text, const std::string& name) {
+Result<MissionKey> parse(const std::string& text, const std::string& name) {
   std::istringstream lines(text);
   std::string line;
   MissionKey key;
   int found = 0, number = 1;
   const auto refuse = [&](const std::string& what) {
-    return name + ":" + std::to_string(number) + ": " + what +
-           "; `ergocast keygen` writes files as they should be";
+    return failure(name + ":" + std::to_string(number) + ": " + what +
+                   "; `ergocast keygen` writes files as they should be");
   };
   if (!std::getline(lines, line) || line != kTitle) return refuse("not a key file of Ergocast");
   while (std::getline(lines, line)) {
@@ -137,19 +137,19 @@ std::string key_text(const MissionKey& key, bool for_coordinator) {
   return text;
 }
 
-std::variant<MissionKey, std::string> read_key_file(const std::filesystem::path& file) {
+Result<MissionKey> read_key_file(const std::filesystem::path& file) {
   const std::string name = file.string();
   // The checks and the reading use one open file, even if the name changes meanwhile. A pipe must
   // not block us.
   const File opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat info {};
   if (opened.fd() < 0 || fstat(opened.fd(), &info) != 0) {
-    return name + ": " + std::strerror(errno) + "; `ergocast keygen` makes keys";
+    return failure(name + ": " + std::strerror(errno) + "; `ergocast keygen` makes keys");
   }
-  if (const auto problem = why_not_private(info, file)) return *problem;
+  if (const auto problem = why_not_private(info, file)) return failure(*problem);
   std::string text(kLongestFile, '\0');
   const ssize_t size = ::read(opened.fd(), text.data(), text.size());
-  if (size < 0) return name + ": " + std::strerror(errno);
+  if (size < 0) return failure(name + ": " + std::strerror(errno));
   text.resize(static_cast<std::size_t>(size));
   return parse(text, name);
 }

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 
+#include "core/base/result.h"
 #include "lcmtypes/message_authenticator.h"
 
 namespace ergocast {
@@ -25,7 +25,7 @@ std::string key_text(const MissionKey& key, bool for_coordinator);
 /// The key in `file`, or one sentence with the error and its remedy. Files that other users may
 /// read or write, and files of other users, are refused. A file in $CREDENTIALS_DIRECTORY, where
 /// systemd puts the credentials of a service, may be readable by its group.
-std::variant<MissionKey, std::string> read_key_file(const std::filesystem::path& file);
+Result<MissionKey> read_key_file(const std::filesystem::path& file);
 
 /// Writes a file that only its owner may read; never replaces one. An error names the remedy.
 std::optional<std::string> write_key_file(const std::filesystem::path& file,

@@ -14,7 +14,6 @@
 #include <span>
 #include <sstream>
 #include <utility>
-#include <variant>
 
 #include "modes/provide.h"
 #include "modes/table_file.h"
@@ -32,8 +31,8 @@ constexpr const char* kKeyVariable = "ERGOCAST_KEY_FILE";
 
 void read_url(const std::string& text, LcmUrl& url) {
   auto parsed = LcmUrl::parse(text);
-  if (const auto* problem = std::get_if<std::string>(&parsed)) throw CLI::ValidationError(*problem);
-  url = std::get<LcmUrl>(parsed);
+  if (!parsed) throw CLI::ValidationError(parsed.error());
+  url = *parsed;
 }
 
 void read_run_id(const std::string& text, RunId& run) {
@@ -90,12 +89,12 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
 }
 
 /// The bytes of a plan that this program can run, or why the file has none.
-std::variant<std::vector<std::byte>, std::string> read_plan(const std::string& file) {
+Result<std::vector<std::byte>> read_plan(const std::string& file) {
   const auto text = read_whole(file, kMaxPlanBytes);
-  if (const auto* problem = std::get_if<FileProblem>(&text)) return problem->what;
-  const auto bytes = std::as_bytes(std::span(std::get<std::string>(text)));
+  if (!text) return failure(text.error().what);
+  const auto bytes = std::as_bytes(std::span(*text));
   const auto decoded = decode_plan(bytes);
-  if (const auto* problem = std::get_if<std::string>(&decoded)) return *problem;
+  if (!decoded) return failure(decoded.error());
   return std::vector<std::byte>(bytes.begin(), bytes.end());
 }
 
@@ -120,10 +119,8 @@ void add_key_option(CLI::App& app, MessageAuthenticator& authenticator, std::str
                                             "no name; leave it out to run without a key");
                }
                const auto key = read_key_file(name);
-               if (const auto* problem = std::get_if<std::string>(&key)) {
-                 throw CLI::ValidationError("--key-file", *problem);
-               }
-               authenticator = MessageAuthenticator(std::get<MissionKey>(key));
+               if (!key) throw CLI::ValidationError("--key-file", key.error());
+               authenticator = MessageAuthenticator(*key);
                if (file != nullptr) *file = name;
              },
              "Mission key of the team, as `ergocast keygen` writes it; without a key, any host on "
@@ -162,10 +159,10 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
          "--modes",
          [&options](const std::string& file) {
            auto table = load_table(file);
-           if (auto* problem = std::get_if<std::string>(&table)) {
-             options.modes_problem = std::move(*problem);
+           if (table) {
+             keep_table(*std::move(table));
            } else {
-             keep_table(std::get<ModesTable>(std::move(table)));
+             options.modes_problem = table.error();
            }
          },
          "Table of the modes of a mission with basis.free_domain; without, or if it is damaged: "
@@ -184,9 +181,8 @@ CLI::Option* add_plan_option(CLI::App& app, std::vector<std::byte>& plan) {
           "--plan",
           [&plan](const std::string& file) {
             auto read = read_plan(file);
-            if (const auto* problem = std::get_if<std::string>(&read))
-              throw CLI::ValidationError("--plan", file + ": " + *problem);
-            plan = std::get<0>(std::move(read));
+            if (!read) throw CLI::ValidationError("--plan", file + ": " + read.error());
+            plan = *std::move(read);
           },
           "The compiled plan of the mission, as plan.binpb of a record; no option changes it")
       ->type_name("FILE");

@@ -44,10 +44,9 @@ SealedFile::SealedFile(int descriptor)
         delete one;
       }) {}
 
-std::variant<SealedFile, std::string> SealedFile::make(const std::string& name,
-                                                       std::span<const std::byte> bytes) {
+Result<SealedFile> SealedFile::make(const std::string& name, std::span<const std::byte> bytes) {
   const auto problem = [&name] {
-    return name + ": cannot be kept in memory: " + std::strerror(errno);
+    return failure(name + ": cannot be kept in memory: " + std::strerror(errno));
   };
   const int descriptor = new_file(name);
   if (descriptor < 0) return problem();

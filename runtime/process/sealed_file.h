@@ -7,7 +7,8 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <variant>
+
+#include "core/base/result.h"
 
 namespace ergocast {
 
@@ -16,8 +17,7 @@ class SealedFile {
  public:
   /// An error if the system has no memory or no descriptor for it. Only its owner may read it.
   /// @param name  shown in /proc/PID/maps
-  static std::variant<SealedFile, std::string> make(const std::string& name,
-                                                    std::span<const std::byte> bytes);
+  static Result<SealedFile> make(const std::string& name, std::span<const std::byte> bytes);
 
   /// Child::Program::hand() gives it to a program.
   int descriptor() const { return *descriptor_; }

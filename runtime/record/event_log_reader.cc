@@ -27,8 +27,7 @@ bool compressed(const std::filesystem::path& file) { return file.extension() == 
 
 }  // namespace
 
-std::variant<EventLogReader, std::string> EventLogReader::open(
-    const std::filesystem::path& folder) {
+Result<EventLogReader> EventLogReader::open(const std::filesystem::path& folder) {
   std::map<int, std::filesystem::path> found;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -37,18 +36,20 @@ std::variant<EventLogReader, std::string> EventLogReader::open(
     const auto [at, is_new] = found.emplace(*number, entry.path());
     if (!is_new && !compressed(entry.path())) at->second = entry.path();  // both are there
   }
-  if (error) return folder.string() + ": " + error.message() + "; name a run directory";
+  if (error) return failure(folder.string() + ": " + error.message() + "; name a run directory");
   if (found.empty()) {
-    return folder.string() +
-           ": has no event log (events-000.lcm …); `ergocast run` writes one, and `ergocast "
-           "simulate --event-log`";
+    return failure(
+        folder.string() +
+        ": has no event log (events-000.lcm …); `ergocast run` writes one, and `ergocast "
+        "simulate --event-log`");
   }
   std::vector<std::filesystem::path> segments;
   int expected = found.begin()->first;
   for (auto& [number, path] : found) {
     if (number != expected++) {
-      return path.string() + ": the segment before it is missing; copy it back, or move the " +
-             "segments on one side of the gap away";
+      return failure(path.string() +
+                     ": the segment before it is missing; copy it back, or move the " +
+                     "segments on one side of the gap away");
     }
     segments.push_back(std::move(path));
   }
@@ -59,11 +60,11 @@ bool EventLogReader::open_next() {
   if (next_segment_ == segments_.size()) return false;
   const auto& path = segments_[next_segment_++];
   auto opened = SegmentFile::open(path);
-  if (auto* problem = std::get_if<FileProblem>(&opened)) {
-    problem_ = problem->sentence(path);
+  if (!opened) {
+    problem_ = opened.error().sentence(path);
     return false;
   }
-  file_.emplace(std::get<SegmentFile>(std::move(opened)));
+  file_.emplace(*std::move(opened));
   return true;
 }
 

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "runtime/record/segment_file.h"
 
 namespace ergocast {
@@ -24,7 +24,7 @@ class EventLogReader {
  public:
   /// Finds the segments, also compressed ones. An error if there is none, or if one is missing in
   /// between.
-  static std::variant<EventLogReader, std::string> open(const std::filesystem::path& folder);
+  static Result<EventLogReader> open(const std::filesystem::path& folder);
 
   /// The next event, valid until the next call; null at the end and after a problem. An incomplete
   /// event at a segment's end comes from a killed logger and is left out.

@@ -8,10 +8,10 @@
 
 namespace ergocast {
 
-std::variant<SegmentFile, FileProblem> SegmentFile::open(const std::filesystem::path& file) {
+Result<SegmentFile, FileProblem> SegmentFile::open(const std::filesystem::path& file) {
   auto opened = open_input(file);
-  if (auto* problem = std::get_if<FileProblem>(&opened)) return std::move(*problem);
-  return SegmentFile(std::get<StdioFile>(std::move(opened)), file.extension() == ".zst");
+  if (!opened) return failure(opened.error());
+  return SegmentFile(*std::move(opened), file.extension() == ".zst");
 }
 
 SegmentFile::SegmentFile(StdioFile opened, bool compressed)

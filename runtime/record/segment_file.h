@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "text/input_file.h"
 
 struct ZSTD_DCtx_s;
@@ -18,7 +18,7 @@ namespace ergocast {
 class SegmentFile {
  public:
   /// Opens a segment. A name that ends with .zst means a compressed one.
-  static std::variant<SegmentFile, FileProblem> open(const std::filesystem::path& file);
+  static Result<SegmentFile, FileProblem> open(const std::filesystem::path& file);
 
   /// False if the segment ends before so many bytes.
   bool read(void* to, std::size_t bytes);

@@ -90,10 +90,8 @@ class TargetCompiler {
   void map(const proto::Map& map, const std::string& path) {
     const std::string field = path + ".file";
     OpenedMap opened = open_map(map.file());
-    if (const auto* problem = std::get_if<MapProblem>(&opened)) {
-      return checks_.problem(field, problem->what, problem->remedy);
-    }
-    MapFile& file = *std::get<0>(opened);
+    if (!opened) return checks_.problem(field, opened.error().what, opened.error().remedy);
+    MapFile& file = **opened;
     const Rectangle extent = file.extent() ? *file.extent() : extent_of(map);
     const RasterGrid grid{from_corner(extent, domain_), file.columns(), file.rows()};
     std::vector<RasterIntegral> integrals;
@@ -132,9 +130,8 @@ class TargetCompiler {
         {written.x_axis(), written.y_axis(), written.z_axis(), written.time_axis()}};
     if (written.has_time_index()) choice.time_index = written.time_index();
     auto opened = NetcdfGrid::open(written.file(), choice);
-    if (const auto* problem = std::get_if<MapProblem>(&opened))
-      return checks_.problem(path, problem->what, problem->remedy);
-    NetcdfGrid& grid = *std::get<0>(opened);
+    if (!opened) return checks_.problem(path, opened.error().what, opened.error().remedy);
+    NetcdfGrid& grid = **opened;
     TargetCoefficients sum{Coefficients::Zero(basis_.mode_count()), 0};
     std::vector<DensityGrid> pictures(storeys_.size(), 0 * maps_[0]);
     double whole = 0;

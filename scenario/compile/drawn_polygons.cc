@@ -41,17 +41,17 @@ std::vector<Polygon> polygons_of(const std::vector<Ring>& rings) {
 
 }  // namespace
 
-std::variant<std::vector<PlacedPolygon>, PolygonFileProblem> place_drawing(const Drawing& drawing,
-                                                                           const Box& domain) {
+Result<std::vector<PlacedPolygon>, PolygonFileProblem> place_drawing(const Drawing& drawing,
+                                                                     const Box& domain) {
   const Eigen::Vector2d size_m = domain.size_m.head<2>();
   const Eigen::Array2d scale = size_m.array() / drawing.size.array();
   if (!(std::abs(scale.x() / scale.y() - 1) <= kSameRatio)) {
-    return PolygonFileProblem{"",
-                              "its viewBox is " + shortest(drawing.size.x()) + " by " +
-                                  shortest(drawing.size.y()) + ", and the domain has another shape",
-                              "set domain.size_y_m to " +
-                                  shortest(size_m.x() * drawing.size.y() / drawing.size.x()) +
-                                  ", or the drawing's size to the domain's"};
+    return failure(PolygonFileProblem{
+        "",
+        "its viewBox is " + shortest(drawing.size.x()) + " by " + shortest(drawing.size.y()) +
+            ", and the domain has another shape",
+        "set domain.size_y_m to " + shortest(size_m.x() * drawing.size.y() / drawing.size.x()) +
+            ", or the drawing's size to the domain's"});
   }
   std::vector<PlacedPolygon> placed;
   for (const DrawnShape& shape : drawing.shapes) {

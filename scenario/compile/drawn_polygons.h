@@ -3,10 +3,10 @@
 #pragma once
 
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/base/geometry.h"
+#include "core/base/result.h"
 #include "target/geo/svg.h"
 #include "target/polygon.h"
 
@@ -20,7 +20,7 @@ struct PlacedPolygon {
 /// The drawing's viewBox becomes the planar domain. A ring inside an odd number of others of its
 /// shape is a hole of the innermost; a hole's holes are polygons again.
 /// @returns a problem if the sides of both have ratios that differ by more than 0.1 %
-std::variant<std::vector<PlacedPolygon>, PolygonFileProblem> place_drawing(const Drawing& drawing,
-                                                                           const Box& domain);
+Result<std::vector<PlacedPolygon>, PolygonFileProblem> place_drawing(const Drawing& drawing,
+                                                                     const Box& domain);
 
 }  // namespace ergocast

@@ -45,8 +45,8 @@ std::optional<std::string> use_free_domain(const DensityGrid& density, Mission& 
   Basis& basis = mission.basis;
   if (!basis.free_domain) return std::nullopt;
   auto table = table_of(mission);
-  if (auto* problem = std::get_if<std::string>(&table)) return std::move(*problem);
-  basis.table = std::get<ModesTable>(std::move(table));
+  if (!table) return table.error();
+  basis.table = *std::move(table);
   basis.table_hash = basis.table->hash;
   mission.cosine_target = std::move(mission.target_coefficients);
   mission.target_coefficients = target_in(*basis.table, density);

@@ -148,6 +148,10 @@ class PolygonFileReader {
                     std::move(remedy));
   }
 
+  void refuse(const std::string& field, const PolygonFileProblem& problem) {
+    refuse(field, problem.member, problem.what, problem.remedy);
+  }
+
   /// @param vertices  of all polygons of the file
   bool few_enough(std::size_t vertices, const std::string& field, std::string remedy) {
     if (vertices <= kMaxVertices) return true;
@@ -168,31 +172,31 @@ class PolygonFileReader {
 
   std::optional<std::vector<PlacedPolygon>> drawn(const std::string& field) {
     const auto read = read_svg(file_);
-    if (const auto* problem = std::get_if<PolygonFileProblem>(&read)) {
-      refuse(field, problem->member, problem->what, problem->remedy);
+    if (!read) {
+      refuse(field, read.error());
       return std::nullopt;
     }
-    const Drawing& drawing = std::get<Drawing>(read);
+    const Drawing& drawing = *read;
     std::size_t vertices = 0;
     for (const DrawnShape& shape : drawing.shapes)
       for (const auto& ring : shape.rings) vertices += ring.size();
     if (!few_enough(vertices, field, "simplify it: in Inkscape, Path > Simplify"))
       return std::nullopt;
     auto placed = place_drawing(drawing, domain_of(scenario_.domain()));
-    if (const auto* problem = std::get_if<PolygonFileProblem>(&placed)) {
-      refuse(field, problem->member, problem->what, problem->remedy);
+    if (!placed) {
+      refuse(field, placed.error());
       return std::nullopt;
     }
-    return std::get<0>(std::move(placed));
+    return *std::move(placed);
   }
 
   std::optional<std::vector<PlacedPolygon>> on_earth(const std::string& field) {
     const auto read = read_geojson(file_);
-    if (const auto* problem = std::get_if<PolygonFileProblem>(&read)) {
-      refuse(field, problem->member, problem->what, problem->remedy);
+    if (!read) {
+      refuse(field, read.error());
       return std::nullopt;
     }
-    const auto& polygons = std::get<std::vector<GeoPolygon>>(read);
+    const auto& polygons = *read;
     std::size_t vertices = 0;
     for (const GeoPolygon& polygon : polygons)
       for (const auto& ring : polygon.rings) vertices += ring.size();

@@ -73,9 +73,8 @@ Mission mission_of(const Target& target, const Team& team, Law law, std::uint64_
       std::string("domain { size_x_m: 2000 size_y_m: 2000 } target { ") + target.text +
       " } law { u_max_mps: 20 } time { dt_s: 0.5 duration_s: 600 } agents { " + kinds + "}";
   auto parsed = Scenario::parse(text, "study", {.seed = seed});
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&parsed))
-    throw std::runtime_error(to_string(problems->front()));
-  return std::get<Scenario>(parsed).mission();
+  if (!parsed) throw std::runtime_error(to_string(parsed.error().front()));
+  return parsed->mission();
 }
 
 struct Outcome {

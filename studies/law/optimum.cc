@@ -35,10 +35,8 @@ Mission mission_of(const char* file, const char* duration_s, int seed) {
   overrides.duration_s = std::stod(duration_s);
   overrides.fields = {{"time.dt_s", kStep_s, "--step"}};
   auto loaded = Scenario::load(file, overrides);
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
-    throw std::runtime_error(to_string(problems->front()));
-  }
-  return std::get<Scenario>(loaded).mission();
+  if (!loaded) throw std::runtime_error(to_string(loaded.error().front()));
+  return loaded->mission();
 }
 
 /// φ²(T), and its derivative by every velocity.

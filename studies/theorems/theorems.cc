@@ -9,7 +9,6 @@
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
-#include <variant>
 
 #include "core/base/require.h"
 #include "scenario/scenario.h"
@@ -75,8 +74,8 @@ int run(int argc, char** argv) {
 
 Mission paper_mission() {
   const auto loaded = Scenario::load(fs::path(ERGOCAST_SCENARIO_DIR) / "paper_fig2a.textproto");
-  ERGOCAST_REQUIRE(std::holds_alternative<Scenario>(loaded));
-  return std::get<Scenario>(loaded).mission();
+  ERGOCAST_REQUIRE(loaded);
+  return loaded->mission();
 }
 
 }  // namespace ergocast::studies

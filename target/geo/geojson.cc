@@ -18,12 +18,12 @@ using Json = nlohmann::json;
 constexpr std::size_t kMostValues = 4'000'000;
 constexpr const char* kSimplify = "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson";
 
-struct Failure {
+struct Refused {
   PolygonFileProblem problem;
 };
 
 [[noreturn]] void fail(const std::string& member, std::string what, std::string remedy) {
-  throw Failure{{member, std::move(what), std::move(remedy)}};
+  throw Refused{{member, std::move(what), std::move(remedy)}};
 }
 
 std::string indexed(const std::string& member, std::size_t index) {
@@ -143,25 +143,24 @@ class Walk {
 
 }  // namespace
 
-std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
+Result<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
   try {
     Walk walk;
     walk.file(parse_bounded<Json>(text, kMostValues));
     return std::move(walk.polygons);
   } catch (const JsonTooLarge& problem) {
-    return PolygonFileProblem{"", problem.what(), kSimplify};
-  } catch (const Failure& failure) {
-    return failure.problem;
+    return failure(PolygonFileProblem{"", problem.what(), kSimplify});
+  } catch (const Refused& refused) {
+    return failure(refused.problem);
   } catch (const Json::exception& error) {
-    return PolygonFileProblem{"", "is no JSON: " + std::string(error.what()), "repair it there"};
+    return failure(
+        PolygonFileProblem{"", "is no JSON: " + std::string(error.what()), "repair it there"});
   }
 }
 
-std::variant<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
+Result<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
     const std::filesystem::path& file) {
-  const auto text = text_of_polygon_file(file, ".geojson", kSimplify);
-  if (const auto* problem = std::get_if<PolygonFileProblem>(&text)) return *problem;
-  return parse_geojson(std::get<std::string>(text));
+  return text_of_polygon_file(file, ".geojson", kSimplify).and_then(parse_geojson);
 }
 
 }  // namespace ergocast

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "target/geo/local_plane.h"
 #include "target/geo/polygon_file.h"
 
@@ -22,8 +22,7 @@ struct GeoPolygon {
 /// All Polygons and MultiPolygons of a FeatureCollection, a Feature or a geometry, at least one.
 /// Heights are not used. Anything else is a problem: other geometries, another reference system,
 /// rings that are not closed or have fewer than four positions, impossible coordinates.
-std::variant<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
-    const std::filesystem::path& file);
-std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text);
+Result<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(const std::filesystem::path& file);
+Result<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text);
 
 }  // namespace ergocast

@@ -4,7 +4,8 @@
 
 #include <filesystem>
 #include <string>
-#include <variant>
+
+#include "core/base/result.h"
 
 namespace ergocast {
 
@@ -20,7 +21,8 @@ struct PolygonFileProblem {
 /// The bytes of a file of polygons, at most kMaxPolygonFileBytes.
 /// @param extension  ".svg"
 /// @param simplify   what to do about a file that is larger
-std::variant<std::string, PolygonFileProblem> text_of_polygon_file(
-    const std::filesystem::path& file, const std::string& extension, const std::string& simplify);
+Result<std::string, PolygonFileProblem> text_of_polygon_file(const std::filesystem::path& file,
+                                                             const std::string& extension,
+                                                             const std::string& simplify);
 
 }  // namespace ergocast

@@ -181,28 +181,27 @@ class SvgWalk {
 
 }  // namespace
 
-std::variant<Drawing, PolygonFileProblem> parse_svg(std::string_view text) {
+Result<Drawing, PolygonFileProblem> parse_svg(std::string_view text) {
   if (static_cast<std::size_t>(std::count(text.begin(), text.end(), '<')) > kMostTags)
-    return PolygonFileProblem{"", "has more than 1 000 000 tags", "leave out all but the walls"};
+    return failure(
+        PolygonFileProblem{"", "has more than 1 000 000 tags", "leave out all but the walls"});
   pugi::xml_document document;
   const auto parsed = document.load_buffer(text.data(), text.size());
   if (!parsed) {
     const auto before = text.substr(0, static_cast<std::size_t>(parsed.offset));
-    return PolygonFileProblem{
+    return failure(PolygonFileProblem{
         "line " + std::to_string(1 + std::count(before.begin(), before.end(), '\n')),
-        std::string("is no XML: ") + parsed.description(), "save the drawing anew"};
+        std::string("is no XML: ") + parsed.description(), "save the drawing anew"});
   }
   try {
     return SvgWalk(text).drawing(document.document_element());
   } catch (const BadElement& bad) {
-    return bad.problem;
+    return failure(bad.problem);
   }
 }
 
-std::variant<Drawing, PolygonFileProblem> read_svg(const std::filesystem::path& file) {
-  const auto text = text_of_polygon_file(file, ".svg", "leave out all but the walls");
-  if (const auto* problem = std::get_if<PolygonFileProblem>(&text)) return *problem;
-  return parse_svg(std::get<std::string>(text));
+Result<Drawing, PolygonFileProblem> read_svg(const std::filesystem::path& file) {
+  return text_of_polygon_file(file, ".svg", "leave out all but the walls").and_then(parse_svg);
 }
 
 }  // namespace ergocast

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "target/geo/polygon_file.h"
 
 namespace ergocast {
@@ -28,7 +28,7 @@ struct Drawing {
 /// The shapes of the elements rect, polygon and path, at least one; groups and their transforms
 /// count. Text, and elements with fill="none" or display="none", are no shapes. Anything else is a
 /// problem: curves, strokes without an area, pictures, copies, numbers that are not finite.
-std::variant<Drawing, PolygonFileProblem> read_svg(const std::filesystem::path& file);
-std::variant<Drawing, PolygonFileProblem> parse_svg(std::string_view text);
+Result<Drawing, PolygonFileProblem> read_svg(const std::filesystem::path& file);
+Result<Drawing, PolygonFileProblem> parse_svg(std::string_view text);
 
 }  // namespace ergocast

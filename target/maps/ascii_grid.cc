@@ -117,8 +117,8 @@ class AsciiGrid : public MapFile {
       value = 0;
     } else {
       const auto density = density_in(word, here());
-      if (const auto* problem = std::get_if<MapProblem>(&density)) return *problem;
-      value = std::get<double>(density);
+      if (!density) return density.error();
+      value = *density;
     }
     first_.clear();
     return {};
@@ -136,7 +136,7 @@ class AsciiGrid : public MapFile {
 
 OpenedMap open_ascii_grid(const fs::path& file) {
   auto grid = std::make_unique<AsciiGrid>(file);
-  if (auto problem = grid->open()) return std::move(*problem);
+  if (auto problem = grid->open()) return failure(*problem);
   return grid;
 }
 

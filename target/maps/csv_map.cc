@@ -98,8 +98,8 @@ class CsvMap : public MapFile {
       value = 0;
       if (trimmed(cell).empty()) continue;
       const auto read = density_in(trimmed(cell), in_line(file_, line_));
-      if (const auto* problem = std::get_if<MapProblem>(&read)) return *problem;
-      value = std::get<double>(read);
+      if (!read) return read.error();
+      value = *read;
     }
     return {};
   }
@@ -114,7 +114,7 @@ class CsvMap : public MapFile {
 
 OpenedMap open_csv_map(const fs::path& file) {
   const Shape shape(file);
-  if (shape.problem()) return *shape.problem();
+  if (shape.problem()) return failure(*shape.problem());
   return std::make_unique<CsvMap>(file, shape);
 }
 

@@ -39,7 +39,7 @@ std::optional<MapKind> map_kind(const fs::path& file) {
 }
 
 OpenedMap open_map(const fs::path& file) {
-  if (auto problem = why_unreadable(file)) return std::move(*problem);
+  if (auto problem = why_unreadable(file)) return failure(*problem);
   switch (map_kind(file).value()) {
     case MapKind::kPng:
       return open_png_map(file);

@@ -9,8 +9,8 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 
+#include "core/base/result.h"
 #include "target/rectangle.h"
 
 namespace ergocast {
@@ -50,7 +50,7 @@ class MapFile {
   std::optional<Rectangle> extent_;
 };
 
-using OpenedMap = std::variant<std::unique_ptr<MapFile>, MapProblem>;
+using OpenedMap = Result<std::unique_ptr<MapFile>, MapProblem>;
 
 enum class MapKind { kPng, kCsv, kAsciiGrid };
 

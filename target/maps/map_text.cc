@@ -33,13 +33,13 @@ std::optional<MapProblem> check_density(double value, const std::string& where) 
   return MapProblem{where + " is above the limit 1e30", "divide all numbers by one factor"};
 }
 
-std::variant<double, MapProblem> density_in(std::string_view text, const std::string& where) {
+Result<double, MapProblem> density_in(std::string_view text, const std::string& where) {
   const std::optional<double> value = number_in(text);
   if (!value) {
-    return MapProblem{where + ": " + quoted(text) + " is not a number",
-                      "write numbers only, with a point for decimals"};
+    return failure(MapProblem{where + ": " + quoted(text) + " is not a number",
+                              "write numbers only, with a point for decimals"});
   }
-  if (auto problem = check_density(*value, where + ": " + quoted(text))) return *problem;
+  if (auto problem = check_density(*value, where + ": " + quoted(text))) return failure(*problem);
   return *value;
 }
 

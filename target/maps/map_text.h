@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/result.h"
 #include "target/maps/map_file.h"
 #include "text/input_file.h"
 
@@ -16,7 +17,7 @@ namespace ergocast {
 std::optional<double> number_in(std::string_view text);
 
 /// The density of a cell, or its error, which begins with `where`.
-std::variant<double, MapProblem> density_in(std::string_view text, const std::string& where);
+Result<double, MapProblem> density_in(std::string_view text, const std::string& where);
 std::optional<MapProblem> check_density(double value, const std::string& where);
 
 /// Words between white space, with their line numbers.

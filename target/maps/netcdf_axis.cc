@@ -44,23 +44,24 @@ class AxisReader {
   AxisReader(const NetcdfFile& file, const NetcdfFile::Dimension& dimension)
       : file_(file), dimension_(dimension), place_(file.name().string() + ": " + dimension.name) {}
 
-  std::variant<NetcdfAxis, MapProblem> read() {
+  Result<NetcdfAxis, MapProblem> read() {
     const auto variable = file_.variable(dimension_.name);
     if (!variable) {
-      return MapProblem{place_ + " has no coordinate variable",
-                        "write one with its name, its values and its units"};
+      return failure(MapProblem{place_ + " has no coordinate variable",
+                                "write one with its name, its values and its units"});
     }
     const std::string units = file_.text(*variable, "units");
     const auto metres = metres_of(units);
     if (!metres) {
-      return MapProblem{place_ + (units.empty() ? " has no units" : " is in " + units),
-                        "write it in m or km, with units; project longitude and latitude first"};
+      return failure(
+          MapProblem{place_ + (units.empty() ? " has no units" : " is in " + units),
+                     "write it in m or km, with units; project longitude and latitude first"});
     }
     scale_ = *metres * (file_.text(*variable, "positive") == "down" ? -1 : 1);
     const std::string bounds = file_.text(*variable, "bounds");
     auto problem = bounds.empty() ? by_centres(*variable) : by_bounds(bounds);
     if (!problem) problem = sort();
-    if (problem) return std::move(*problem);
+    if (problem) return failure(*problem);
     return std::move(axis_);
   }
 
@@ -169,8 +170,8 @@ AxisKind kind_of(const NetcdfFile& file, const std::string& dimension) {
   return known(dimension);
 }
 
-std::variant<NetcdfAxis, MapProblem> read_axis(const NetcdfFile& file,
-                                               const NetcdfFile::Dimension& dimension) {
+Result<NetcdfAxis, MapProblem> read_axis(const NetcdfFile& file,
+                                         const NetcdfFile::Dimension& dimension) {
   return AxisReader(file, dimension).read();
 }
 

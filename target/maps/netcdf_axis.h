@@ -3,6 +3,7 @@
 // metres.
 #pragma once
 
+#include "core/base/result.h"
 #include "target/heights.h"
 #include "target/maps/netcdf_file.h"
 
@@ -24,7 +25,7 @@ struct NetcdfAxis {
 
 /// The axis of `dimension`. Cells are those of the attribute `bounds`, or end halfway between their
 /// centres. With positive: down, z is minus the depth. Units are m or km.
-std::variant<NetcdfAxis, MapProblem> read_axis(const NetcdfFile& file,
-                                               const NetcdfFile::Dimension& dimension);
+Result<NetcdfAxis, MapProblem> read_axis(const NetcdfFile& file,
+                                         const NetcdfFile::Dimension& dimension);
 
 }  // namespace ergocast

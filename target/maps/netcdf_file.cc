@@ -18,23 +18,23 @@ using Name = std::array<char, kLongestName + 1>;
 
 }  // namespace
 
-std::variant<std::shared_ptr<NetcdfFile>, MapProblem> NetcdfFile::open(
+Result<std::shared_ptr<NetcdfFile>, MapProblem> NetcdfFile::open(
     const std::filesystem::path& file) {
-  if (auto problem = why_unreadable(file)) return std::move(*problem);
+  if (auto problem = why_unreadable(file)) return failure(*problem);
   const NetcdfLibrary* library = NetcdfLibrary::find();
   if (library == nullptr) {
-    return MapProblem{file.string() + " needs libnetcdf, which this machine does not have",
-                      "apt install libnetcdf19"};
+    return failure(MapProblem{file.string() + " needs libnetcdf, which this machine does not have",
+                              "apt install libnetcdf19"});
   }
   auto header = read_netcdf_header(file);
   if (!header) {
-    return MapProblem{file.string() + ": its header announces more than the file holds",
-                      "write the file again, or copy it anew"};
+    return failure(MapProblem{file.string() + ": its header announces more than the file holds",
+                              "write the file again, or copy it anew"});
   }
   int opened = 0;
   if (const int error = library->nc_open(file.c_str(), kReadOnly, &opened); error != 0) {
-    return MapProblem{file.string() + ": " + library->nc_strerror(error),
-                      "is it a NetCDF file? ncdump -h shows one"};
+    return failure(MapProblem{file.string() + ": " + library->nc_strerror(error),
+                              "is it a NetCDF file? ncdump -h shows one"});
   }
   return std::shared_ptr<NetcdfFile>(new NetcdfFile(file, *std::move(header), *library, opened));
 }

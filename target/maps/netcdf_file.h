@@ -7,9 +7,9 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "target/maps/map_file.h"
 #include "target/maps/netcdf_header.h"
 #include "target/maps/netcdf_library.h"
@@ -19,8 +19,7 @@ namespace ergocast {
 /// Every function returns nothing, or an empty text, if the file does not have what is asked for.
 class NetcdfFile {
  public:
-  static std::variant<std::shared_ptr<NetcdfFile>, MapProblem> open(
-      const std::filesystem::path& file);
+  static Result<std::shared_ptr<NetcdfFile>, MapProblem> open(const std::filesystem::path& file);
   ~NetcdfFile();
   NetcdfFile(const NetcdfFile&) = delete;
   NetcdfFile& operator=(const NetcdfFile&) = delete;

@@ -129,8 +129,8 @@ class Grid : public NetcdfGrid {
                         static_cast<std::size_t>(kMaxMapSide));
       }
       auto read = read_axis(*file_, dimensions[i]);
-      if (auto* problem = std::get_if<MapProblem>(&read)) return std::move(*problem);
-      axes_[axis] = std::get<NetcdfAxis>(std::move(read));
+      if (!read) return read.error();
+      axes_[axis] = *std::move(read);
       dimension_[axis] = i;
       known[axis] = true;
     }
@@ -210,12 +210,12 @@ class Grid : public NetcdfGrid {
 
 }  // namespace
 
-std::variant<std::unique_ptr<NetcdfGrid>, MapProblem> NetcdfGrid::open(
-    const std::filesystem::path& file, const NetcdfChoice& choice) {
+Result<std::unique_ptr<NetcdfGrid>, MapProblem> NetcdfGrid::open(const std::filesystem::path& file,
+                                                                 const NetcdfChoice& choice) {
   auto opened = NetcdfFile::open(file);
-  if (auto* problem = std::get_if<MapProblem>(&opened)) return std::move(*problem);
-  auto grid = std::make_unique<Grid>(std::get<0>(std::move(opened)));
-  if (auto problem = grid->prepare(choice)) return std::move(*problem);
+  if (!opened) return failure(opened.error());
+  auto grid = std::make_unique<Grid>(*std::move(opened));
+  if (auto problem = grid->prepare(choice)) return failure(*problem);
   return grid;
 }
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "target/heights.h"
 #include "target/maps/map_file.h"
 #include "target/raster_integral.h"
@@ -34,8 +34,8 @@ class NetcdfGrid {
  public:
   /// The variable's axes are x, y, z and perhaps time (target/maps/netcdf_axis.h); x and y are
   /// evenly spaced.
-  static std::variant<std::unique_ptr<NetcdfGrid>, MapProblem> open(
-      const std::filesystem::path& file, const NetcdfChoice& choice);
+  static Result<std::unique_ptr<NetcdfGrid>, MapProblem> open(const std::filesystem::path& file,
+                                                              const NetcdfChoice& choice);
 
   virtual ~NetcdfGrid() = default;
   NetcdfGrid(const NetcdfGrid&) = delete;

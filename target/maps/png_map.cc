@@ -69,7 +69,7 @@ class PngMap : public MapFile {
   static void on_warning(png_structp, png_const_charp) {}
   static StdioFile opened(const fs::path& file) {
     auto opened = open_input(file);
-    if (auto* stream = std::get_if<StdioFile>(&opened)) return std::move(*stream);
+    if (opened) return *std::move(opened);
     return {nullptr, &std::fclose};
   }
 
@@ -148,7 +148,7 @@ class PngMap : public MapFile {
 
 OpenedMap open_png_map(const fs::path& file) {
   auto map = std::make_unique<PngMap>(file);
-  if (auto problem = map->open()) return std::move(*problem);
+  if (auto problem = map->open()) return failure(*problem);
   return map;
 }
 

@@ -49,12 +49,13 @@ class KeyedTeam {
     std::string name = fs::temp_directory_path() / "ergocast-bench-XXXXXX";
     folder_ = mkdtemp(name.data());
     write_key_file(folder_ / "c.key", key_text(key_, true));
-    mission_.emplace(std::get<Child>(
+    mission_.emplace(
         Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", kScenario, "--realtime",
                                   "--duration", "100000", "--key-file", folder_ / "c.key",
                                   "--lcm-url", kUrl, "--out", folder_ / "run"},
                       .log = folder_ / "log",
-                      .signal_if_orphaned = SIGTERM})));
+                      .signal_if_orphaned = SIGTERM})
+            .value());
   }
   ~KeyedTeam() {
     mission_->send(SIGINT);
@@ -71,17 +72,21 @@ class KeyedTeam {
   Says ask() const {
     Says says;
     std::map<AgentId, AgentStatus> agents;
-    const auto ear = std::get<0>(Transport::open(
-        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, MessageAuthenticator(key_),
-        subscriptions_of(Role::kMonitor), {.on_message = [&](const Message& message, Bus, AgentId) {
-          if (const auto* state = std::get_if<WorldState>(&message)) {
-            says.tick = state->header.tick;
-            says.late = state->missed_deadlines;
-          }
-          if (const auto* status = std::get_if<AgentStatus>(&message)) {
-            if (status->phase == AgentPhase::kRunning) agents[status->header.sender] = *status;
-          }
-        }}));
+    const auto ear =
+        Transport::open(LcmUrl::parse(kUrl).value(), 0, MessageAuthenticator(key_),
+                        subscriptions_of(Role::kMonitor),
+                        {.on_message =
+                             [&](const Message& message, Bus, AgentId) {
+                               if (const auto* state = std::get_if<WorldState>(&message)) {
+                                 says.tick = state->header.tick;
+                                 says.late = state->missed_deadlines;
+                               }
+                               if (const auto* status = std::get_if<AgentStatus>(&message)) {
+                                 if (status->phase == AgentPhase::kRunning)
+                                   agents[status->header.sender] = *status;
+                               }
+                             }})
+            .value();
     while (agents.size() < kAgents || says.tick < 0) ear->deliver_until(now() + 10ms, -1);
     for (const auto& [id, status] : agents) {
       says.lost += status.contributions_lost;
@@ -114,7 +119,7 @@ double flood(test::Replayer& replayer, double per_second, std::chrono::duration<
 void Flood(benchmark::State& state) {
   KeyedTeam team;
   team.ask();
-  test::Replayer replayer(std::get<LcmUrl>(LcmUrl::parse(kUrl)),
+  test::Replayer replayer(LcmUrl::parse(kUrl).value(),
                           kKinds[static_cast<std::size_t>(state.range(0))]);
   for (const auto end = Clock::now() + kRecording; Clock::now() < end;) {
     replayer.listen();

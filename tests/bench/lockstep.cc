@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
-#include <variant>
 
 #include "runtime/process/child.h"
 #include "scenario/scenario.h"
@@ -31,7 +30,7 @@ double duration_s(int agents) { return std::max(20.0, 16000.0 / (agents * agents
 const fs::path kScenario = fs::path(ERGOCAST_SCENARIO_DIR) / "paper_fig1a.textproto";
 
 /// Ticks per second of a mission by the real programs, or why there is no figure.
-std::variant<double, std::string> run_mission(int agents) {
+Result<double> run_mission(int agents) {
   const TemporaryFolder folder;
   const fs::path record = folder.path() / "run", log = folder.path() / "log";
   auto started = Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", kScenario,
@@ -39,11 +38,11 @@ std::variant<double, std::string> run_mission(int agents) {
                                            std::to_string(duration_s(agents)), "--out", record},
                                .log = log,
                                .signal_if_orphaned = SIGTERM});
-  if (const auto* problem = std::get_if<std::string>(&started)) return *problem;
-  Child& launcher = std::get<Child>(started);
+  if (!started) return failure(started.error());
+  Child& launcher = *started;
   while (launcher.running()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   if (launcher.exit_code() != 0) {
-    return "ergocast run " + launcher.fate() + "\n" + last_lines(log, 10);
+    return failure("ergocast run " + launcher.fate() + "\n" + last_lines(log, 10));
   }
   std::ifstream summary(record / "summary.json");
   return nlohmann::json::parse(summary).at("ticks_per_s").get<double>();
@@ -54,22 +53,19 @@ void Lockstep(benchmark::State& state) {
   const auto agents = static_cast<int>(state.range(0));
   overrides.agents = agents;
   overrides.duration_s = duration_s(agents);
-  const auto loaded = Scenario::load(kScenario, overrides);
-  const auto* scenario = std::get_if<Scenario>(&loaded);
-  if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
+  const auto scenario = Scenario::load(kScenario, overrides);
+  if (!scenario) return state.SkipWithError("the scenario cannot be loaded");
   const Traffic traffic = traffic_of(scenario->mission());
 
   const Tick ticks = scenario->mission().timing.tick_count;
   double ticks_per_s = 0, floor_ticks_per_s = 0, lcm_ticks_per_s = 0;
   for (auto _ : state) {
     const auto mission = run_mission(agents);
-    if (const auto* why = std::get_if<std::string>(&mission)) {
-      return state.SkipWithError(why->c_str());
-    }
+    if (!mission) return state.SkipWithError(mission.error().c_str());
     const auto floor = ping_pong(Carrier::kUdp, traffic, ticks);
     const auto lcm = ping_pong(Carrier::kLcm, traffic, ticks);
     if (!floor || !lcm) return state.SkipWithError("LCM cannot be used on this machine");
-    ticks_per_s = std::get<double>(mission);
+    ticks_per_s = *mission;
     floor_ticks_per_s = *floor;
     lcm_ticks_per_s = *lcm;
     state.SetIterationTime(1 / ticks_per_s);

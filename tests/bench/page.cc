@@ -44,8 +44,7 @@ struct Folder {
 
 Child start(const fs::path& log, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), kProgram);
-  return std::get<Child>(
-      Child::start({.command = arguments, .log = log, .signal_if_orphaned = SIGTERM}));
+  return Child::start({.command = arguments, .log = log, .signal_if_orphaned = SIGTERM}).value();
 }
 
 void wait_for(Child& child) {

@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
-#include <variant>
 
 #include "runtime/process/child.h"
 #include "tests/bench/temporary_folder.h"
@@ -54,7 +53,7 @@ struct Measured {
 };
 
 /// A mission by the real programs, or the error.
-std::variant<Measured, std::string> measure(int agents, int period_ticks, int duration_s) {
+Result<Measured> measure(int agents, int period_ticks, int duration_s) {
   const TemporaryFolder folder;
   const fs::path scenario = folder.path() / "team.textproto", log = folder.path() / "log";
   std::ofstream(scenario) << scenario_text(agents, period_ticks, duration_s);
@@ -63,10 +62,10 @@ std::variant<Measured, std::string> measure(int agents, int period_ticks, int du
                                            "--out", folder.path() / "run"},
                                .log = log,
                                .signal_if_orphaned = SIGTERM});
-  if (const auto* problem = std::get_if<std::string>(&started)) return *problem;
-  Child& launcher = std::get<Child>(started);
+  if (!started) return failure(started.error());
+  Child& launcher = *started;
   while (launcher.running()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  if (launcher.exit_code() != 0) return launcher.fate() + "\n" + last_lines(log, 10);
+  if (launcher.exit_code() != 0) return failure(launcher.fate() + "\n" + last_lines(log, 10));
   std::ifstream file(folder.path() / "run" / "summary.json");
   const Json summary = Json::parse(file);
   Measured measured;
@@ -87,10 +86,8 @@ void RealTime(benchmark::State& state) {
     std::array<Measured, 2> measured;
     for (const std::size_t i : {0, 1}) {
       const auto mission = measure(agents, period, i == 0 ? kShort_s : kLong_s);
-      if (const auto* problem = std::get_if<std::string>(&mission)) {
-        return state.SkipWithError(problem->c_str());
-      }
-      measured[i] = std::get<Measured>(mission);
+      if (!mission) return state.SkipWithError(mission.error().c_str());
+      measured[i] = *mission;
     }
     const double used_s = measured[1].used_s - measured[0].used_s;
     const double deliveries = measured[1].deliveries - measured[0].deliveries;

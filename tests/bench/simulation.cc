@@ -22,9 +22,8 @@ void Simulation(benchmark::State& state, const std::string& name) {
   Overrides overrides;
   overrides.agents = static_cast<int>(state.range(0));
   overrides.duration_s = 2400.0 / *overrides.agents;  // long enough for the start not to count
-  const auto loaded = Scenario::load(file, overrides);
-  const auto* scenario = std::get_if<Scenario>(&loaded);
-  if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
+  const auto scenario = Scenario::load(file, overrides);
+  if (!scenario) return state.SkipWithError("the scenario cannot be loaded");
 
   NullBuffer nowhere;
   std::int64_t messages = 0, agent_steps = 0;

@@ -18,7 +18,7 @@ Mission full_mission(int modes_per_axis, Sight sight, bool free_domain) {
   mission.basis.modes_x = mission.basis.modes_y = modes_per_axis;
   if (free_domain) {
     mission.basis.free_domain = true;
-    mission.basis.table = std::get<ModesTable>(table_of(mission));
+    mission.basis.table = table_of(mission).value();
     mission.basis.table_hash = mission.basis.table->hash;
   }
   mission.target_coefficients = basis_values({500, 700, 0}, mission.domain, mission.basis);

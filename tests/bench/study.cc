@@ -21,7 +21,7 @@ Mission mission_of(int agents, bool looks_ahead) {
   overrides.duration_s = 600;
   overrides.agents = agents;
   const std::string file = std::string(ERGOCAST_SCENARIO_DIR) + "/quadrimodal_corners.textproto";
-  Mission mission = std::get<Scenario>(Scenario::load(file, overrides)).mission();
+  Mission mission = Scenario::load(file, overrides).value().mission();
   if (!looks_ahead) mission.law.anticipation = 0;
   return mission;
 }

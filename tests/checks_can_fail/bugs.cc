@@ -68,7 +68,6 @@ WRAPPED(void, receive_at_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5He
 WRAPPED(bool, is_held, "_ZN8ergocast7is_heldESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, counted_ticks, "_ZN8ergocast13counted_ticksESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, tick_after, "_ZN8ergocast10tick_afterESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
-using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
 WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
 WRAPPED(bool, goes_home, "_ZN8ergocast7WayHome5begunElRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEE", WayHome*, Tick, const Eigen::Vector3d&)
@@ -602,9 +601,8 @@ Decoded bug_decode(std::span<const std::byte> bytes, RunId run,
                    const MessageAuthenticator& authenticator, std::string_view channel,
                    KnownSignatures* known) {
   Decoded result = real_decode(bytes, run, authenticator, channel, known);
-  const bool refused = std::holds_alternative<Refusal>(result);
-  if (bug("whole messages are refused") && !refused) return Refusal::kTag;
-  if (bug("damage passes") && refused) return Digest{};
+  if (bug("whole messages are refused") && result) return failure(Refusal::kTag);
+  if (bug("damage passes") && !result) return Digest{};
   return result;
 }
 

@@ -122,7 +122,7 @@ class DoctorCanFail : public OnHosts {
 
   std::filesystem::path key_file(const char* name) const { return folder_ / name; }
   MessageAuthenticator authenticator(const char* name) const {
-    return MessageAuthenticator(std::get<MissionKey>(read_key_file(key_file(name))));
+    return MessageAuthenticator(read_key_file(key_file(name)).value());
   }
 
   /// Sends `message` while the doctor listens.
@@ -183,7 +183,7 @@ class DoctorCanFail : public OnHosts {
         plant.on_a_terminal ? "script -qefc \"" + command + "\" /dev/null" : command + " --json";
     const auto log = folder_ / ("doctor-" + std::to_string(++started_doctors_));
     const Child::Program examiner{{"/bin/sh", "-c", "exec " + command}, log, SIGKILL};
-    doctors_.insert_or_assign(i, Doctor{std::get<Child>(Child::start(examiner)), log});
+    doctors_.insert_or_assign(i, Doctor{Child::start(examiner).value(), log});
   }
 
   void hold(int port, bool shared) {

@@ -27,16 +27,20 @@ class RefusalsCanBeSeen : public RunningMission {
     EXPECT_EQ(write_key_file(file, key_text(key, for_coordinator)), std::nullopt);
   }
   static MessageAuthenticator authenticator(const std::filesystem::path& file) {
-    return MessageAuthenticator(std::get<MissionKey>(read_key_file(file)));
+    return MessageAuthenticator(read_key_file(file).value());
   }
 
   /// Receives the mission's parts, which also contain its run.
   void learn_mission() {
-    const auto ear = std::get<0>(Transport::open(
-        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, authenticator(team_), {kTypes<MissionPart>, 0, 0},
-        {.on_message = [this](const Message& message, Bus, AgentId) {
-          if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
-        }}));
+    const auto ear =
+        Transport::open(LcmUrl::parse(kUrl).value(), 0, authenticator(team_),
+                        {kTypes<MissionPart>, 0, 0},
+                        {.on_message =
+                             [this](const Message& message, Bus, AgentId) {
+                               if (const auto* part = std::get_if<MissionPart>(&message))
+                                 follower_.receive(*part);
+                             }})
+            .value();
     ASSERT_TRUE(eventually([&] {
       ear->deliver_until(now() + std::chrono::milliseconds(5), -1);
       return follower_.revision() >= 0;

@@ -158,7 +158,7 @@ std::vector<Lie> lies_of_the_tables() {
 
 Mission plan_in(const fs::path& run) {
   const std::string plan = text_of(run / "plan.binpb");
-  return std::get<Mission>(decode_plan(std::as_bytes(std::span(plan))));
+  return decode_plan(std::as_bytes(std::span(plan))).value();
 }
 void write_plan(const fs::path& run, const Mission& mission) {
   const std::vector<std::byte> plan = encode_plan(mission);

@@ -34,8 +34,8 @@ class RunRegistry : public ::testing::Test {
   }
   static std::unique_ptr<RunEntry> written(const LiveRun& run) {
     auto entry = RunEntry::write(run);
-    if (const auto* problem = std::get_if<std::string>(&entry)) ADD_FAILURE() << *problem;
-    return std::get<0>(std::move(entry));
+    if (!entry) ADD_FAILURE() << entry.error();
+    return std::move(entry).value();
   }
   fs::path folder() const { return own_.path() / "ergocast"; }
   fs::path file() const { return folder() / "00000000000000a1.json"; }
@@ -144,14 +144,14 @@ TEST_F(RunRegistry, AFolderThatOthersShareIsRefused) {
   fs::create_directory(folder());
   fs::permissions(folder(), fs::perms::owner_all | fs::perms::group_read);
   EXPECT_NE(warning().find("other users own it, read it or write to it"), std::string::npos);
-  EXPECT_TRUE(std::holds_alternative<std::string>(RunEntry::write(example())));
+  EXPECT_FALSE(RunEntry::write(example()));
   EXPECT_TRUE(fs::is_empty(folder()));
   fs::remove(folder());
   fs::create_directory(own_.path() / "other");
   fs::permissions(own_.path() / "other", fs::perms::owner_all);
   fs::create_symlink(own_.path() / "other", folder());
   EXPECT_NE(warning().find("is no folder"), std::string::npos);
-  EXPECT_TRUE(std::holds_alternative<std::string>(RunEntry::write(example())));
+  EXPECT_FALSE(RunEntry::write(example()));
   if (geteuid() != 0) return;
   fs::remove(folder());
   fs::create_directory(folder());

@@ -29,7 +29,7 @@ Mission mission_of(const Team& team, std::uint64_t seed, double duration_s) {
   overrides.seed = seed;
   overrides.duration_s = duration_s;
   const auto file = kFolder / (team.scenario + std::string(".textproto"));
-  return std::get<Scenario>(Scenario::load(file, overrides)).mission();
+  return Scenario::load(file, overrides).value().mission();
 }
 
 struct Outcome {
@@ -165,8 +165,7 @@ TEST(RobotsOfPhysics, AreStoppedByAWallThatTheyAreDrivenInto) {
 TEST(RobotsOfPhysics, RefuseMissionsThatTheyCannotRun) {
   const auto problem_of = [](const Mission& mission) {
     const auto made = mujoco_physics(kDiscs)(mission);
-    const auto* problem = std::get_if<std::string>(&made);
-    return problem == nullptr ? "" : *problem;
+    return made ? "" : made.error();
   };
   const Mission mission = mission_of(kTeams[0], 1, 10);
   EXPECT_EQ(problem_of(mission), "");

@@ -56,8 +56,7 @@ void Adversary::take(int bus, std::span<const std::uint8_t> datagram) {
   if (packet.message.size() < kHeaderBytes || forged(packet.channel, packet.message)) return;
   const auto world =
       decode(std::as_bytes(std::span(packet.message)), 0, authenticator_, packet.channel);
-  const auto* message = std::get_if<Message>(&world);
-  if (const auto* state = message ? std::get_if<WorldState>(message) : nullptr) {
+  if (const auto* state = world ? std::get_if<WorldState>(&*world) : nullptr) {
     tick_ = std::max(tick_, state->header.tick);
     missed_deadlines_ = std::max(missed_deadlines_, state->missed_deadlines);
   }

@@ -8,11 +8,11 @@ namespace ergocast::fuzz {
 
 FUZZ_TARGET(faults) {
   const auto read = cli::read_faults(memory_file(input));
-  if (const auto* problems = std::get_if<std::vector<std::string>>(&read)) {
-    ERGOCAST_REQUIRE(!problems->empty());
+  if (!read) {
+    ERGOCAST_REQUIRE(!read.error().empty());
     return;
   }
-  const auto& faults = std::get<lab::Faults>(read);
+  const auto& faults = *read;
   for (const lab::FaultField& field : lab::fault_fields()) {
     ERGOCAST_REQUIRE(faults.*field.value >= 0 && faults.*field.value <= field.most);
   }

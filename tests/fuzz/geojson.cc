@@ -8,11 +8,11 @@ namespace ergocast::fuzz {
 
 FUZZ_TARGET(geojson) {
   const auto parsed = parse_geojson(text_of(input));
-  if (const auto* problem = std::get_if<PolygonFileProblem>(&parsed)) {
-    ERGOCAST_REQUIRE(!problem->what.empty() && !problem->remedy.empty());
+  if (!parsed) {
+    ERGOCAST_REQUIRE(!parsed.error().what.empty() && !parsed.error().remedy.empty());
     return;
   }
-  const auto& polygons = std::get<std::vector<GeoPolygon>>(parsed);
+  const auto& polygons = *parsed;
   ERGOCAST_REQUIRE(!polygons.empty());
   for (const GeoPolygon& polygon : polygons) {
     ERGOCAST_REQUIRE(!polygon.rings.empty());

@@ -7,11 +7,11 @@ namespace ergocast::fuzz {
 
 FUZZ_TARGET(hosts_file) {
   const auto parsed = parse_hosts(text_of(input), "hosts");
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&parsed)) {
-    ERGOCAST_REQUIRE(!problems->empty());
+  if (!parsed) {
+    ERGOCAST_REQUIRE(!parsed.error().empty());
     return;
   }
-  const auto& hosts = std::get<std::vector<DeployHost>>(parsed);
+  const auto& hosts = *parsed;
   for (const DeployHost& host : hosts) {
     ERGOCAST_REQUIRE(!host.name.empty() && !host.address.empty());
     ERGOCAST_REQUIRE(host.name.find('/') == std::string::npos && host.name.front() != '.');

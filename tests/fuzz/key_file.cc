@@ -15,16 +15,16 @@ FUZZ_TARGET(key_file) {
   folder.write("key", text_of(input));
   chmod(file.c_str(), 0600);
   const auto read = read_key_file(file);
-  if (const auto* problem = std::get_if<std::string>(&read)) {
-    ERGOCAST_REQUIRE(!problem->empty());
+  if (!read) {
+    ERGOCAST_REQUIRE(!read.error().empty());
     return;
   }
-  const MissionKey& key = std::get<MissionKey>(read);
+  const MissionKey& key = *read;
   const std::string text = key_text(key, key.signing.has_value());
   folder.write("key", text);
   const auto again = read_key_file(file);
-  ERGOCAST_REQUIRE(std::holds_alternative<MissionKey>(again));
-  ERGOCAST_REQUIRE(key_text(std::get<MissionKey>(again), key.signing.has_value()) == text);
+  ERGOCAST_REQUIRE(again.has_value());
+  ERGOCAST_REQUIRE(key_text(again.value(), key.signing.has_value()) == text);
 }
 
 }  // namespace ergocast::fuzz

@@ -14,11 +14,11 @@ namespace ergocast::fuzz {
 /// Reads at most a million cells: later rows are read by the same code.
 inline void read_map(Input input, OpenedMap (*open)(const std::filesystem::path&)) {
   const OpenedMap opened = open(memory_file(input));
-  if (const auto* problem = std::get_if<MapProblem>(&opened)) {
-    ERGOCAST_REQUIRE(!problem->what.empty() && !problem->remedy.empty());
+  if (!opened) {
+    ERGOCAST_REQUIRE(!opened.error().what.empty() && !opened.error().remedy.empty());
     return;
   }
-  MapFile& map = *std::get<0>(opened);
+  MapFile& map = **opened;
   ERGOCAST_REQUIRE(map.columns() >= 1 && map.columns() <= kMaxMapSide);
   ERGOCAST_REQUIRE(map.rows() >= 1 && map.rows() <= kMaxMapSide);
   std::vector<double> row(static_cast<std::size_t>(map.columns()));

@@ -96,7 +96,7 @@ class HostileNetwork : public RunningMission {
     std::vector<std::string> arguments{"--realtime", "--lcm-url", kUrl};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Child mission = launch_endless(scenario(), arguments);
-    Adversary adversary(std::get<LcmUrl>(LcmUrl::parse(kUrl)), authenticator, 1);
+    Adversary adversary(LcmUrl::parse(kUrl).value(), authenticator, 1);
     const std::vector<pid_t> before = crew();
     ASSERT_EQ(before.size(), 7U);
     const long memory_kb = largest_kb(before);

@@ -46,12 +46,12 @@ FUZZ_TARGET(run_tables) {
   folder.write("trajectory.csv", text.substr(0, end));
   folder.write("metrics.csv", text.substr(next));
   auto read = read_run(folder.path());
-  if (const auto* problem = std::get_if<std::string>(&read)) {
-    ERGOCAST_REQUIRE(!problem->empty());
+  if (!read) {
+    ERGOCAST_REQUIRE(!read.error().empty());
     return;
   }
-  check(std::get<RunData>(read));
-  resume(std::move(std::get<RunData>(read)));
+  check(*read);
+  resume(*std::move(read));
 }
 
 }  // namespace ergocast::fuzz

@@ -10,9 +10,8 @@ FUZZ_TARGET(scenario_text) {
   Overrides overrides;
   overrides.fields.push_back({"target.uniform_weight", "-1", "--set"});
   const auto parsed = Scenario::parse(text_of(input), "/fuzzed/mission.textproto", overrides);
-  const auto* problems = std::get_if<std::vector<Problem>>(&parsed);
-  ERGOCAST_REQUIRE(problems != nullptr && !problems->empty());
-  for (const Problem& problem : *problems) {
+  ERGOCAST_REQUIRE(!parsed && !parsed.error().empty());
+  for (const Problem& problem : parsed.error()) {
     ERGOCAST_REQUIRE(!problem.where.empty() && !problem.what.empty() && !problem.remedy.empty());
   }
 }

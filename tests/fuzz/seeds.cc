@@ -75,7 +75,7 @@ std::vector<std::string> everything_sent(SmallTeam& team) {
   std::vector<std::string> turns;
   std::map<std::size_t, int> sent;
   team.on_sent = [&](AgentId transmitter, const std::vector<std::byte>& bytes) {
-    const auto message = std::get<Message>(decode(bytes, 0));
+    const auto message = decode(bytes, 0).value();
     const int most = std::holds_alternative<MissionPart>(message)    ? 6
                      : std::holds_alternative<Contribution>(message) ? 1
                                                                      : 3;
@@ -125,10 +125,9 @@ void plans(const Seeds& seeds) {
       "basis { modes_x: 3 modes_y: 3 } law { u_max_mps: 10 } time { duration_s: 10 } "
       "agents { random_count: 2 }";
   const auto minimal = Scenario::parse(small, "small");
-  seeds.add("plan", "small", text_of(encode_plan(std::get<Scenario>(minimal).mission())));
+  seeds.add("plan", "small", text_of(encode_plan(minimal.value().mission())));
   const auto shipped = Scenario::load(ERGOCAST_SCENARIO_DIR "/quadrimodal_corners.textproto");
-  seeds.add("plan", "quadrimodal_corners",
-            text_of(encode_plan(std::get<Scenario>(shipped).mission())));
+  seeds.add("plan", "quadrimodal_corners", text_of(encode_plan(shipped.value().mission())));
 }
 
 void pictures(const Seeds& seeds) {

@@ -94,8 +94,7 @@ void SmallTeam::take(const Message& message, AgentId transmitter) {
 
 void SmallTeam::receive(std::span<const std::byte> datagram, AgentId transmitter) {
   const auto decoded = decode(datagram, kRun);
-  const auto* message = std::get_if<Message>(&decoded);
-  if (message != nullptr) take(*message, transmitter_in(*message, transmitter));
+  if (decoded) take(*decoded, transmitter_in(*decoded, transmitter));
 }
 
 void SmallTeam::pass(std::chrono::nanoseconds time) {
@@ -120,11 +119,11 @@ void SmallTeam::deliver(const Outbox& out) {
     encode(outgoing.message, bytes_);
     const auto decoded = decode(bytes_, kRun);
     // The team's own messages are valid, whatever it received.
-    ERGOCAST_REQUIRE(std::holds_alternative<Message>(decoded));
+    ERGOCAST_REQUIRE(decoded.has_value());
     const AgentId transmitter =
         outgoing.relayer == kUnassigned ? header_of(outgoing.message).sender : outgoing.relayer;
     if (on_sent) on_sent(transmitter, bytes_);
-    take(std::get<Message>(decoded), transmitter);
+    take(*decoded, transmitter);
   }
 }
 

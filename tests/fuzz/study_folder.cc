@@ -18,11 +18,11 @@ FUZZ_TARGET(study_folder) {
   folder.write("study.json", text.substr(0, end));
   folder.write("study.csv", text.substr(std::min(end + kSeparator.size(), text.size())));
   const auto opened = cli::StudyDirectory::open(folder.path(), identity);
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    ERGOCAST_REQUIRE(!problem->empty());
+  if (!opened) {
+    ERGOCAST_REQUIRE(!opened.error().empty());
     return;
   }
-  cli::StudyDirectory& directory = *std::get<0>(opened);
+  cli::StudyDirectory& directory = **opened;
   ERGOCAST_REQUIRE(directory.done().size() == directory.rows().size());
   ERGOCAST_REQUIRE(!directory.sort());
 }

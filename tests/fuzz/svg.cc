@@ -8,11 +8,11 @@ namespace ergocast::fuzz {
 
 FUZZ_TARGET(svg) {
   const auto parsed = parse_svg(text_of(input));
-  if (const auto* problem = std::get_if<PolygonFileProblem>(&parsed)) {
-    ERGOCAST_REQUIRE(!problem->what.empty() && !problem->remedy.empty());
+  if (!parsed) {
+    ERGOCAST_REQUIRE(!parsed.error().what.empty() && !parsed.error().remedy.empty());
     return;
   }
-  const auto& drawing = std::get<Drawing>(parsed);
+  const auto& drawing = *parsed;
   ERGOCAST_REQUIRE(!drawing.shapes.empty() && drawing.size.minCoeff() > 0);
   for (const DrawnShape& shape : drawing.shapes) {
     ERGOCAST_REQUIRE(!shape.rings.empty());

@@ -87,7 +87,7 @@ class Fragments : public RunningMission {
 TEST_F(Fragments, CrashLcmsOwnLibrary) {
   const auto read_one = [] {
     signal(SIGSEGV, SIG_DFL);  // also under a sanitizer
-    lcm::LCM lcm(std::get<LcmUrl>(LcmUrl::parse(kUrl)).of(Bus::kSwarm));
+    lcm::LCM lcm(LcmUrl::parse(kUrl).value().of(Bus::kSwarm));
     const auto ignore = +[](const lcm::ReceiveBuffer*, const std::string&, int) {};
     lcm.subscribeFunction("ERGOCAST_HELLO", ignore, 0);
     lcm.getFileno();  // starts LCM's reading thread

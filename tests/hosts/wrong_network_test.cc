@@ -64,7 +64,7 @@ TEST_F(WrongNetwork, AnAgentWithoutAMulticastRouteReportsWhatIsWrong) {
 }
 
 TEST_F(WrongNetwork, AnAgentWhoseFirewallDropsOneBusReportsWhich) {
-  const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(url_));
+  const LcmUrl url = LcmUrl::parse(url_).value();
   {
     const auto there = lan_->visit(2);
     const std::string drop =

@@ -21,7 +21,7 @@ std::string text_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 Scenario scenario_of(const std::string& text, const Overrides& overrides = {}) {
-  return std::get<Scenario>(Scenario::parse(text, "foresight", overrides));
+  return Scenario::parse(text, "foresight", overrides).value();
 }
 
 // ---- lockstep ----

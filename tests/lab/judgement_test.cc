@@ -25,7 +25,7 @@ Scenario team(Pace pace, const std::string& from = "", const std::string& to = "
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   Overrides overrides;
   overrides.pace = pace;
-  return std::get<Scenario>(Scenario::parse(with(text, from, to), name, overrides));
+  return Scenario::parse(with(text, from, to), name, overrides).value();
 }
 
 TrialResult run_trial(const Scenario& scenario, std::uint64_t seed, const Faults& faults,
@@ -134,7 +134,7 @@ TEST(RadioRange, IsNoFault) {
 
 // A chain of four that hardly move, in which no agent receives the next but one.
 TEST(RadioRange, ExcusesNoAgentFromPassingOnWhatItReceives) {
-  const auto chain = std::get<Scenario>(Scenario::parse(R"(
+  const auto chain = Scenario::parse(R"(
     domain { size_x_m: 100 size_y_m: 100 }
     target { uniform_weight: 1 }
     basis { modes_x: 4 modes_y: 4 }
@@ -143,7 +143,8 @@ TEST(RadioRange, ExcusesNoAgentFromPassingOnWhatItReceives) {
     time { duration_s: 60 broadcast_period_ticks: 5 pace: REALTIME }
     agents { starts { x_m: 5 y_m: 50 } starts { x_m: 35 y_m: 50 } starts { x_m: 65 y_m: 50 } starts { x_m: 95 y_m: 50 } }
   )",
-                                                        "chain"));
+                                     "chain")
+                         .value();
   EXPECT_EQ(problem(run_trial(chain, 1, {})), "");
   const Heard digests{Role::kAgent, Bus::kSwarm, Message(Digest()).index()};
   EXPECT_EQ(broken(run_trial(chain, 1, {}, without(digests))), Invariant::kEverybodyLearnsEveryRow);

@@ -19,7 +19,7 @@ agents { random_count: 48 quorum: 40 }
 )";
 
 TEST(LargeTeam, LearnsEveryRowWithinTheBoundUnderLossAndRestarts) {
-  const auto scenario = std::get<Scenario>(Scenario::parse(kScenario, "large"));
+  const auto scenario = Scenario::parse(kScenario, "large").value();
   ASSERT_GT(scenario.mission().starts_m.size(), std::size_t{kMaxDigestEntriesPerMessage});
   lab::Faults faults;
   faults.loss = 0.3;

@@ -37,7 +37,7 @@ struct Outcome {
 };
 
 Outcome simulated(const Drop& drop, const std::string& text = kScenario) {
-  const auto scenario = std::get<Scenario>(Scenario::parse(text, "loss"));
+  const auto scenario = Scenario::parse(text, "loss").value();
   std::int64_t dropped = 0;
   SimulatedTeam team(scenario.mission(), [&](const Message& message, lab::NodeId to) {
     const bool drops = drop && drop(message, to);
@@ -83,7 +83,7 @@ bool says_farewell(const Message& message) {
 }
 
 TEST(MessageLoss, AllLeaveAtOnceButForLostFarewells) {
-  const auto scenario = std::get<Scenario>(Scenario::parse(kScenario, "loss"));
+  const auto scenario = Scenario::parse(kScenario, "loss").value();
   const auto takes = [&](const Drop& drop) {
     SimulatedTeam team(scenario.mission(), drop);
     EXPECT_TRUE(team.run());

@@ -283,9 +283,8 @@ class MovedScenario : public ::testing::TestWithParam<std::tuple<Kind, int>> {
     std::string text;
     google::protobuf::TextFormat::PrintToString(scenario, &text);
     const auto parsed = Scenario::parse(text, (folder_.path() / "moved.textproto").string());
-    if (const auto* problems = std::get_if<std::vector<Problem>>(&parsed))
-      throw std::runtime_error(to_string(problems->front()) + "\n" + text);
-    return std::get<Scenario>(parsed).mission();
+    if (!parsed) throw std::runtime_error(to_string(parsed.error().front()) + "\n" + text);
+    return parsed->mission();
   }
 
   /// By tick and agent.

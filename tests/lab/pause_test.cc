@@ -25,10 +25,11 @@ Scenario team(Pace pace, const std::string& name = "faulty_team", const std::str
   Overrides overrides;
   overrides.pace = pace;
   overrides.duration_s = 30;
-  return std::get<Scenario>(Scenario::parse(
-      with(with(text + (part.empty() ? more : ""), part, part + (part.empty() ? "" : more)),
-           name == "faulty_team" ? "goal_ergodic_metric: 0.12" : "", ""),
-      name, overrides));
+  return Scenario::parse(
+             with(with(text + (part.empty() ? more : ""), part, part + (part.empty() ? "" : more)),
+                  name == "faulty_team" ? "goal_ergodic_metric: 0.12" : "", ""),
+             name, overrides)
+      .value();
 }
 
 struct RecordedRun {

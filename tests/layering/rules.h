@@ -22,6 +22,7 @@ enum class Outside {
   kHash,         // xxHash
   kCrypto,       // libsodium
   kGenerator,    // Random123
+  kExpected,     // tl::expected, for Result
   kSpectra,      // Spectra, and the sparse part of Eigen
   kPng,          // libpng
   kLoader,       // dlopen: libnetcdf
@@ -47,14 +48,14 @@ struct Rule {
 inline const std::set<std::string_view> kCore = {"core/base", "core/basis", "core/mission",
                                                  "core/law", "core/motion"};
 inline const std::vector<Rule> kRules = {
-    {"text", {}, {kFiles}},
-    {"text/input_file.cc", {"text"}, {kFiles, kSystem}},
     // The method. Law and motion do not see each other.
-    {"core/base", {}, {kGenerator}},
+    {"core/base", {}, {kGenerator, kExpected}},
     {"core/basis", {"core/base"}, {}},
     {"core/mission", {"core/base", "core/basis"}, {}},
     {"core/law", {"core/base", "core/basis", "core/mission"}, {}},
     {"core/motion", {"core/base", "core/mission"}, {}},
+    {"text", {"core/base"}, {kFiles}},
+    {"text/input_file.cc", {"text"}, {kFiles, kSystem}},
     // Modes of a free domain: a process without their table computes them.
     {"modes", {"core"}, {}},
     {"modes/eigen_modes.cc", {"core", "modes"}, {kSpectra}},
@@ -207,6 +208,7 @@ inline const std::vector<Kind> kKinds = {
     {kHash, {"xxhash.h"}},
     {kCrypto, {"sodium.h"}},
     {kGenerator, {"Random123/*"}},
+    {kExpected, {"tl/expected.hpp"}},
     {kSpectra, {"Spectra/*", "Eigen/Sparse*"}},
     {kPng, {"png.h"}},
     {kLoader, {"dlfcn.h"}},

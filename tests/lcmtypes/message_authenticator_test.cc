@@ -130,7 +130,7 @@ TEST(MessageAuthenticator, AMemberRepeatsWhatTheCoordinatorSignedButCannotChange
   const Message sent = unsigned_copy(mission_part());
   const Bytes bytes = authenticated(sent, kCoordinatorAuthenticator);
   const auto decoded = decode(bytes, kRun, kMemberAuthenticator, channel_of(sent));
-  auto part = std::get<MissionPart>(std::get<Message>(decoded));
+  auto part = std::get<MissionPart>(decoded.value());
   EXPECT_EQ(authenticated(part, kMemberAuthenticator), bytes);
   part.revision += 1;
   EXPECT_EQ(
@@ -143,7 +143,7 @@ TEST(MessageAuthenticator, ASignatureIsOfOneMessageOfOneRun) {
   stop.header = header_of_sender(kOperator);
   const auto decoded = decode(authenticated(stop, kCoordinatorAuthenticator), kRun,
                               kMemberAuthenticator, channel_of(stop));
-  Stop again = std::get<Stop>(std::get<Message>(decoded));
+  Stop again = std::get<Stop>(decoded.value());
   again.header.run = kRun + 1;
   EXPECT_EQ(verdict(decode(authenticated(again, kMemberAuthenticator), 0, kMemberAuthenticator,
                            channel_of(stop))),

@@ -17,7 +17,6 @@
 namespace ergocast::test {
 
 using Bytes = std::vector<std::byte>;
-using Decoded = std::variant<Message, Refusal>;
 
 inline constexpr RunId kRun = 0xfeedfacecafebeef;
 inline constexpr std::size_t kHeaderBytes = 60;
@@ -225,8 +224,7 @@ inline Bytes with_count(const Message& message, std::size_t offset, std::int32_t
 
 /// "accepted", or the reason.
 inline std::string verdict(const Decoded& decoded) {
-  const auto* refusal = std::get_if<Refusal>(&decoded);
-  return refusal == nullptr ? "accepted" : to_string(*refusal);
+  return decoded ? "accepted" : to_string(decoded.error());
 }
 inline std::string verdict(const Bytes& bytes, RunId run = kRun) {
   return verdict(decode(bytes, run));
@@ -235,7 +233,7 @@ inline std::string verdict(const Message& message) { return verdict(encoded(mess
 
 template <class M>
 M decoded_as(const Bytes& bytes) {
-  return std::get<M>(std::get<Message>(decode(bytes, kRun)));
+  return std::get<M>(decode(bytes, kRun).value());
 }
 
 }  // namespace ergocast::test

@@ -33,13 +33,13 @@ inline bool sees_through_the_door(const Eigen::Vector2d& from_m, const Eigen::Ve
 inline bool sees_all(const Eigen::Vector2d&, const Eigen::Vector2d&) { return true; }
 
 inline FreeGrid grid_of(const Box& domain, const Sees& sees) {
-  return std::get<FreeGrid>(free_grid(domain, sees));
+  return free_grid(domain, sees).value();
 }
 
 inline ModesTable table_of(const FreeGrid& grid, int modes, std::uint64_t key = 1) {
   const auto bytes = std::make_shared<const std::vector<std::byte>>(
       encode_table(grid, *eigen_modes(grid, modes), key));
-  return std::get<ModesTable>(decode_table(*bytes, bytes));
+  return decode_table(*bytes, bytes).value();
 }
 
 inline ModesTable two_rooms(int modes) {

@@ -19,7 +19,7 @@ Mission mission_from(const std::string& start, std::uint64_t seed = 1) {
       std::filesystem::path(ERGOCAST_SOURCE_DIR) / "studies/law" / (start + ".textproto");
   Overrides overrides;
   overrides.seed = seed;
-  return std::get<Scenario>(Scenario::load(file, overrides)).mission();
+  return Scenario::load(file, overrides).value().mission();
 }
 
 /// When the last of a team has left the set it starts on; infinite if that is not before `limit_s`.

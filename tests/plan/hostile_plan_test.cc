@@ -28,15 +28,13 @@ using Bytes = std::vector<std::byte>;
 /// The mission in a plan, if there is one.
 std::optional<Mission> decoded(std::span<const std::byte> plan) {
   auto read = decode_plan(plan);
-  auto* mission = std::get_if<Mission>(&read);
-  return mission == nullptr ? std::nullopt : std::optional(std::move(*mission));
+  return read ? std::optional(*std::move(read)) : std::nullopt;
 }
 bool is_taken(const Mission& mission) { return decoded(encode_plan(mission)).has_value(); }
 
 std::string problem_of(std::span<const std::byte> plan) {
   const auto read = decode_plan(plan);
-  const auto* problem = std::get_if<std::string>(&read);
-  return problem == nullptr ? "nothing" : *problem;
+  return read ? "nothing" : read.error();
 }
 bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 

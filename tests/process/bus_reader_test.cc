@@ -14,12 +14,12 @@ namespace {
 
 class OneBus : public OwnHost {
  protected:
-  static LcmUrl url(const std::string& text) { return std::get<LcmUrl>(LcmUrl::parse(text)); }
+  static LcmUrl url(const std::string& text) { return LcmUrl::parse(text).value(); }
   static std::unique_ptr<BusReader> reader(const LcmUrl& url, MessageTypes receives = kEveryType) {
-    return std::get<0>(BusReader::open(url, Bus::kSwarm, receives));
+    return BusReader::open(url, Bus::kSwarm, receives).value();
   }
   static std::unique_ptr<BusWriter> writer(const LcmUrl& url) {
-    return std::get<0>(BusWriter::open(url));
+    return BusWriter::open(url).value();
   }
   /// Sends several messages of one kind.
   static void send(BusWriter& writer, const Message& message, int count = 1) {

@@ -15,7 +15,7 @@ namespace {
 class Tape {
  public:
   explicit Tape(const std::string& url) {
-    const LcmUrl buses = std::get<LcmUrl>(LcmUrl::parse(url));
+    const LcmUrl buses = LcmUrl::parse(url).value();
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
       ears_.push_back({bus, std::make_unique<lcm::LCM>(buses.of(bus)), &recorded_});
       Ear& ear = ears_.back();
@@ -32,7 +32,7 @@ class Tape {
   }
   /// Sends all recorded messages.
   void play(const std::string& url) const {
-    const LcmUrl buses = std::get<LcmUrl>(LcmUrl::parse(url));
+    const LcmUrl buses = LcmUrl::parse(url).value();
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
       lcm::LCM out(buses.of(bus));
       for (const auto& one : recorded_) {
@@ -118,8 +118,7 @@ class CommandReplay : public ByHand {
   /// processes that started later. The world leaves a stop in order to the coordinator, which does
   /// not receive it.
   void pass_the_first_tick() const {
-    Stranger operator_(kUrl,
-                       MessageAuthenticator(std::get<MissionKey>(read_key_file(coordinator_key_))));
+    Stranger operator_(kUrl, MessageAuthenticator(read_key_file(coordinator_key_).value()));
     ASSERT_TRUE(eventually([&] {
       operator_.send(Bus::kCommand, Stop{{kRun, kOperator, 1, 0, 0}, false, "of the first tick"});
       return ignores(*world_);

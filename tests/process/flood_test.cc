@@ -25,7 +25,7 @@ class Flood : public RunningMission {
  protected:
   /// Short LCM messages under 100 000 unknown channel names, on one bus.
   static void send_foreign_names(Bus bus, const std::string& stem) {
-    const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
+    const LcmUrl url = LcmUrl::parse(kUrl).value();
     const Socket socket(AF_INET, SOCK_DGRAM);
     const sockaddr_in to = address_of(url.group, url.base_port + static_cast<int>(bus));
     for (int i = 0; i < 100000; ++i) {
@@ -39,7 +39,7 @@ class Flood : public RunningMission {
   }
   /// A message on a channel of ours, but fifty times as long as any valid one.
   static void send_long_datagrams(Bus bus) {
-    const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
+    const LcmUrl url = LcmUrl::parse(kUrl).value();
     const Socket socket(AF_INET, SOCK_DGRAM);
     const sockaddr_in to = address_of(url.group, url.base_port + static_cast<int>(bus));
     const std::string bytes =
@@ -82,7 +82,7 @@ TEST_F(Flood, NamesOfForeignChannelsCostNoMemory) {
 class RateOffender {
  public:
   RateOffender(const std::string& url, bool in_its_place)
-      : bus_(std::get<LcmUrl>(LcmUrl::parse(url)).of(Bus::kSwarm)), in_its_place_(in_its_place) {
+      : bus_(LcmUrl::parse(url).value().of(Bus::kSwarm)), in_its_place_(in_its_place) {
     bus_.subscribe("ERGOCAST_AGENT_STATUS_3", &RateOffender::receive, this)->setQueueCapacity(0);
   }
   void exceed_rate() {
@@ -101,7 +101,7 @@ class RateOffender {
   }
   /// The same message under the next sequence.
   void renew() {
-    auto status = std::get<AgentStatus>(std::get<Message>(decode(bytes_, 0)));
+    auto status = std::get<AgentStatus>(decode(bytes_, 0).value());
     ++status.header.sequence;
     encode(status, bytes_);
   }
@@ -192,7 +192,7 @@ TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamGoesOn) {
   constexpr std::size_t kAtOnce = 200;  // every 5 ms at the most: 40 000 a second
   Child mission =
       launch_endless(scenario(), {"--realtime=5", "--key-file", key_file_, "--lcm-url", kUrl});
-  Replayer replayer(std::get<LcmUrl>(LcmUrl::parse(kUrl)), GetParam());
+  Replayer replayer(LcmUrl::parse(kUrl).value(), GetParam());
   ASSERT_TRUE(eventually([&] { return replayer.listen(), replayer.kept() >= 4; }));
   std::int64_t refused = 0;
   ASSERT_TRUE(eventually([&] {

@@ -13,10 +13,11 @@ using namespace std::chrono_literals;
 class Gathers : public OwnHost {
  protected:
   Gathers() {
-    const auto url = std::get<LcmUrl>(LcmUrl::parse("udpm://239.255.76.67:24700?ttl=0"));
-    transport_ = std::get<0>(Transport::open(
-        url, 0, {}, {kEveryType, kEveryType, kEveryType},
-        {.on_message = [this](const Message&, Bus bus, AgentId) { ++heard_[bus]; }}));
+    const auto url = LcmUrl::parse("udpm://239.255.76.67:24700?ttl=0").value();
+    transport_ =
+        Transport::open(url, 0, {}, {kEveryType, kEveryType, kEveryType},
+                        {.on_message = [this](const Message&, Bus bus, AgentId) { ++heard_[bus]; }})
+            .value();
   }
   void send(Bus bus, int count = 1) {
     const Message message = bus == Bus::kWorld ? Message(world_state()) : Message(digest());

@@ -293,7 +293,7 @@ TEST_F(Report, HasTheRecordedTarget) {
   Field density(4, 2);
   density << 0, 0, 1.25, 3, 0, 0, 0, 3.75;
   ASSERT_EQ(write_target_density(dir / kTargetDensityFile, density), std::nullopt);
-  EXPECT_EQ(std::get<Field>(read_target_density(dir / kTargetDensityFile)), density);
+  EXPECT_EQ(read_target_density(dir / kTargetDensityFile).value(), density);
   ASSERT_EQ(report(), std::nullopt);
   const auto drawn = data()["record"]["mission"]["density"];
   EXPECT_EQ(drawn["width"], 4);

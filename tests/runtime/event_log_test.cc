@@ -177,8 +177,8 @@ TEST_F(EventLogTest, AFullDiskCostsEventsButTearsNone) {
 /// The names of all events that the reader finds, and its problem.
 std::string read_back(const fs::path& folder) {
   auto opened = EventLogReader::open(folder);
-  if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
-  auto& reader = std::get<EventLogReader>(opened);
+  if (!opened) return opened.error();
+  auto& reader = *opened;
   std::string printed;
   while (const LoggedEvent* event = reader.next()) {
     EXPECT_EQ(event->time_us, 1000000 + event->bytes.size());

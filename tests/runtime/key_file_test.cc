@@ -27,8 +27,7 @@ class KeyFile : public testing::Test {
   /// Why the text is no key; empty if it is one.
   std::string problem(const std::string& text, mode_t mode = 0600) const {
     const auto read = read_key_file(file(text, mode));
-    const auto* problem = std::get_if<std::string>(&read);
-    return problem == nullptr ? "" : *problem;
+    return read ? "" : read.error();
   }
   const test::TempFolder own_;
   const fs::path& folder_ = own_.path();
@@ -42,8 +41,8 @@ TEST_F(KeyFile, WhatIsWrittenIsReadAgain) {
   struct stat info {};
   ASSERT_EQ(::stat(team.c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777, 0600u);
-  const auto all = std::get<MissionKey>(read_key_file(coordinator));
-  const auto members = std::get<MissionKey>(read_key_file(team));
+  const auto all = read_key_file(coordinator).value();
+  const auto members = read_key_file(team).value();
   EXPECT_EQ(all.shared, key.shared);
   EXPECT_EQ(all.coordinator, key.coordinator);
   EXPECT_EQ(all.signing, key.signing);
@@ -80,9 +79,7 @@ TEST_F(KeyFile, OnlyACredentialOfSystemdMayBeReadableByItsGroup) {
   const std::string text = key_text(make_mission_key(), false);
   const fs::path credentials = folder_ / "credentials";
   fs::create_directory(credentials);
-  const auto is_read = [](const fs::path& path) {
-    return std::holds_alternative<MissionKey>(read_key_file(path));
-  };
+  const auto is_read = [](const fs::path& path) { return read_key_file(path).has_value(); };
   ::setenv("CREDENTIALS_DIRECTORY", credentials.c_str(), 1);
   const fs::path inside = credentials / "a.key";
   fs::copy_file(file(text, 0440), inside);
@@ -105,7 +102,7 @@ TEST_F(KeyFile, OnlyACredentialOfSystemdMayBeReadableByItsGroup) {
 }
 
 TEST_F(KeyFile, OtherThingsThanFilesAreRefused) {
-  const auto of = [](const fs::path& path) { return std::get<std::string>(read_key_file(path)); };
+  const auto of = [](const fs::path& path) { return read_key_file(path).error(); };
   EXPECT_NE(of(folder_ / "missing").find("No such file"), std::string::npos);
   EXPECT_NE(of(folder_).find("not a file"), std::string::npos);
   const fs::path pipe = folder_ / "pipe";

@@ -21,8 +21,8 @@ namespace {
 
 SealedFile sealed(const std::string& text) {
   auto made = SealedFile::make("a plan", std::as_bytes(std::span(text)));
-  EXPECT_TRUE(std::holds_alternative<SealedFile>(made));
-  return std::get<SealedFile>(made);
+  EXPECT_TRUE(made);
+  return made.value();
 }
 
 std::string text_of(const std::filesystem::path& file) {
@@ -60,7 +60,7 @@ std::string seen_by_child(const std::vector<SealedFile>& files) {
   for (const SealedFile& file : files) path = program.hand(file.descriptor());
   program.command.push_back(path);
   auto child = Child::start(program);
-  EXPECT_EQ(waitpid(std::get<Child>(child).pid(), nullptr, 0), std::get<Child>(child).pid());
+  EXPECT_EQ(waitpid(child.value().pid(), nullptr, 0), child.value().pid());
   return text_of(log);
 }
 

@@ -69,8 +69,7 @@ class GeoJsonTarget : public ::testing::Test {
   std::string problem_of(const std::string& geojson, const std::string& where = kWhere,
                          const std::string& target = kRegion) {
     const Loaded result = load(target, geojson, where);
-    const auto* problems = std::get_if<std::vector<Problem>>(&result);
-    return problems == nullptr ? "" : joined(*problems);
+    return result ? "" : joined(result.error());
   }
   void expect(const std::string& geojson, const std::string& what) {
     const std::string printed = problem_of(geojson);
@@ -212,16 +211,15 @@ TEST_F(GeoJsonTarget, AProblemOfALaterPolygonNamesItsMember) {
 
 TEST_F(GeoJsonTarget, TheOriginOfARecordIsReadByItself) {
   load(kRegion, collection({polygon(box_ring(10, 10, 30))}));
-  const auto origin = std::get<0>(read_origin(folder_ / "mine.textproto"));
+  const auto origin = read_origin(folder_ / "mine.textproto").value();
   ASSERT_TRUE(origin.has_value());
   EXPECT_EQ(origin->latitude_deg, 47.5);
   EXPECT_EQ(origin->longitude_deg, 9.2);
   load(kRegion, "", "");
-  EXPECT_FALSE(std::get<0>(read_origin(folder_ / "mine.textproto")).has_value());
+  EXPECT_FALSE(read_origin(folder_ / "mine.textproto").value().has_value());
   load(kRegion, "", "origin { latitude_deg: 91 longitude_deg: 0 }");
-  EXPECT_TRUE(
-      has(joined(std::get<1>(read_origin(folder_ / "mine.textproto"))), "above the limit 90"));
-  EXPECT_TRUE(has(joined(std::get<1>(read_origin(folder_ / "none"))), "there is no such file"));
+  EXPECT_TRUE(has(joined(read_origin(folder_ / "mine.textproto").error()), "above the limit 90"));
+  EXPECT_TRUE(has(joined(read_origin(folder_ / "none").error()), "there is no such file"));
 }
 
 }  // namespace

@@ -33,8 +33,7 @@ class MapTarget : public ::testing::Test {
   }
   std::string problem_of(const std::string& target) {
     const Loaded result = Scenario::load(scenario_with(target));
-    const auto* problems = std::get_if<std::vector<Problem>>(&result);
-    return problems == nullptr ? "" : joined(*problems);
+    return result ? "" : joined(result.error());
   }
 
   const TempFolder own_;
@@ -145,8 +144,8 @@ TEST_F(MapTarget, EqualInputsGiveEqualBytesAndThePlanNeedsNoMap) {
   fs::remove_all(folder_);
   const std::vector<std::byte> plan = plan_of(scenario);
   const auto read = decode_plan(plan);
-  ASSERT_TRUE(std::holds_alternative<Mission>(read)) << std::get<std::string>(read);
-  EXPECT_EQ(std::get<Mission>(read).target_coefficients, scenario.mission().target_coefficients);
+  ASSERT_TRUE(read) << read.error();
+  EXPECT_EQ(read.value().target_coefficients, scenario.mission().target_coefficients);
   const std::string bytes(reinterpret_cast<const char*>(plan.data()), plan.size());
   EXPECT_EQ(bytes.find("a.csv"), std::string::npos);
 }

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "core/base/result.h"
 #include "plan/plan.h"
 #include "scenario/scenario.h"
 
@@ -53,13 +53,13 @@ inline std::string joined(const std::vector<Problem>& problems) {
   return text;
 }
 
-using Loaded = std::variant<Scenario, std::vector<Problem>>;
+using Loaded = Result<Scenario, std::vector<Problem>>;
 
 inline Scenario good(Loaded loaded) {
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
-    throw std::runtime_error(joined(*problems));  // fails the test, with the reason
+  if (!loaded) {
+    throw std::runtime_error(joined(loaded.error()));  // fails the test, with the reason
   }
-  return std::get<Scenario>(std::move(loaded));
+  return *std::move(loaded);
 }
 
 inline Scenario good(std::string_view text, const Overrides& overrides = {}) {
@@ -73,8 +73,7 @@ inline std::vector<std::byte> plan_of(const Scenario& scenario) {
 /// The problems of `text`, none if it has none.
 inline std::vector<Problem> problems_of(std::string_view text, const Overrides& overrides = {}) {
   const Loaded loaded = Scenario::parse(text, "f", overrides);
-  const auto* problems = std::get_if<std::vector<Problem>>(&loaded);
-  return problems == nullptr ? std::vector<Problem>{} : *problems;
+  return loaded ? std::vector<Problem>{} : loaded.error();
 }
 
 }  // namespace ergocast::test

@@ -93,9 +93,9 @@ struct MistakeInSpace {
 
 std::string all_said_of(const std::string& text) {
   const Loaded loaded = Scenario::parse(text, "f");
-  if (std::holds_alternative<Scenario>(loaded)) return "nothing";
+  if (loaded) return "nothing";
   std::string all;
-  for (const Problem& problem : std::get<1>(loaded)) all += to_string(problem) + '\n';
+  for (const Problem& problem : loaded.error()) all += to_string(problem) + '\n';
   return all;
 }
 

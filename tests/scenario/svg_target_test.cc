@@ -35,8 +35,7 @@ class SvgTarget : public ::testing::Test {
   }
   void expect_problem(const std::string& svg, const std::string& what) {
     const Loaded result = load(kFile, svg);
-    const auto* problems = std::get_if<std::vector<Problem>>(&result);
-    const std::string printed = problems == nullptr ? "" : joined(*problems);
+    const std::string printed = result ? "" : joined(result.error());
     EXPECT_TRUE(has(printed, "mine.textproto:3:"));
     EXPECT_TRUE(has(printed, "target.keep_outs[0].file: " +
                                  (folder_.path() / "floor.svg").string() + ": " + what));

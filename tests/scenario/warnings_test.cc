@@ -157,8 +157,8 @@ TEST(Warnings, AreOfNoWeightForAPlan) {
   const Scenario scenario = good(limited("", "1"));
   ASSERT_EQ(scenario.warnings().size(), 1u);
   const auto read = decode_plan(plan_of(scenario));
-  ASSERT_TRUE(std::holds_alternative<Mission>(read));
-  EXPECT_EQ(std::get<Mission>(read).speed_limit_mps, 1);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read.value().speed_limit_mps, 1);
 }
 
 TEST(Warnings, OfVehiclesThatFollowLateAndBeginAtAnEdge) {

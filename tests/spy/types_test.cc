@@ -28,7 +28,7 @@ class SpyJar : public WithProbe {
   Scenario plan_of(const std::string& name) { return plan_of_file(scenario_file(name)); }
   Scenario plan_of_file(const std::filesystem::path& file) {
     auto loaded = Scenario::load(file);
-    const auto& scenario = std::get<Scenario>(loaded);
+    const auto& scenario = loaded.value();
     const auto plan = encode_plan(scenario.mission());
     std::ofstream(plan_file(), std::ios::binary)
         .write(reinterpret_cast<const char*>(plan.data()),
@@ -55,15 +55,17 @@ TEST_F(SpyJar, LcmSpyKnowsEveryTypeByTheFingerprintThatTravels) {
 }
 
 TEST_F(SpyJar, EveryMessageComesBackFromLcmsJavaAsItWasSent) {
-  const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
+  const LcmUrl url = LcmUrl::parse(kUrl).value();
   std::map<std::string, Bytes> heard;
-  const auto ours = std::get<0>(Transport::open(
-      url, 0, {}, {0, kEveryType, 0},
-      {.on_message = [](const Message&, Bus, AgentId) {},
-       .on_accepted =
-           [&heard](Bus, std::string_view channel, std::span<const std::byte> bytes) {
-             heard[std::string(channel)].assign(bytes.begin(), bytes.end());
-           }}));
+  const auto ours =
+      Transport::open(
+          url, 0, {}, {0, kEveryType, 0},
+          {.on_message = [](const Message&, Bus, AgentId) {},
+           .on_accepted =
+               [&heard](Bus, std::string_view channel, std::span<const std::byte> bytes) {
+                 heard[std::string(channel)].assign(bytes.begin(), bytes.end());
+               }})
+          .value();
   Child echo = begin(probe_command({"echo", url.of(Bus::kSwarm), url.of(Bus::kWorld)}));
   Outbox outbox;
   std::map<std::string, Bytes> expected;

@@ -22,7 +22,7 @@ double metric_of(const char* encoding, const char* period_ticks, const char* dea
                       {"agents.dead_reckoning", dead_reckons, ""}};
   const auto loaded = Scenario::load(
       std::string(ERGOCAST_SCENARIO_DIR) + "/quadrimodal_corners.textproto", overrides);
-  const auto plan = encode_plan(std::get<Scenario>(loaded).mission());
+  const auto plan = encode_plan(loaded.value().mission());
   return studies::run_with_messages(plan).metric;
 }
 

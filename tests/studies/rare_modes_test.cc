@@ -23,7 +23,7 @@ Mission mission_of(const std::string& file, const char* factor, const char* peri
                       {"agents.dead_reckoning", dead_reckons, ""}};
   const auto loaded =
       Scenario::load(std::string(ERGOCAST_SCENARIO_DIR) + '/' + file + ".textproto", overrides);
-  return std::get<Scenario>(loaded).mission();
+  return loaded.value().mission();
 }
 
 double metric_of(const Mission& mission) {

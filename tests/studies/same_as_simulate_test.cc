@@ -34,8 +34,8 @@ class Drawn {
       std::string text;
       google::protobuf::TextFormat::PrintToString(scenario, &text);
       auto parsed = Scenario::parse(text, (folder_.path() / "drawn.textproto").string());
-      if (auto* valid = std::get_if<Scenario>(&parsed)) {
-        compiled.emplace(std::move(*valid));
+      if (parsed) {
+        compiled.emplace(*std::move(parsed));
         return "drawn from seed " + std::to_string(seed_) + ":\n" + text;
       }
       ++refused;

@@ -19,7 +19,7 @@ Scenario shipped(const std::string& name, double duration_s) {
   Overrides overrides;
   overrides.duration_s = duration_s;
   const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
-  return std::get<Scenario>(Scenario::load(file, overrides));
+  return Scenario::load(file, overrides).value();
 }
 
 /// 100 m × 200 m, ten ticks of 1 s; one agent on the midline x = 50, one in general position.
@@ -161,7 +161,7 @@ TEST(StudyRun, IsTheSameWithMoreAgentsThanOneWorldStateHolds) {
   overrides.duration_s = 5;
   overrides.agents = 20;
   const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / "quadrimodal_corners.textproto";
-  const auto scenario = std::get<Scenario>(Scenario::load(file, overrides));
+  const auto scenario = Scenario::load(file, overrides).value();
   expect_same(run_without_messages(scenario.mission()),
               run_with_messages(encode_plan(scenario.mission())));
 }

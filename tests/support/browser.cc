@@ -51,7 +51,7 @@ Browser::Browser(const std::filesystem::path& folder, bool webgl) {
   const std::vector<std::string> command{"/usr/bin/chromedriver",
                                          "--port=" + std::to_string(kPort)};
   const auto log = folder / "chromedriver.log";
-  driver_ = std::get<Child>(Child::start({command, log, SIGKILL}));
+  driver_ = Child::start({command, log, SIGKILL}).value();
   if (!waits_for([] { return get(kPort, "/status").status == 200; }, *driver_)) {
     throw std::runtime_error("chromedriver " + driver_->fate() + " and does not answer:\n" +
                              last_lines(log, 25));

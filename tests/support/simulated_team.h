@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "lab/ideal_team.h"
@@ -27,7 +26,7 @@ namespace ergocast::test {
 /// A shipped scenario; fails loudly if the file has problems.
 inline Scenario shipped_scenario(const std::string& name, const Overrides& overrides = {}) {
   const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
-  return std::get<Scenario>(Scenario::load(file, overrides));
+  return Scenario::load(file, overrides).value();
 }
 inline Mission shipped_mission(const std::string& name, const Overrides& overrides = {}) {
   return shipped_scenario(name, overrides).mission();

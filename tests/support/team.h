@@ -51,7 +51,7 @@ inline void announce(const Mission& mission) { announced_plan = encode_plan(miss
 
 /// An invalid plan, and the error that every process reports for it.
 inline const std::vector<std::byte> kNoPlan{std::byte{1}};
-inline std::string why_no_plan() { return std::get<std::string>(decode_plan(kNoPlan)); }
+inline std::string why_no_plan() { return decode_plan(kNoPlan).error(); }
 
 inline std::vector<RosterEntry> roster_of(int agents) {
   std::vector<RosterEntry> roster;

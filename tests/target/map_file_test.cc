@@ -26,35 +26,33 @@ class Maps : public ::testing::Test {
   }
 
   /// All rows, or the problem that ended the reading.
-  std::variant<Rows, MapProblem> read(const fs::path& file) {
+  Result<Rows, MapProblem> read(const fs::path& file) {
     OpenedMap opened = open_map(file);
-    if (auto* problem = std::get_if<MapProblem>(&opened)) return *problem;
-    MapFile& map = *std::get<0>(opened);
+    if (!opened) return failure(opened.error());
+    MapFile& map = **opened;
     extent_ = map.extent();
     Rows rows;
     for (int i = 0; i < map.rows(); ++i) {
       std::vector<double> row(static_cast<std::size_t>(map.columns()));
-      if (const auto problem = map.next_row(row)) return *problem;
+      if (const auto problem = map.next_row(row)) return failure(*problem);
       rows.push_back(row);
     }
     return rows;
   }
   Rows rows_of(const fs::path& file) {
     const auto result = read(file);
-    if (const auto* problem = std::get_if<MapProblem>(&result)) {
-      ADD_FAILURE() << problem->what;
-      return {};
-    }
-    return std::get<Rows>(result);
+    if (result) return *result;
+    ADD_FAILURE() << result.error().what;
+    return {};
   }
   /// The problem of `file`; empty if there is none.
   std::string problem_of(const fs::path& file) {
     const auto result = read(file);
-    const auto* problem = std::get_if<MapProblem>(&result);
-    if (problem == nullptr) return "";
-    EXPECT_FALSE(problem->remedy.empty());
-    EXPECT_TRUE(problem->what.starts_with(file.string())) << problem->what;
-    return problem->what.substr(file.string().size()) + " (" + problem->remedy + ")";
+    if (result) return "";
+    const MapProblem& problem = result.error();
+    EXPECT_FALSE(problem.remedy.empty());
+    EXPECT_TRUE(problem.what.starts_with(file.string())) << problem.what;
+    return problem.what.substr(file.string().size()) + " (" + problem.remedy + ")";
   }
   void expect_said(const fs::path& file, const std::string& part) {
     const std::string printed = problem_of(file);

@@ -23,10 +23,11 @@ class DeployFiles : public ::testing::Test {
     mission_.name = "survey";
     mission_.folder = "/home/it's \"$HOME\"/`x`\ny";
     mission_.files = {"survey.textproto", "maps/lake.png"};
-    mission_.url =
-        std::get<LcmUrl>(LcmUrl::parse("udpm://239.1.2.3:7000?ttl=1&recv_buf_size=4096"));
-    hosts_ = std::get<0>(parse_hosts(
-        "ground ops@10.0.0.1 coordinator logger sim\nrover pi@10.0.0.2 agent 0 3\n", "hosts"));
+    mission_.url = LcmUrl::parse("udpm://239.1.2.3:7000?ttl=1&recv_buf_size=4096").value();
+    hosts_ =
+        parse_hosts("ground ops@10.0.0.1 coordinator logger sim\nrover pi@10.0.0.2 agent 0 3\n",
+                    "hosts")
+            .value();
   }
 
   /// Both files of a mission key, with a name that needs quoting; their content is their own name.
@@ -228,7 +229,7 @@ TEST_F(DeployFiles, ComposeHasAFileForEveryHostOnItsOwnNetwork) {
 }
 
 TEST_F(DeployFiles, ComposeOfOneHostHasABridge) {
-  const auto hosts = std::get<0>(parse_hosts("box coordinator logger sim agents=2", "hosts"));
+  const auto hosts = parse_hosts("box coordinator logger sim agents=2", "hosts").value();
   const auto files = compose_files(hosts, mission_);
   ASSERT_EQ(files.size(), 1U);
   EXPECT_EQ(files[0].name, "compose.yaml");

@@ -11,11 +11,9 @@ namespace {
 
 std::vector<DeployHost> hosts_in(const std::string& text) {
   auto read = parse_hosts(text, "hosts");
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) {
-    for (const Problem& problem : *problems) ADD_FAILURE() << to_string(problem);
-    return {};
-  }
-  return std::get<std::vector<DeployHost>>(std::move(read));
+  if (read) return *std::move(read);
+  for (const Problem& problem : read.error()) ADD_FAILURE() << to_string(problem);
+  return {};
 }
 
 std::string joined(const std::vector<Problem>& problems) {
@@ -26,8 +24,7 @@ std::string joined(const std::vector<Problem>& problems) {
 
 std::string problems_in(const std::string& text) {
   const auto read = parse_hosts(text, "hosts");
-  const auto* problems = std::get_if<std::vector<Problem>>(&read);
-  return problems == nullptr ? "" : joined(*problems);
+  return read ? "" : joined(read.error());
 }
 
 bool has(const std::string& text, const std::string& part) {
@@ -106,7 +103,7 @@ std::string lacks(const std::string& text, const std::string& url = "udpm://239.
   DeployMission mission;
   mission.name = "mission";
   mission.quorum = 2;
-  mission.url = std::get<LcmUrl>(LcmUrl::parse(url));
+  mission.url = LcmUrl::parse(url).value();
   const auto hosts = hosts_in(text);
   return joined(problems_of(hosts, mission, "hosts", hosts.size() > 1));
 }

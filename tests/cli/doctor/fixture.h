@@ -30,8 +30,7 @@ inline bool contains(const std::string& text, const std::string& part) {
 }
 
 inline LcmUrl url_of(const std::string& options, int port = 24000) {
-  return std::get<LcmUrl>(
-      LcmUrl::parse("udpm://239.255.76.67:" + std::to_string(port) + "?" + options));
+  return LcmUrl::parse("udpm://239.255.76.67:" + std::to_string(port) + "?" + options).value();
 }
 
 }  // namespace ergocast::doctor

@@ -215,7 +215,7 @@ class Installed : public Deploy {
     arguments.insert(arguments.begin(), folder_ / "bin/ergocast");
     log_ = folder_ / "said";
     std::filesystem::remove(log_);
-    Child child = std::get<Child>(Child::start({arguments, log_, SIGKILL}));
+    Child child = Child::start({arguments, log_, SIGKILL}).value();
     return wait_for(child);
   }
 };

@@ -98,7 +98,7 @@ class Keyed : public ByHand {
     EXPECT_EQ(write_key_file(team_, key_text(key, false)), std::nullopt);
   }
   MessageAuthenticator authenticator(const std::filesystem::path& file) const {
-    return MessageAuthenticator(std::get<MissionKey>(read_key_file(file)));
+    return MessageAuthenticator(read_key_file(file).value());
   }
   /// The id of the running mission.
   static RunId run_id() {
@@ -114,7 +114,7 @@ TEST_F(Keyed, OutsidersChangeNotOneBitOfTheMission) {
   Child mission = start("ergocast", {"run", scenario(), "--out", out(), "--duration", "200",
                                      "--key-file", coordinator_, "--lcm-url", kUrl});
   mission_log_ = log_;
-  Outsider outsider(std::get<LcmUrl>(LcmUrl::parse(kUrl)));
+  Outsider outsider(LcmUrl::parse(kUrl).value());
   // The world waits until there are enough forgeries, at any speed of the team.
   ASSERT_TRUE(eventually([] { return pids({"ergocast-sim"}).size() == 1; }));
   signal_to({"ergocast-sim"}, SIGSTOP);
@@ -229,13 +229,13 @@ TEST_F(Keyed, KeysThatWouldNotDoAreRefusedAtOnce) {
 TEST_F(Keyed, KeygenWritesBothFilesOnceAndForItsOwnerOnly) {
   const std::string name = folder_ / "new";
   EXPECT_EQ(ergocast({"keygen", name}), 0) << output();
-  const auto coordinator = std::get<MissionKey>(read_key_file(name + ".coordinator.key"));
-  const auto team = std::get<MissionKey>(read_key_file(name + ".key"));
+  const auto coordinator = read_key_file(name + ".coordinator.key").value();
+  const auto team = read_key_file(name + ".key").value();
   EXPECT_TRUE(coordinator.signing.has_value());
   EXPECT_FALSE(team.signing.has_value());
   EXPECT_EQ(team.shared, coordinator.shared);
   EXPECT_EQ(ergocast({"keygen", name}), 2);
-  EXPECT_EQ(std::get<MissionKey>(read_key_file(name + ".key")).shared, team.shared);
+  EXPECT_EQ(read_key_file(name + ".key").value().shared, team.shared);
   // Half a pair would be useless.
   std::filesystem::remove(name + ".coordinator.key");
   EXPECT_EQ(ergocast({"keygen", name}), 2);

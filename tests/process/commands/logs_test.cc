@@ -19,10 +19,12 @@ TEST_F(FailedTest, PrintsTheLogsOfItsProcessesAndEndsThem) {
   }
   setenv(kPlanted, "1", 1);
   const auto log = folder_ / "planted";
-  Child planted = std::get<Child>(Child::start(
-      {{"/proc/self/exe", "--gtest_filter=FailedTest.PrintsTheLogsOfItsProcessesAndEndsThem"},
-       log,
-       SIGKILL}));
+  Child planted =
+      Child::start(
+          {{"/proc/self/exe", "--gtest_filter=FailedTest.PrintsTheLogsOfItsProcessesAndEndsThem"},
+           log,
+           SIGKILL})
+          .value();
   unsetenv(kPlanted);
   EXPECT_EQ(wait_for(planted), 1);
   const std::string printed = text_of(log);

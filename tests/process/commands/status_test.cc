@@ -129,7 +129,7 @@ TEST_F(Status, CountsWhatAgentsRefuse) {
 }
 
 TEST_F(Status, WithoutATeamNamesWhatToCheckAndHasPublishedNothing) {
-  const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
+  const LcmUrl url = LcmUrl::parse(kUrl).value();
   Ear swarm(url.of(Bus::kSwarm)), world(url.of(Bus::kWorld)), command(url.of(Bus::kCommand));
   EXPECT_EQ(status(), 4);
   EXPECT_NE(output().find("no message of any run arrived on "), std::string::npos) << output();

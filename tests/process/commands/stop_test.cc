@@ -217,10 +217,10 @@ TEST_F(StopCommand, InAnEmergencyStopsAllRunsThatItFinds) {
 TEST_F(StopCommand, InAnEmergencySendsAlsoToMoreRunsThanItCanWatch) {
   std::set<RunId> reached;
   const auto listener =
-      std::get<0>(Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {kTypes<Stop>},
-                                  {.on_message = [&](const Message& stop, Bus, AgentId) {
-                                    reached.insert(header_of(stop).run);
-                                  }}));
+      Transport::open(LcmUrl::parse(kUrl).value(), 0, {}, {kTypes<Stop>},
+                      {.on_message = [&](const Message& stop, Bus,
+                                         AgentId) { reached.insert(header_of(stop).run); }})
+          .value();
   Stranger stranger(kUrl);
   Program& decided = hand("ergocast", {"stop", "--now"});
   ASSERT_TRUE(eventually([&] {

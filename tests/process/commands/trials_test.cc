@@ -122,10 +122,11 @@ TEST_F(Trials, ThePrintedCommandRunsTheSameMissionAgain) {
     ASSERT_EQ(failed.size(), 3U) << output();
     ASSERT_EQ(again.size(), 3U) << output();
     log_ = folder_ / "again.log";
-    Child child = std::get<Child>(
+    Child child =
         Child::start({{"/bin/sh", "-c", (program_folder() / "ergocast").string() + ' ' + again[1]},
                       log_,
-                      SIGKILL}));
+                      SIGKILL})
+            .value();
     EXPECT_EQ(wait_for(child), 4) << again[1];
     EXPECT_EQ(texts_between("seed "), std::vector<std::string>{failed[1]}) << again[1];
   }

@@ -20,10 +20,12 @@ namespace ergocast::test {
 class BusObserver {
  public:
   explicit BusObserver(const std::string& url, const MessageAuthenticator& authenticator = {}) {
-    transport_ = std::get<0>(Transport::open(
-        std::get<LcmUrl>(LcmUrl::parse(url)), 0, authenticator,
-        {kTypes<MissionPart, Contribution, Digest, AgentStatus>, 0, kTypes<Command, RecordAck>},
-        {.on_message = [this](const Message& message, Bus, AgentId) { receive(message); }}));
+    transport_ =
+        Transport::open(
+            LcmUrl::parse(url).value(), 0, authenticator,
+            {kTypes<MissionPart, Contribution, Digest, AgentStatus>, 0, kTypes<Command, RecordAck>},
+            {.on_message = [this](const Message& message, Bus, AgentId) { receive(message); }})
+            .value();
   }
 
   /// Listens until `condition` holds; false if it never does.

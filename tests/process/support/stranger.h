@@ -17,10 +17,10 @@ namespace ergocast::test {
 class Stranger {
  public:
   explicit Stranger(const std::string& url, const MessageAuthenticator& authenticator = {})
-      : url_(std::get<LcmUrl>(LcmUrl::parse(url))),
-        transport_(
-            std::get<0>(Transport::open(url_, 0, authenticator, Subscriptions{},
-                                        {.on_message = [](const Message&, Bus, AgentId) {}}))) {}
+      : url_(LcmUrl::parse(url).value()),
+        transport_(Transport::open(url_, 0, authenticator, Subscriptions{},
+                                   {.on_message = [](const Message&, Bus, AgentId) {}})
+                       .value()) {}
 
   void send(Bus bus, Message message) {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);

@@ -13,7 +13,6 @@
 #include <string>
 #include <thread>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "runtime/process/signals.h"
@@ -122,7 +121,7 @@ void sleep_a_little() { std::this_thread::sleep_for(std::chrono::milliseconds(5)
 }  // namespace
 
 Child start_watched(const Child::Program& program) {
-  Child child = std::get<Child>(Child::start(program));
+  Child child = Child::start(program).value();
   std::string command;
   for (const std::string& word : program.command) command += (command.empty() ? "" : " ") + word;
   const std::string name = std::filesystem::path(program.command.front()).filename();
