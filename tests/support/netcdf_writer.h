@@ -69,11 +69,11 @@ class NetcdfWriter {
     all += word(variable.attributes.size());
     for (const auto& [key, what] : variable.attributes) {
       all += name(key);
-      if (!what) {
-        all += word(static_cast<std::uint32_t>(NetcdfType::kText)) + name(what.error());
+      if (const auto* text = std::get_if<std::string>(&what)) {
+        all += word(static_cast<std::uint32_t>(NetcdfType::kText)) + name(*text);
       } else {
         all += word(static_cast<std::uint32_t>(NetcdfType::kDouble)) + word(1) +
-               value(*what, NetcdfType::kDouble);
+               value(std::get<double>(what), NetcdfType::kDouble);
       }
     }
     return all;
