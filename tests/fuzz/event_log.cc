@@ -15,7 +15,7 @@ FUZZ_TARGET(event_log) {
   compressed.write("events-000.lcm.zst", text_of(input));
   for (const Folder* folder : {&plain, &compressed}) {
     auto opened = EventLogReader::open(folder->path());
-    auto& reader = opened.value();
+    auto& reader = *opened;
     while (const LoggedEvent* event = reader.next()) {
       ERGOCAST_REQUIRE(event->channel.size() < kMaxChannelBytes);
       ERGOCAST_REQUIRE(event->bytes.size() <= kMaxDatagramBytes);

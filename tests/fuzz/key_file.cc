@@ -24,7 +24,7 @@ FUZZ_TARGET(key_file) {
   folder.write("key", text);
   const auto again = read_key_file(file);
   ERGOCAST_REQUIRE(again.has_value());
-  ERGOCAST_REQUIRE(key_text(again.value(), key.signing.has_value()) == text);
+  ERGOCAST_REQUIRE(key_text(*again, key.signing.has_value()) == text);
 }
 
 }  // namespace ergocast::fuzz

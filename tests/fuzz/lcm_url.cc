@@ -16,7 +16,7 @@ FUZZ_TARGET(lcm_url) {
   ERGOCAST_REQUIRE(url.base_port >= 1 && url.base_port + kBusCount - 1 <= 65535);
   const auto again = LcmUrl::parse(url.base());
   ERGOCAST_REQUIRE(again.has_value());
-  ERGOCAST_REQUIRE(again.value().of(Bus::kCommand) == url.of(Bus::kCommand));
+  ERGOCAST_REQUIRE(again->of(Bus::kCommand) == url.of(Bus::kCommand));
 }
 
 }  // namespace ergocast::fuzz

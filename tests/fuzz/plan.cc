@@ -26,7 +26,7 @@ FUZZ_TARGET(plan) {
   const auto parsed =
       Scenario::parse(mission_text(mission) + "target { uniform_weight: 1 }", "plan");
   ERGOCAST_REQUIRE(parsed.has_value());
-  ERGOCAST_REQUIRE(parsed.value().mission().timing.tick_count == mission.timing.tick_count);
+  ERGOCAST_REQUIRE(parsed->mission().timing.tick_count == mission.timing.tick_count);
 }
 
 }  // namespace ergocast::fuzz

@@ -15,7 +15,7 @@ FUZZ_TARGET(run_entry) {
   const std::string text = cli::to_json_text(*read);
   const auto again = cli::live_run_from(text);
   ERGOCAST_REQUIRE(again.has_value());
-  ERGOCAST_REQUIRE(cli::to_json_text(again.value()) == text);
+  ERGOCAST_REQUIRE(cli::to_json_text(*again) == text);
 }
 
 }  // namespace ergocast::fuzz

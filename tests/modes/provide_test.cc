@@ -56,7 +56,7 @@ TEST(Provide, HasNoCellsInWalls) {
                    {{25, 25}, {28, 25}, {28, 28}, {25, 28}}};
   const auto cut = table_of(mission);
   ASSERT_TRUE(cut);
-  const FreeModes& modes = *cut.value();
+  const FreeModes& modes = **cut;
   EXPECT_NEAR(modes.free_area_m2(), 66 * 66 - 20 * 20, 66 * 4) << "nor in a room without a door";
 }
 

@@ -42,7 +42,7 @@ TEST(Table, IsReadBackAsItWas) {
   const auto modes = eigen_modes(grid, 6);
   const auto table = decoded(good());
   ASSERT_TRUE(table) << table.error();
-  const FreeModes& read = *table.value();
+  const FreeModes& read = **table;
   EXPECT_EQ(read.key, 42u);
   EXPECT_EQ(read.size_m, grid.size_m);
   EXPECT_TRUE(std::ranges::equal(read.owner, grid.owner));
@@ -137,7 +137,7 @@ TEST(Table, ThatIsAcceptedIsSafeToRead) {
     Basis basis;
     basis.modes_x = 6;
     basis.free_domain = true;
-    basis.table = table.value();
+    basis.table = *table;
     const Coefficients ones = Coefficients::Ones(6);
     for (const double x_m : {-1e9, 0.0, 3.0, 999.0, 1004.0, 2000.0, 1e9}) {
       const BasisAt at({x_m, 1987 - x_m, 0}, test::square(), basis);
@@ -154,8 +154,8 @@ TEST(TableFile, IsNamedByItsHashAndReadBack) {
   ASSERT_FALSE(save_table(*table, folder.path())) << "again";
   const auto read = load_table(folder.path() / table_file_name(table->hash));
   ASSERT_TRUE(read) << read.error();
-  EXPECT_EQ(read.value()->hash, table->hash);
-  EXPECT_TRUE(std::ranges::equal(read.value()->values, table->values));
+  EXPECT_EQ((*read)->hash, table->hash);
+  EXPECT_TRUE(std::ranges::equal((*read)->values, table->values));
 }
 
 /// Whether this process maps a file of that name.
@@ -191,7 +191,7 @@ TEST(TableFile, ThatCannotBeChangedIsShared) {
   const auto read = load_table(file);
   ASSERT_TRUE(read) << read.error();
   EXPECT_TRUE(maps(name));
-  EXPECT_TRUE(std::ranges::equal(read.value()->file, good()));
+  EXPECT_TRUE(std::ranges::equal((*read)->file, good()));
   close(sealed);
 }
 

@@ -106,8 +106,8 @@ void expect_travels(const Mission& mission) {
   const Bytes plan = encode_plan(mission);
   const auto read = decode_plan(plan);
   ASSERT_TRUE(read) << read.error();
-  EXPECT_EQ(Fields(read.value()).texts, Fields(mission).texts);
-  EXPECT_EQ(encode_plan(read.value()), plan);
+  EXPECT_EQ(Fields(*read).texts, Fields(mission).texts);
+  EXPECT_EQ(encode_plan(*read), plan);
 }
 
 TEST(Plan, CarriesEveryFieldOfAMission) {

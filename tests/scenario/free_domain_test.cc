@@ -67,7 +67,7 @@ TEST(FreeDomain, PlanIsReadWithItsTable) {
   EXPECT_EQ(plain.value().basis.table, nullptr);
   const auto read = decode_plan_with_table(plan);
   ASSERT_TRUE(read) << read.error();
-  EXPECT_NE(read.value().basis.table, nullptr);
+  EXPECT_NE(read->basis.table, nullptr);
 }
 
 // The table is one that another build has computed.

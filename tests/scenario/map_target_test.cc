@@ -145,7 +145,7 @@ TEST_F(MapTarget, EqualInputsGiveEqualBytesAndThePlanNeedsNoMap) {
   const std::vector<std::byte> plan = plan_of(scenario);
   const auto read = decode_plan(plan);
   ASSERT_TRUE(read) << read.error();
-  EXPECT_EQ(read.value().target_coefficients, scenario.mission().target_coefficients);
+  EXPECT_EQ(read->target_coefficients, scenario.mission().target_coefficients);
   const std::string bytes(reinterpret_cast<const char*>(plan.data()), plan.size());
   EXPECT_EQ(bytes.find("a.csv"), std::string::npos);
 }

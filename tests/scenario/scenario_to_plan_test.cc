@@ -39,7 +39,7 @@ TEST(Plan, OfEveryShippedScenarioReadsBack) {
     EXPECT_TRUE(within_limits(scenario.mission()));
     const auto read = decode_plan(plan_of(scenario));
     ASSERT_TRUE(read) << read.error();
-    EXPECT_EQ(encode_plan(read.value()), plan_of(scenario));
+    EXPECT_EQ(encode_plan(*read), plan_of(scenario));
     EXPECT_EQ(plan_of(good(Scenario::parse(scenario.print(), "again"))), plan_of(scenario));
   }
 }

@@ -158,7 +158,7 @@ TEST(Warnings, AreOfNoWeightForAPlan) {
   ASSERT_EQ(scenario.warnings().size(), 1u);
   const auto read = decode_plan(plan_of(scenario));
   ASSERT_TRUE(read);
-  EXPECT_EQ(read.value().speed_limit_mps, 1);
+  EXPECT_EQ(read->speed_limit_mps, 1);
 }
 
 TEST(Warnings, OfVehiclesThatFollowLateAndBeginAtAnEdge) {

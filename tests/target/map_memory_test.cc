@@ -35,7 +35,7 @@ TEST(MapMemory, IsThatOfRowsAndNotOfTheMap) {
 
   const Eigen::Vector2d size_m(100, 100);
   OpenedMap opened = open_map(file);
-  MapFile& map = *opened.value();
+  MapFile& map = **opened;
   RasterIntegral integral({{{0, 0}, size_m}, kSide, kSide}, size_m, {.modes_x = 16, .modes_y = 16},
                           free_area(size_m, {}));
   std::vector<double> row(kSide);
@@ -80,7 +80,7 @@ TEST(MapMemory, IsNotThatOfTextsInAPicture) {
   if (!(std::ofstream("/proc/self/clear_refs") << 5 << std::flush)) GTEST_SKIP() << "no clear_refs";
   const double before = memory_mib("VmRSS");
   OpenedMap opened = open_map(file);
-  MapFile& map = *opened.value();
+  MapFile& map = **opened;
   std::vector<double> row(4);
   for (int i = 0; i < 4; ++i) ASSERT_FALSE(map.next_row(row));
   EXPECT_LT(memory_mib("VmHWM") - before, 8);
