@@ -61,10 +61,10 @@ TEST_F(ControlledPage, PausesResumesAndStopsATeamFromAPhonesWindow) {
   EXPECT_EQ(js("return document.documentElement.scrollWidth <= innerWidth"), true);
 
   browser_->click(button("pause"));
-  EXPECT_TRUE(becomes("spoken", "Press again within 3 seconds: Pause"));
+  EXPECT_TRUE(becomes("controlSpoken", "Press again within 3 seconds: Pause"));
   order("pause");
   EXPECT_TRUE(becomes("controlText", "paused at tick .*: 4 of 4 stand"));
-  EXPECT_TRUE(becomes("spoken", "4 of 4 stand"));
+  EXPECT_TRUE(becomes("controlSpoken", "4 of 4 stand"));
   EXPECT_TRUE(becomes("state", "paused"));
   screenshot("control_paused");
   order("resume");
@@ -106,7 +106,7 @@ TEST_F(ControlledPage, OnePressAloneGivesNoOrder) {
   control();
   take_control();
   browser_->click(button("pause"));
-  EXPECT_TRUE(becomes("spoken", "Press again within 3 seconds"));
+  EXPECT_TRUE(becomes("controlSpoken", "Press again within 3 seconds"));
   EXPECT_TRUE(browser_->becomes("return document.querySelector('#orders .armed') === null"));
   // A press of another button is a first press, too.
   EXPECT_EQ(js("const pressed = act => document.querySelector(`#orders [data-act=${act}]`).click();"

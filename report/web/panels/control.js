@@ -27,7 +27,7 @@ function takeToken() {
 }
 
 const say = text => put($('controlText'), text);
-const speak = text => put($('spoken'), text);
+const speak = text => put($('controlSpoken'), text);
 
 // A header holds ASCII only.
 const ascii = text =>
