@@ -60,7 +60,7 @@ inline const std::vector<Rule> kRules = {
     {"modes", {"core"}, {}},
     {"modes/eigen_modes.cc", {"core", "modes"}, {kSpectra}},
     {"modes/table.cc", {"core", "modes"}, {kHash}},
-    {"modes/table_file.h", {"modes"}, {kFiles}},
+    {"modes/table_file.h", {"core", "modes"}, {kFiles}},
     {"modes/table_file.cc", {"core", "modes"}, {kFiles, kSystem}},
     {"modes/provide.cc", {"core", "modes"}, {kHash, kSystem}},
     {"plan", {"core", "modes"}, {kHash}},
