@@ -124,6 +124,7 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
   SOURCES
     page/layout_test.cc
     page/map_test.cc
+    page/motion_test.cc
     page/page_test.cc
     page/space_test.cc
     page/words_test.cc

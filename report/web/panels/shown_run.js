@@ -8,6 +8,7 @@ import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
 import { QUANTITIES } from './chart.js';
 import { beginSpace } from './space_controls.js';
+import { courseSeconds } from '../data/motion.js';
 import { $, ofModes, put } from '../text.js';
 
 const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';
@@ -33,6 +34,8 @@ function show(run) {
   $('slider').step = 1;
   nameBasis(run);
   $('radioLabel').hidden = !(run.mission.radio_range_m > 0);
+  $('distanceLabel').hidden = !(run.mission.body_radius_m > 0);
+  put($('courseText'), `${courseSeconds(run)} s`);
   if (first) S.tail = startTail(run);
   beginSpace(run);
   buildTeam();
