@@ -10,6 +10,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "core/motion/vehicle.h"
 #include "core/motion/way_home.h"
 #include "report/base64.h"
 #include "report/markup.h"
@@ -182,6 +183,37 @@ Json seen(const Mission& mission, const Sensors& sensors) {
   return list;
 }
 
+/// How many agents of each kind there are, and which vehicles they are.
+Json vehicles_of(const Mission& mission) {
+  const auto name = [](VehicleKind kind) {
+    switch (kind) {
+      case VehicleKind::kAcceleration:
+        return "ACCELERATION";
+      case VehicleKind::kUnicycle:
+        return "UNICYCLE";
+      case VehicleKind::kFixedWing:
+        return "FIXED_WING";
+      case VehicleKind::kPoint:
+        break;
+    }
+    return "POINT";
+  };
+  if (mission.kinds.empty())
+    return {{{"count", mission.starts_m.size()}, {"vehicle", name(mission.vehicle.kind)}}};
+  Json list = Json::array();
+  for (std::size_t i = 0; i < mission.kinds.size(); ++i) {
+    const Motion motion = motion_of_kind(mission, static_cast<int>(i));
+    list.push_back({{"count", mission.kinds[i].count}, {"vehicle", name(motion.vehicle.kind)}});
+  }
+  return list;
+}
+
+double fastest_command_mps(const Mission& mission) {
+  double fastest_mps = mission.kinds.empty() ? mission.law.u_max_mps : 0;
+  for (const AgentKind& kind : mission.kinds) fastest_mps = std::max(fastest_mps, kind.u_max_mps);
+  return fastest_mps;
+}
+
 /// The walls' corners, relative to the domain's corner.
 Json rings_of(const Mission& mission) {
   Json rings = Json::array();
@@ -229,7 +261,28 @@ Json homes_from(const RunData& run, const Mission& mission) {
   return list;
 }
 
+/// The command of a vehicle that turns is its velocity at the tick's end.
+void put(TrackGrid& grid, AgentId agent, const Track& track) {
+  const TrackPoint* before = nullptr;
+  for (const TrackPoint& point : track) {
+    const bool follows = before != nullptr && before->tick + 1 == point.tick;
+    grid.put(agent, point.tick, point.x_m, follows ? before->v_mps : point.v_mps);
+    before = &point;
+  }
+}
+
 }  // namespace
+
+bool any_that_turn(const Mission& mission) {
+  const auto turns = [](const VehicleLimits& vehicle) {
+    return vehicle.kind == VehicleKind::kUnicycle || vehicle.kind == VehicleKind::kFixedWing;
+  };
+  const auto kind_turns = [&](const AgentKind& kind) {
+    return turns(kind.vehicle.value_or(mission.vehicle));
+  };
+  return mission.kinds.empty() ? turns(mission.vehicle)
+                               : std::ranges::any_of(mission.kinds, kind_turns);
+}
 
 std::string title_of(const Mission& mission) {
   return mission.name.empty() ? "unnamed mission" : mission.name;
@@ -253,12 +306,14 @@ Json page_mission(const Mission& flown, const Field& density) {
                {"dt_s", mission.timing.dt_s},
                {"tick_count", mission.timing.tick_count},
                {"agents", mission.starts_m.size()},
+               {"u_max_mps", page_number(fastest_command_mps(mission))},
                {"radio_range_m", mission.radio_range_m},
                {"goal", mission.goal_ergodic_metric},
                {"free_domain", flown.basis.free_domain},
                {"conventions", conventions(mission, flown.basis.free_domain)},
                {"density", encoded_density(density)}};
   if (const Sensors sensors(mission); !sensors.uniform()) page["seen"] = seen(mission, sensors);
+  if (any_but_points(mission)) page["vehicles"] = vehicles_of(mission);
   if (!mission.walls.empty()) page["walls"] = rings_of(mission);
   if (mission.separation.distance_m > 0) page["body_radius_m"] = mission.separation.distance_m / 2;
   if (any_station(mission)) page["stations"] = stations_of(mission);
@@ -269,10 +324,8 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
                  const Field& density, const Json& team) {
   Tick ticks = 0;
   for (const auto& [agent, track] : run.tracks) ticks = std::max(ticks, track.back().tick + 1);
-  TrackGrid grid(mission.domain, run.tracks.size());
-  for (const auto& [agent, track] : run.tracks) {
-    for (const TrackPoint& point : track) grid.put(agent, point.tick, point.x_m);
-  }
+  TrackGrid grid(mission.domain, run.tracks.size(), any_that_turn(mission));
+  for (const auto& [agent, track] : run.tracks) put(grid, agent, track);
   const auto law = fit_last_decade(run);
   Json record = {{"mission", page_mission(mission, density)},
                  {"summary", summary},

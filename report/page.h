@@ -12,16 +12,20 @@
 namespace ergocast {
 
 /// The mission: {"name", "seed", "origin_m", "size_m", "modes", "target": μ_k, "weights": λ_k /
-/// h_k², "dt_s", "tick_count", "agents", "radio_range_m", "free_domain", "conventions": [[name,
-/// text], …], "density": null or {"width", "height", "full", "data"}, "body_radius_m": half the
-/// distance that bodies keep, "stations": [{"id", "at_m" from the domain's corner, "rest_from" in
-/// ticks that count}, …]}. The last two are present only if there are any. Origin, size and modes
-/// have two numbers, in a box three. With "free_domain" μ and λ are still those of cosines, with
-/// which the page draws; φ² over time is in the modes of the free domain. `density` has a byte for
-/// each cell, the north-west first; 255 is `full` times the uniform density or more. In a box it is
-/// the average along z.
+/// h_k², "dt_s", "tick_count", "agents", "u_max_mps": of the fastest kind, "radio_range_m",
+/// "free_domain", "conventions": [[name, text], …], "density": null or {"width", "height", "full",
+/// "data"}, "body_radius_m": half the distance that bodies keep, "stations": [{"id", "at_m" from
+/// the domain's corner, "rest_from" in ticks that count}, …], "vehicles": [{"count", "vehicle":
+/// "FIXED_WING"}, …] of the planned kinds}. The last three are present only if there are any, and
+/// vehicles that are no points. Origin, size and modes have two numbers, in a box three. With
+/// "free_domain" μ and λ are still those of cosines, with which the page draws; φ² over time is in
+/// the modes of the free domain. `density` has a byte for each cell, the north-west first; 255 is
+/// `full` times the uniform density or more. In a box it is the average along z.
 /// @param density  in multiples of the uniform density; if empty, the page draws the sum of the μ_k
 nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
+
+/// Whether any agent's vehicle has a heading, so that the page gets them with the positions.
+bool any_that_turn(const Mission& mission);
 
 /// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from"}: the record's
 /// data for the page. "home_from", {"0": tick, …}, is present only without `team`: the ticks at

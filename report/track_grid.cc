@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 #include "report/base64.h"
@@ -13,8 +14,14 @@ namespace ergocast {
 namespace {
 
 constexpr std::size_t kSmallTeam = 12;
+constexpr double kHeadings = 256;
 
 int axes_of(const Box& domain) { return domain.planar() ? 2 : 3; }
+
+std::int32_t heading_of(const Eigen::Vector3d& v_mps) {
+  const double turns = std::atan2(v_mps.y(), v_mps.x()) / (2 * std::numbers::pi);
+  return static_cast<std::int32_t>(std::lround(kHeadings * (turns < 0 ? turns + 1 : turns)));
+}
 
 void append_number(std::string& bytes, std::int64_t value) {
   auto zigzag = static_cast<std::uint64_t>(value) << 1 ^ (value < 0 ? ~std::uint64_t{0} : 0);
@@ -24,8 +31,14 @@ void append_number(std::string& bytes, std::int64_t value) {
 
 }  // namespace
 
-TrackGrid::TrackGrid(const Box& domain, std::size_t agents)
-    : domain_(domain), bits_(agents > kSmallTeam ? 13 : 14) {}
+TrackGrid::TrackGrid(const Box& domain, std::size_t agents, bool headings)
+    : domain_(domain),
+      headings_(headings && domain.planar()),
+      bits_(agents > kSmallTeam ? 13 : 14) {}
+
+std::size_t TrackGrid::numbers() const {
+  return static_cast<std::size_t>(axes_of(domain_)) + (headings_ ? 1 : 0);
+}
 
 void TrackGrid::coarsen() {
   stride_ *= 2;
@@ -36,7 +49,8 @@ void TrackGrid::coarsen() {
   }
 }
 
-void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
+void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
+                    const Eigen::Vector3d& v_mps) {
   if (tick < 0) return;
   const auto agents = static_cast<std::int64_t>(tracks_.size() + (tracks_.contains(agent) ? 0 : 1));
   // Checked before the tracks grow, because a damaged record may name any tick.
@@ -52,6 +66,7 @@ void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
     cell[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(
         std::lround(std::clamp(share, -1.0, 2.0) * static_cast<double>(full)));
   }
+  if (headings_) cell[2] = heading_of(v_mps);
   rows_ = std::max(rows_, row + 1);
 }
 
@@ -70,10 +85,10 @@ nlohmann::ordered_json TrackGrid::encode(std::int64_t from, std::int64_t to) con
       while (row < end && at(row)[0] != kNothing) ++row;
       runs.push_back(first);
       runs.push_back(row - first);
-      for (int axis = 0; axis < axes_of(domain_); ++axis) {
+      for (std::size_t number = 0; number < numbers(); ++number) {
         std::int64_t before = 0, before_that = 0;
         for (std::int64_t k = first; k < row; ++k) {
-          const std::int64_t value = at(k)[static_cast<std::size_t>(axis)];
+          const std::int64_t value = at(k)[number];
           append_number(bytes, value - 2 * before + before_that);
           before_that = before;
           before = value;
@@ -82,7 +97,11 @@ nlohmann::ordered_json TrackGrid::encode(std::int64_t from, std::int64_t to) con
     }
     if (!runs.empty()) agents.push_back({{"id", agent}, {"runs", std::move(runs)}});
   }
-  return {{"bits", bits_}, {"agents", std::move(agents)}, {"data", base64(bytes)}};
+  nlohmann::ordered_json json = {{"bits", bits_}};
+  if (headings_) json["headings"] = true;
+  json["agents"] = std::move(agents);
+  json["data"] = base64(bytes);
+  return json;
 }
 
 }  // namespace ergocast

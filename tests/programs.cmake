@@ -126,6 +126,7 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     page/layout_test.cc
     page/map_test.cc
     page/control_test.cc
+    page/motion_test.cc
     page/page_test.cc
     page/space_test.cc
     page/words_test.cc

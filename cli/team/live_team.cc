@@ -33,7 +33,7 @@ LiveTeam::LiveTeam(RunId run, Instant since, bool authenticated, bool replay)
 
 void LiveTeam::begin(const Mission& mission, const Field& density) {
   if (grid_) return;
-  grid_.emplace(mission.domain, mission.starts_m.size());
+  grid_.emplace(mission.domain, mission.starts_m.size(), any_that_turn(mission));
   mission_ = page_mission(mission, density);
 }
 
@@ -48,7 +48,7 @@ void LiveTeam::receive(const Message& message, Bus bus, AgentId transmitter, Ins
 void LiveTeam::on(const WorldState& world) {
   if (!grid_) return;
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
-    grid_->put(vehicle.id, world.header.tick, vehicle.position_m);
+    grid_->put(vehicle.id, world.header.tick, vehicle.position_m, vehicle.velocity_mps);
   }
 }
 

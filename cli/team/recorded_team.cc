@@ -34,6 +34,8 @@ constexpr std::size_t kMost = 20'000;  // rows of agents that are kept
 constexpr int kConditions = static_cast<int>(Condition::kGone) + 1;
 constexpr int kPhases = static_cast<int>(AgentPhase::kResting) + 1;
 
+using Keys = std::vector<const char*>;
+
 struct Look {
   double t_s = 0;
   std::optional<double> metric;
@@ -85,6 +87,7 @@ class Listener {
     if (last_ && time > *last_ && time - *last_ < kPause) now_ += time - *last_;
     last_ = time;
   }
+  Keys keys() const;
   void look();
   void keep(const TeamPicture& picture);
 
@@ -118,10 +121,9 @@ void Listener::keep(const TeamPicture& picture) {
 }
 
 /// The lists of one agent, padded up to the sample in which it appears.
-Json& lists_of(Json& agents, AgentId id, std::size_t looks) {
+Json& lists_of(Json& agents, AgentId id, const Keys& keys, std::size_t looks) {
   Json& lists = agents[std::to_string(id)];
-  for (const char* key :
-       {"state", "phase", "silent_s", "metric", "age_s", "lag_s", "lost", "drops", "waits_for"}) {
+  for (const char* key : keys) {
     Json& list = lists[key];
     if (list.is_null()) list = Json::array();
     while (list.size() < looks) list.push_back(nullptr);
@@ -142,18 +144,35 @@ void add(Json& lists, const AgentRow& row) {
   lists["drops"].push_back(status.kernel_drops);
   const bool waits = row.condition == Condition::kWaiting && status.waiting_for != kUnassigned;
   lists["waits_for"].push_back(waits ? Json(name_of(status.waiting_for)) : Json());
+  if (!lists.contains("blocked_s")) return;
+  lists["blocked_s"].push_back(page_number(row.blocked_s, 3));
+  const bool by_an_agent = status.blocked_by != kUnassigned;
+  lists["blocked_by"].push_back(by_an_agent ? Json(status.blocked_by) : Json());
+}
+
+/// The lists that the record needs: those of blocks only if an agent was blocked.
+Keys Listener::keys() const {
+  Keys keys{"state", "phase", "silent_s", "metric", "age_s", "lag_s", "lost", "drops", "waits_for"};
+  const auto is_blocked = [](const AgentRow& row) { return row.blocked_s > 0; };
+  if (std::ranges::any_of(
+          looks_, [&](const Look& look) { return std::ranges::any_of(look.agents, is_blocked); })) {
+    keys.insert(keys.end(), {"blocked_s", "blocked_by"});
+  }
+  return keys;
 }
 
 Json Listener::json() const {
   if (looks_.empty()) return nullptr;
+  const Keys keys = this->keys();
   Json t = Json::array(), metric = Json::array(), agents = Json::object(), words = Json::array(),
        phases = Json::array();
   for (std::size_t i = 0; i < looks_.size(); ++i) {
     t.push_back(page_number(looks_[i].t_s, 9));
     metric.push_back(looks_[i].metric ? page_number(*looks_[i].metric, 4) : Json());
-    for (const AgentRow& row : looks_[i].agents) add(lists_of(agents, row.author.agent, i), row);
+    for (const AgentRow& row : looks_[i].agents)
+      add(lists_of(agents, row.author.agent, keys, i), row);
   }
-  for (auto& [id, unused] : agents.items()) lists_of(agents, std::stoi(id), looks_.size());
+  for (auto& [id, unused] : agents.items()) lists_of(agents, std::stoi(id), keys, looks_.size());
   for (int i = 0; i < kConditions; ++i) words.push_back(to_string(static_cast<Condition>(i)));
   for (int i = 0; i < kPhases; ++i) phases.push_back(to_string(static_cast<AgentPhase>(i)));
   Json incidents = Json::array();

@@ -2,6 +2,8 @@
 // Brings data, drawing and controls together on the page of a run.
 import { S, ask, focusOf, mapState, onFrame, shown } from './panels/state.js';
 import { TAILS } from './map/map.js';
+import { lineBetween, signAt } from './map/blocks.js';
+import { courseOf } from './map/course.js';
 import { markersOf } from './map/markers.js';
 import { recordedRun } from './data/run.js';
 import { advance, seek } from './panels/timeline.js';
@@ -75,6 +77,9 @@ window.ergocast = {
     return view;
   },
   marker: id => markersOf(shown(), view, mapState()).find(({ track }) => track.id === id),
+  course: id => courseOf(shown(), view, ergocast.marker(id)),
+  block: (id, by) =>
+    by === null ? signAt(ergocast.marker(id)) : lineBetween(ergocast.marker(id), ergocast.marker(by)),
   frames: () => frames,
   clearFrames: () => {
     frames = [];

@@ -54,6 +54,8 @@ class RecordedTeam : public ::testing::Test {
         status.header.tick = tick_;
         status.ergodic_metric = 0.25 + id;
         status.max_staleness_s = 1.5;
+        status.blocked_now_ticks = blocked_ticks_;
+        if (blocked_ticks_ > 0 && id == 1) status.blocked_by = 0;
         status.phase =
             now_ < begin_ + std::chrono::seconds(2) ? AgentPhase::kRunning : AgentPhase::kReturning;
         log(status);
@@ -77,6 +79,7 @@ class RecordedTeam : public ::testing::Test {
   std::chrono::microseconds now_ = begin_;
   std::uint64_t count_ = 0;
   Tick tick_ = 0;
+  Tick blocked_ticks_ = 0;
   std::string events_;
 };
 
@@ -103,6 +106,22 @@ TEST_F(RecordedTeam, ReportsWhenAnAgentWasSilentAndWhatEachKnew) {
   const auto first = std::ranges::find_if(phase, [](const Json& one) { return !one.is_null(); });
   EXPECT_EQ(team["phases"][first->get<std::size_t>()], "running");
   EXPECT_EQ(team["phases"][phase.back().get<std::size_t>()], "returning");
+}
+
+TEST_F(RecordedTeam, ReportsWhichAgentIsBlockedByWhich) {
+  record_ticks(2s, {0, 1});
+  EXPECT_FALSE(read()["agents"]["1"].contains("blocked_s")) << "no agent was blocked";
+  blocked_ticks_ = 15;
+  record_ticks(2s, {0, 1});
+  const Json team = read();
+  for (const char* id : {"0", "1"}) {
+    const Json& lists = team["agents"][id];
+    ASSERT_EQ(lists["blocked_s"].size(), team["t"].size()) << id;
+    ASSERT_EQ(lists["blocked_by"].size(), team["t"].size()) << id;
+    EXPECT_DOUBLE_EQ(lists["blocked_s"].back().get<double>(), 15 * mission_.timing.dt_s) << id;
+  }
+  EXPECT_EQ(team["agents"]["1"]["blocked_by"].back(), 0);
+  EXPECT_EQ(team["agents"]["0"]["blocked_by"].back(), nullptr) << "an edge";
 }
 
 TEST_F(RecordedTeam, APauseOfTheLoggerIsNoSilence) {

@@ -39,6 +39,7 @@ constexpr const char* kDistance =
 
 TEST_F(PageInABrowser, BodiesAreDrawnToScale) {
   open_report({"--duration", "40"}, "#theme=light&tail=0&t=30", "office");
+  browser_->click("#distance");  // discs, no rings
   wait_for_frame();
   // Half of the 0.45 m that bodies keep, at 15 to 30 pixels a metre.
   const double radius = 0.225 * js("return ergocast.view.scale").get<double>();

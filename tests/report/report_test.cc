@@ -145,7 +145,7 @@ TEST_F(Report, HasTheSizesOfBodiesAndWhenAgentsGoHome) {
   mission.starts_m.assign(2, {500, 500, 0});
   record(2, 1000);
   ASSERT_EQ(report(), std::nullopt);
-  for (const char* key : {"body_radius_m", "stations"})
+  for (const char* key : {"body_radius_m", "stations", "vehicles"})
     EXPECT_FALSE(data()["record"]["mission"].contains(key)) << key;
   EXPECT_FALSE(data()["record"].contains("home_from"));
 
@@ -156,6 +156,8 @@ TEST_F(Report, HasTheSizesOfBodiesAndWhenAgentsGoHome) {
   ASSERT_EQ(report(), std::nullopt);
   const auto record = data()["record"];
   EXPECT_EQ(record["mission"]["body_radius_m"], 1.5);
+  EXPECT_EQ(record["mission"]["u_max_mps"], 10);
+  EXPECT_FALSE(record["tracks"].contains("headings"));
   EXPECT_EQ(record["mission"]["stations"],
             nlohmann::json::parse(R"([{"id": 0, "at_m": [600, 500], "rest_from": 800}])"));
   // The agent circles 330 to 610 m away and moves at 10 m/s, so it goes home 33 to 61 s before tick
@@ -341,6 +343,16 @@ TEST(TrackGrid, CodesRunsBetweenGapsAsSecondDifferences) {
   EXPECT_EQ(coded["data"], base64(std::string("\x00\x14\x00\x80\x01\x7f\x00\x64\x80\x01", 10)));
   EXPECT_EQ(grid.encode(3, 5)["agents"].size(), 0U);
   EXPECT_EQ(grid.encode(1, 2)["agents"].dump(), R"([{"id":7,"runs":[1,1]}])");
+}
+
+TEST(TrackGrid, CodesHeadingsWhereVehiclesTurn) {
+  TrackGrid grid({{0, 0, 0}, {16383, 16383, 0}}, 1, true);
+  grid.put(7, 0, {1, 2, 0}, {0, 3, 0});
+  grid.put(7, 1, {1, 2, 0}, {0, -3, 0});
+  const auto coded = grid.encode(0, 2);
+  EXPECT_EQ(coded["headings"], true);
+  // 64 of 256 to the left, then 192: second differences 64 and 64, zigzag coded.
+  EXPECT_EQ(coded["data"], base64(std::string("\x02\x01\x04\x03\x80\x01\x80\x01", 8)));
 }
 
 TEST(TrackGrid, KeepsEveryOtherRowWhenThereAreTooMany) {

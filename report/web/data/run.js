@@ -26,6 +26,7 @@ export class Run {
     this.inBox = mission.size_m.length > 2;
     this.axes = [0, 1]; // of the map, and how many times as long they are drawn
     this.stretch = [1, 1];
+    this.steps = this.size.map(() => 0); // metres to which places are rounded
     this.stride = stride;
     this.step = mission.dt_s * stride; // mission time between rows
     this.capacity = capacity;
@@ -227,6 +228,8 @@ function recordHistory(run, { t, metric, agents, words, phases }) {
         loop_lag_s: own.lag_s[i],
         contributions_lost: own.lost[i],
         kernel_drops: own.drops[i],
+        blocked_s: own.blocked_s?.[i],
+        blocked_by: own.blocked_by?.[i],
       }));
     return {
       t: at,
@@ -292,7 +295,8 @@ export function rosterIncidents(entries, dt, end) {
   return incidents.sort((a, b) => a.t - b.t);
 }
 
-// The state of an agent at a time, for marker and table. Rank: 0 worst.
+// The state of an agent at a time, for marker and table. Rank: 0 worst. `blocked`: {by: the agent that
+// blocks it, or null for an edge}.
 export function stateOf(run, track, t) {
   const row = run.rowAt(t),
     team = run.teamAt(t),
@@ -326,10 +330,9 @@ function dutyOf(run, track, row, said) {
     (run.rests(track.id, row) ? 'resting' : run.goesHome(track.id, row) ? 'returning' : 'running');
   if (phase === 'resting') return { kind: 'idle', text: 'rests' };
   if (phase === 'returning') return { kind: 'ok', text: 'goes home' };
-  if (said?.blocked_s >= LONG_BLOCK_S)
-    return {
-      kind: 'ok',
-      text: `blocked by ${typeof said.blocked_by === 'number' ? said.blocked_by : 'an edge'}`,
-    };
+  if (said?.blocked_s >= LONG_BLOCK_S) {
+    const by = typeof said.blocked_by === 'number' ? said.blocked_by : null;
+    return { kind: 'ok', text: `blocked by ${by ?? 'an edge'}`, blocked: { by } };
+  }
   return { kind: 'ok', text: phase === 'waiting' ? 'ready' : 'ok' };
 }

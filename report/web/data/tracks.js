@@ -9,12 +9,14 @@ export function bytesOf(base64) {
 }
 
 // One agent: p[2r], p[2r + 1] is its place at row r in metres from the domain's corner; NaN where
-// nothing is known. In a box z[r] is its height there.
+// nothing is known. In a box z[r] is its height there. h[r] is its heading, if the mission's vehicles have
+// one: 256 are a turn to the left, from 0 along x.
 export class Track {
   constructor(id, inBox) {
     this.id = id;
     this.p = new Float32Array(0);
     this.z = inBox ? new Float32Array(0) : null;
+    this.h = null;
     this.first = Infinity;
     this.last = -1;
     this.member = [[0, Infinity]]; // rows in which its coverage counts, ascending
@@ -28,10 +30,12 @@ export class Track {
       p = new Float32Array(2 * most).fill(NaN);
     p.set(this.p);
     this.p = p;
-    if (!this.z) return;
-    const z = new Float32Array(most).fill(NaN);
-    z.set(this.z);
-    this.z = z;
+    for (const key of ['z', 'h'])
+      if (this[key]) {
+        const values = new Float32Array(most).fill(NaN);
+        values.set(this[key]);
+        this[key] = values;
+      }
   }
   has(row) {
     return row >= 0 && 2 * row < this.p.length && this.p[2 * row] === this.p[2 * row];
@@ -66,20 +70,28 @@ export class Track {
   }
 }
 
+const coordinateOf = (track, axis) =>
+  axis < 2 ? (k, v) => (track.p[2 * k + axis] = v) : (k, v) => (track.z[k] = v);
+
 // Adds a block of rows to the run's tracks. Returns the first row that it changed.
 export function addTracks(run, block) {
   const bytes = bytesOf(block.data),
     full = 2 ** block.bits - 1;
+  run.steps = run.size.map(l => l / full);
   let at = 0,
     first = Infinity;
   for (const { id, runs } of block.agents) {
     const track = run.track(id);
+    if (block.headings) track.h ??= new Float32Array(track.p.length / 2).fill(NaN);
     for (let i = 0; i < runs.length; i += 2) {
       const from = runs[i],
         count = runs[i + 1];
       track.reserve(from + count > run.capacity ? from + count : Math.min(run.capacity, 2 * (from + count)));
-      for (let axis = 0; axis < run.size.length; axis++) {
-        const scale = run.size[axis] / full;
+      const lists = [
+        ...run.size.map((l, axis) => ({ scale: l / full, put: coordinateOf(track, axis) })),
+        ...(block.headings ? [{ scale: 1, put: (k, v) => (track.h[k] = v) }] : []),
+      ];
+      for (const { scale, put } of lists) {
         for (let k = from, before = 0, beforeThat = 0; k < from + count; k++) {
           let z = 0,
             unit = 1,
@@ -92,8 +104,7 @@ export function addTracks(run, block) {
           const v = (z % 2 ? -(z + 1) / 2 : z / 2) + 2 * before - beforeThat;
           beforeThat = before;
           before = v;
-          if (axis < 2) track.p[2 * k + axis] = v * scale;
-          else track.z[k] = v * scale;
+          put(k, v * scale);
         }
       }
       if (from <= track.last) track.version++;

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paints the agents on the map: bodies to scale, and pins with their numbers.
+// Paints the agents on the map: bodies to scale, courses, and pins with their numbers.
 // It draws on a canvas, or on anything with the same methods (svg.js).
 import { inkOn } from '../colours.js';
 import { stateOf } from '../data/run.js';
+import { paintBlockLines, paintBlockSigns } from './blocks.js';
+import { courseOf, paintCourse, paintNose } from './course.js';
 
 const MANY = 12; // more agents than these are drawn smaller
 const REACH = 2; // from the tip of a pin to the middle of its head, in radii of the head
 const MOST_THAT_LEAN = 128; // agents: each looks at all others
 const GOLDEN_ANGLE = 2.4; // radians: no multiples of it are near each other
 const LEAST_BODY = 0.75; // pixels: a smaller body is not drawn
+const RING_FILL = 0.16; // opacity
+const LEAST_RING = 4; // pixels: a smaller ring is not told from a body
 
 export const many = run => run.tracks.length > MANY;
 
 // How far a body reaches to the right and upwards, in pixels; 0 if the mission does not have it.
 function bodyOf(run, view, track, at) {
   const radius = (run.mission.body_radius_m ?? 0) * view.scaleAt(track, at);
-  return run.stretch.map(factor => factor * radius);
+  return view.stretchOf(run).map(factor => factor * radius);
 }
 
 // Where the pin's head is from its tip, [right, down] of length 1: above it, but neighbours lean
@@ -41,8 +45,9 @@ function leanOf({ x, y, r, track }, markers, view) {
 }
 
 // The markers of a row: {track, at: its row, x, y: its place, body, r: of the head, head, tip, hot}.
-// `inside`: the number has room in the body, which needs no pin.
-export function markersOf(run, view, { row, focus }) {
+// `inside`: the number has room in the body, which needs no pin. `ringed`: only the distance that it
+// keeps is drawn. `outline`: what the nose has to be outside of.
+export function markersOf(run, view, { row, focus, distance }) {
   const small = view.width < 500,
     size = many(run) ? (small ? 6 : 7) : small ? 8.5 : 9.5,
     markers = [];
@@ -54,8 +59,10 @@ export function markersOf(run, view, { row, focus }) {
       r = size * (hot ? 1.25 : 1) * view.nearness(track, at);
     const body = bodyOf(run, view, track, at),
       least = Math.min(...body),
-      inside = least > r;
-    markers.push({ track, at, x, y, body, r, hot, inside, rim: inside ? 0 : least });
+      inside = least > r,
+      ringed = distance && least >= LEAST_RING && (focus ? hot : !many(run)),
+      outline = inside && ringed ? [r, r] : body;
+    markers.push({ track, at, x, y, body, r, hot, inside, ringed, outline, rim: inside ? 0 : least });
   }
   for (const marker of markers) {
     const { x, y, r, rim, inside } = marker,
@@ -80,37 +87,6 @@ function oval(g, x, y, [rx, ry]) {
   g.closePath();
 }
 
-// Where an agent goes, in radians; null if it stands.
-function headingOf(run, view, { track, at }) {
-  const back = Math.max(track.first, at - Math.max(1, Math.round(1 / run.step))),
-    ahead = Math.min(track.last, at + 1);
-  const [x0, y0] = view.at(track, back),
-    [x1, y1] = view.at(track, ahead),
-    heading = Math.atan2(y1 - y0, x1 - x0);
-  return (x0 !== x1 || y0 !== y1) && heading === heading ? heading : null;
-}
-
-function paintArrow(g, { x, y, r, body }, heading, colour, colours) {
-  const from = Math.hypot(body[0] * Math.cos(heading), body[1] * Math.sin(heading)) + 2.5,
-    long = 0.95 * r,
-    wide = 0.45 * r;
-  const at = (along, aside) => [
-    x + Math.cos(heading) * along - Math.sin(heading) * aside,
-    y + Math.sin(heading) * along + Math.cos(heading) * aside,
-  ];
-  g.beginPath();
-  g.moveTo(...at(from + long, 0));
-  g.lineTo(...at(from, wide));
-  g.lineTo(...at(from + 0.25 * long, 0));
-  g.lineTo(...at(from, -wide));
-  g.closePath();
-  g.fillStyle = colour;
-  g.strokeStyle = colours.panel;
-  g.lineWidth = 2;
-  g.stroke();
-  g.fill();
-}
-
 function paintPin(g, { head: [x, y], tip, r }) {
   const down = Math.atan2(tip[1] - y, tip[0] - x),
     half = Math.acos(1 / REACH);
@@ -128,9 +104,9 @@ function paintNumber(g, { head: [x, y], track, r }, colour) {
   g.fillText(String(track.id), x, y + 0.5);
 }
 
-// How an agent looks: {fill, rim, ink, late, away}.
+// How an agent looks: {fill, rim, ink, late, away, blocked}.
 function looksOf(run, { track }, { t, colours }) {
-  const { kind } = stateOf(run, track, t),
+  const { kind, blocked } = stateOf(run, track, t),
     away = kind === 'silent' || kind === 'gone',
     own = colours.agent(track.id);
   const rim = kind === 'gone' ? colours.gone : colours.bad;
@@ -140,46 +116,59 @@ function looksOf(run, { track }, { t, colours }) {
     ink: away ? rim : inkOn(own),
     late: kind === 'late',
     away,
+    blocked,
   };
 }
 
-function paintBody(g, { x, y, body }, { fill, rim, away }) {
+// A disc; or a ring, through which the map is seen.
+function paintBody(g, { x, y, body, ringed }, { fill, rim, away }, colours) {
   if (Math.min(...body) < LEAST_BODY) return;
+  const strength = g.globalAlpha,
+    lines = ringed ? [[colours.panel, 4]] : [];
+  lines.push(ringed ? [away ? rim : fill, 1.8] : [rim, 1]);
   oval(g, x, y, body);
   g.fillStyle = fill;
-  g.strokeStyle = rim;
-  g.lineWidth = 1;
+  g.globalAlpha = ringed ? RING_FILL * strength : strength;
+  g.fill();
+  g.globalAlpha = strength;
   if (away) g.setLineDash([3, 2]);
+  for (const [stroke, width] of lines) {
+    g.strokeStyle = stroke;
+    g.lineWidth = width;
+    g.stroke();
+  }
+  g.setLineDash([]);
+}
+
+// The number's ground: a pin, or in a ring a disc.
+function paintGround(g, marker, looks) {
+  if (marker.inside) oval(g, marker.x, marker.y, marker.outline);
+  else paintPin(g, marker);
+  g.fillStyle = looks.fill;
+  g.strokeStyle = looks.rim;
+  g.lineWidth = 1.5;
+  if (looks.away) g.setLineDash([3, 2]);
   g.fill();
   g.stroke();
   g.setLineDash([]);
 }
 
-function paintHead(g, run, view, marker, looks, colours) {
-  const heading = looks.away ? null : headingOf(run, view, marker),
-    {
-      head: [x, y],
-      r,
-      body,
-      inside,
-    } = marker;
-  if (!inside) {
-    paintPin(g, marker);
-    g.fillStyle = looks.fill;
-    g.strokeStyle = looks.rim;
-    g.lineWidth = 1.5;
-    if (looks.away) g.setLineDash([3, 2]);
-    g.fill();
-    g.stroke();
-    g.setLineDash([]);
-  }
+function paintHead(g, marker, looks, course, colours) {
+  const {
+    head: [x, y],
+    r,
+    body,
+    inside,
+    ringed,
+  } = marker;
+  if (!inside || ringed) paintGround(g, marker, looks);
   if (looks.late) {
     oval(g, x, y, inside ? body.map(v => v + 4) : [r + 3.5, r + 3.5]);
     g.strokeStyle = colours.warn;
     g.lineWidth = 2;
     g.stroke();
   }
-  if (heading !== null) paintArrow(g, marker, heading, looks.fill, colours);
+  if (course) paintNose(g, marker, course, looks.fill, colours);
   paintNumber(g, marker, looks.ink);
 }
 
@@ -190,15 +179,20 @@ export function paintAgents(g, run, view, state, tracks) {
   const markers = markersOf(run, view, state).sort(
     (a, b) => a.hot - b.hot || place.get(a.track) - place.get(b.track),
   );
-  const looks = markers.map(marker => looksOf(run, marker, state));
-  for (const paint of [
-    (marker, i) => paintBody(g, marker, looks[i]),
-    (marker, i) => paintHead(g, run, view, marker, looks[i], colours),
-  ]) {
+  const looks = markers.map(marker => looksOf(run, marker, state)),
+    courses = markers.map((marker, i) => (looks[i].away ? null : courseOf(run, view, marker)));
+  const each = paint => {
     markers.forEach((marker, i) => {
       g.globalAlpha = focus && !marker.hot ? 0.35 : 1;
       paint(marker, i);
     });
-  }
-  g.globalAlpha = 1;
+    g.globalAlpha = 1;
+  };
+  const blocks = markers.flatMap((marker, i) => (looks[i].blocked ? [{ marker, ...looks[i].blocked }] : []));
+  each((marker, i) => paintBody(g, marker, looks[i], colours));
+  if (state.course)
+    each((marker, i) => courses[i] && paintCourse(g, marker, courses[i], looks[i].fill, colours));
+  paintBlockLines(g, markers, blocks, colours);
+  each((marker, i) => paintHead(g, marker, looks[i], courses[i], colours));
+  paintBlockSigns(g, blocks, colours);
 }

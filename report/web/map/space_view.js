@@ -75,6 +75,13 @@ export class SpaceView {
   at(track, k) {
     return this.project(this.placeAt(track, k));
   }
+  later(run, track, k, direction, metres) {
+    return this.project(this.placeAt(track, k).map((v, axis) => v + metres * direction[axis])).slice(0, 2);
+  }
+  // A ball in a flat box is as much higher as the box is.
+  stretchOf() {
+    return [1, Math.hypot(Math.sin(this.elevation), stretchOf(this.size) * Math.cos(this.elevation))];
+  }
   // Pixels per metre at that depth.
   scaleAt(track, k) {
     return (this.focal * this.units[0]) / this.at(track, k)[2];

@@ -29,6 +29,15 @@ export class View {
   at(track, k) {
     return [this.px(track.p[2 * k]), this.py(track.p[2 * k + 1])];
   }
+  // Where an agent at row k is after so many metres in that direction.
+  later(run, track, k, direction, metres) {
+    const [x, y] = run.axes.map((axis, i) => track.p[2 * k + i] + run.stretch[i] * metres * direction[axis]);
+    return [this.px(x), this.py(y)];
+  }
+  // How much longer what is round is drawn, to the right and upwards.
+  stretchOf(run) {
+    return run.stretch;
+  }
   scaleAt() {
     return this.scale;
   }

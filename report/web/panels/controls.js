@@ -48,8 +48,10 @@ export function connectButtons() {
   $('layer').onclick = e => e.target.dataset.value && set('layer', e.target.dataset.value);
   $('axis').onclick = e => e.target.dataset.value && set('axis', e.target.dataset.value);
   $('guide').onclick = () => set('guide', !S.guide);
-  $('radio').checked = S.radio;
-  $('radio').onchange = e => set('radio', e.target.checked);
+  for (const key of ['radio', 'course', 'distance']) {
+    $(key).checked = S[key];
+    $(key).onchange = e => set(key, e.target.checked);
+  }
   $('theme').onclick = () => setTheme(S.theme === 'dark' ? 'light' : 'dark');
   $('help').onclick = showHelp;
   $('detailsButton').onclick = openDetails;

@@ -9,6 +9,7 @@ import { layout } from './screen.js';
 import { QUANTITIES } from './chart.js';
 import { hideControl, listAgents, showControl } from './control.js';
 import { beginSpace } from './space_controls.js';
+import { courseSeconds } from '../data/motion.js';
 import { $, ofModes, put } from '../text.js';
 
 const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';
@@ -34,6 +35,8 @@ function show(run) {
   $('slider').step = 1;
   nameBasis(run);
   $('radioLabel').hidden = !(run.mission.radio_range_m > 0);
+  $('distanceLabel').hidden = !(run.mission.body_radius_m > 0);
+  put($('courseText'), `${courseSeconds(run)} s`);
   if (first) S.tail = startTail(run);
   beginSpace(run);
   buildTeam();

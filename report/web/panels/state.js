@@ -22,6 +22,8 @@ export const S = {
   quantity: 'phi',
   guide: true,
   radio: true,
+  course: true,
+  distance: true,
   hover: -1, // the agent under the pointer
   pins: new Set(), // agents that were chosen
   pointer: -1, // time under the pointer in the chart
@@ -43,6 +45,8 @@ export const mapState = () => ({
   tail: S.tail,
   layer: S.layer,
   radio: S.radio,
+  course: S.course,
+  distance: S.distance,
   colours: S.colours,
   focus: focusOf(),
   inSpace: inSpace(),

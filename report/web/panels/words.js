@@ -19,9 +19,17 @@ const MAP = {
   Difference: 'Where the team has been too little or too much: this is what φ² adds up.',
   scale: 'A colour shows how many times denser a place is than the average of the domain.',
   Trail: 'How much of its way is drawn behind each agent.',
+  Course:
+    'The thin line from an agent: where it comes in that time with its velocity of now, after all limits, ' +
+    'which for points is the mean of the last second. An agent that stands has none.',
+  Distance:
+    'A ring around each agent, to scale. Its radius is half the distance that agents keep: ' +
+    'where two rings touch, the distance is reached. In a team of more than 12 only chosen agents have it.',
   'Radio range': 'Teammates inside an agent’s circle receive what the agent sends.',
-  pin: 'Its tip is where an agent is, and the arrow there says where it goes. The pin’s size means nothing.',
+  pin: 'Its tip is where an agent is, and the arrow there says where it heads. Its size means nothing.',
   disc: 'An agent’s body, to scale. Its radius is half the distance that bodies keep.',
+  'thick arrow': 'From an agent that has been blocked for a second or more to the one that blocks it.',
+  'no-entry sign': 'An agent that an edge or a wall has blocked for a second or more.',
   cross: 'Where an agent started.',
   square: 'A station: where an agent is at the end of the mission.',
   'hatched area': 'The target is 0 here: it wants no agent.',
@@ -104,6 +112,9 @@ function isShown(label) {
   const { mission } = S.run;
   const needs = {
     disc: mission.body_radius_m > 0,
+    Distance: mission.body_radius_m > 0,
+    'thick arrow': mission.body_radius_m > 0,
+    'no-entry sign': mission.body_radius_m > 0 || mission.walls?.length > 0,
     pin: true,
     square: mission.stations?.length > 0,
     'Radio range': mission.radio_range_m > 0,

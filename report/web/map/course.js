@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Paints where an agent heads, and how far it comes in the next seconds.
+// It draws on a canvas, or on anything with the same methods (svg.js).
+import { courseSeconds, directionAt, velocityAt } from '../data/motion.js';
+
+const HEAD = 5; // pixels
+const GAP = 2.5; // between an agent and its nose
+const LEAST = 0.01; // pixels: seen end on, a course has no direction
+
+// {heading: radians on the screen, end: its place at the course's end, long: pixels up to there}; null
+// for a point that stands.
+export function courseOf(run, view, { track, at, x, y }) {
+  const velocity = velocityAt(run, track.id, at),
+    direction = directionAt(run, track.id, at, velocity);
+  if (!direction) return null;
+  // What turns moves along its heading.
+  const speed = velocity ? Math.hypot(...velocity) : 0,
+    seconds = courseSeconds(run),
+    end = view.later(run, track, at, direction, speed * seconds),
+    ahead = speed > 0 ? end : view.later(run, track, at, direction, 1);
+  if (Math.hypot(ahead[0] - x, ahead[1] - y) < LEAST) return null;
+  return { heading: Math.atan2(ahead[1] - y, ahead[0] - x), end, long: Math.hypot(end[0] - x, end[1] - y) };
+}
+
+// Where the nose begins and ends on the course, in pixels from the agent's place.
+function noseOf({ r, outline }, { heading }) {
+  const from = Math.hypot(outline[0] * Math.cos(heading), outline[1] * Math.sin(heading)) + GAP;
+  return [from, from + 0.95 * r];
+}
+
+const placeOn =
+  ({ x, y }, { heading }) =>
+  (along, aside) => [
+    x + Math.cos(heading) * along - Math.sin(heading) * aside,
+    y + Math.sin(heading) * along + Math.cos(heading) * aside,
+  ];
+
+export function paintNose(g, marker, course, colour, colours) {
+  const [from, to] = noseOf(marker, course),
+    at = placeOn(marker, course),
+    wide = 0.45 * marker.r;
+  g.beginPath();
+  g.moveTo(...at(to, 0));
+  g.lineTo(...at(from, wide));
+  g.lineTo(...at(from + 0.25 * (to - from), 0));
+  g.lineTo(...at(from, -wide));
+  g.closePath();
+  g.fillStyle = colour;
+  g.strokeStyle = colours.panel;
+  g.lineWidth = 2;
+  g.stroke();
+  g.fill();
+}
+
+// The line from the nose to the course's end; none if that is not beyond the nose.
+export function paintCourse(g, marker, course, colour, colours) {
+  const [, from] = noseOf(marker, course),
+    at = placeOn(marker, course),
+    { long } = course;
+  if (long < from + HEAD) return;
+  g.lineJoin = 'round';
+  for (const [stroke, width] of [
+    [colours.panel, 3.6],
+    [colour, 1.4],
+  ]) {
+    g.strokeStyle = stroke;
+    g.lineWidth = width;
+    g.beginPath();
+    g.moveTo(...at(from, 0));
+    g.lineTo(...at(long, 0));
+    g.moveTo(...at(long - HEAD, 0.6 * HEAD));
+    g.lineTo(...at(long, 0));
+    g.lineTo(...at(long - HEAD, -0.6 * HEAD));
+    g.stroke();
+  }
+}
