@@ -130,13 +130,13 @@ ergocast_test(NAME runtime_tests LABELS unit
 
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
+    cli/control_desk_test.cc
     cli/rate_test.cc
     cli/team_monitor_test.cc
     cli/workers_test.cc
     ${CMAKE_SOURCE_DIR}/cli/progress_line.cc
-    ${CMAKE_SOURCE_DIR}/cli/team/team_monitor.cc
     ${CMAKE_SOURCE_DIR}/cli/study/workers.cc
-  LIBS ergocast::core ergocast::runtime)
+  LIBS ergocast_orders ergocast::core ergocast::runtime)
 
 ergocast_test(NAME page_server_tests LABELS unit
   SOURCES

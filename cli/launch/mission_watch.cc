@@ -121,7 +121,9 @@ void MissionWatch::repeat(Transport& transport, Instant now, bool led) {
   if (!stopping_since_) stopping_since_ = now;
   // A coordinator that has exited or hangs does not end the mission.
   const bool heard = stage_ == Stage::kOver || now - *stopping_since_ < kCoordinatorPatience;
-  stop_->repeat(transport, now, !led || !heard, tick_);
+  Outbox out;
+  stop_->repeat(now, !led || !heard, tick_, out);
+  transport.publish(out);
 }
 
 }  // namespace ergocast::cli

@@ -52,7 +52,9 @@ void Control::attend(Instant now) {
     if (!text) break;
     if (const auto request = ControlRequest::parse(*text)) desk_.receive(*request, team_, now);
   }
-  desk_.advance(team_, *transport_, now);
+  Outbox out;
+  desk_.advance(team_, now, out);
+  transport_->publish(out);
   for (const std::string& line : desk_.take_lines()) print_(line);
   std::string state = desk_.state().dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   if (state == state_ && now < next_state_) return;

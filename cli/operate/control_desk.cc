@@ -121,7 +121,8 @@ void ControlDesk::change_operator(const ControlRequest& request, const Monitored
     return;
   }
   const bool other = operator_ && !is_held_by(request);
-  note(called(request) + " takes control" + (other ? " from " + operator_->name : "") + when);
+  if (!operator_ || other)
+    note(called(request) + " takes control" + (other ? " from " + operator_->name : "") + when);
   operator_ = {request.operator_id, called(request), now};
 }
 
@@ -180,7 +181,7 @@ void ControlDesk::end_contradicted(const ControlRequest& request) {
   }
 }
 
-void ControlDesk::advance(const MonitoredRun& team, Transport& transport, Instant now) {
+void ControlDesk::advance(const MonitoredRun& team, Instant now, Outbox& out) {
   window_.note(team.tick(), true, now);
   if (operator_ && now - operator_->last_sign > kSilence) {
     note(operator_->name + " loses control at " + team.mission_time(team.tick()) +
@@ -189,7 +190,7 @@ void ControlDesk::advance(const MonitoredRun& team, Transport& transport, Instan
   }
   for (Act& act : acts_) {
     if (act.over()) continue;
-    act.order->send(team, transport, now);
+    act.order->send(team, now, out);
     act.report = act.order->report(team, now);
     if (!act.report.ended()) continue;
     note(what(act.request) + " of " + called(act.request) + ", asked for at " + act.at + ": " +

@@ -44,8 +44,9 @@ class ControlDesk {
 
   /// Takes a request in: it becomes an order, or is refused.
   void receive(const ControlRequest& request, const MonitoredRun& team, Instant now);
-  /// Sends what is due, and judges what the team has reported. Call at least ten times a second.
-  void advance(const MonitoredRun& team, Transport& transport, Instant now);
+  /// Appends the messages that are due, and judges what the team has reported. Call at least ten
+  /// times a second.
+  void advance(const MonitoredRun& team, Instant now, Outbox& out);
 
   /// What every page shows: {"operator", "acts", "refused"}.
   nlohmann::ordered_json state() const;

@@ -3,7 +3,7 @@
 // team obeys.
 //
 // `ergocast pause`, `resume`, `stop` and `recall` and the buttons of the page give the same orders.
-// An order has no clock and prints nothing.
+// An order has no clock, sends through an outbox, and prints nothing.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 #include "cli/team/team_monitor.h"
 #include "core/base/ids.h"
-#include "runtime/bus/transport.h"
+#include "team/messages.h"
 
 namespace ergocast::cli {
 
@@ -40,9 +40,8 @@ class Order {
 
   virtual ~Order() = default;
 
-  /// Sends what is due.
-  /// @param transport  of the team's run
-  virtual void send(const MonitoredRun& team, Transport& transport, Instant now) = 0;
+  /// Appends the messages that are due, in order.
+  virtual void send(const MonitoredRun& team, Instant now, Outbox& out) = 0;
   /// Call after send(), with the same team.
   virtual OrderReport report(const MonitoredRun& team, Instant now) const = 0;
 };

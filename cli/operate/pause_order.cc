@@ -16,7 +16,7 @@ using State = OrderReport::State;
 
 /// How long to wait for the whole mission; agents of a large team send it in turn.
 constexpr auto kMissionPatience = 20s;
-constexpr auto kPeriod = 100ms;
+constexpr auto kAskPeriod = 100ms;
 
 std::string in_seconds(double seconds) {
   char text[32];
@@ -34,7 +34,7 @@ bool PauseOrder::is_named(const MonitoredRun& team) const {
   return is_open(team.holds()) == pauses_;
 }
 
-void PauseOrder::send(const MonitoredRun& team, Transport& transport, Instant now) {
+void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   if (team.over()) return;
   if (team.is_running() && !changes_) {
     changes_ = named_changes(team.holds());
@@ -44,7 +44,7 @@ void PauseOrder::send(const MonitoredRun& team, Transport& transport, Instant no
   }
   was_named_ = was_named_ || (changes_ && is_named(team));
   if (was_named_ || now < next_) return;
-  next_ = now + kPeriod;
+  next_ = now + kAskPeriod;
   ++header_.sequence;
   header_.run = team.run();
   if (!changes_) {
@@ -52,10 +52,11 @@ void PauseOrder::send(const MonitoredRun& team, Transport& transport, Instant no
     Hello question;
     question.header = header_;
     question.header.tick = -1;
-    return transport.publish({Bus::kSwarm, question});
+    out.push_back({Bus::kSwarm, question});
+    return;
   }
   header_.tick = team.tick();
-  transport.publish({Bus::kSwarm, Pause{header_, *changes_, {}}});
+  out.push_back({Bus::kSwarm, Pause{header_, *changes_, {}}});
 }
 
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {

@@ -16,7 +16,7 @@ class PauseOrder final : public Order {
   /// @param pauses  whether it pauses the mission, or resumes it
   PauseOrder(bool pauses, Instant now);
 
-  void send(const MonitoredRun& team, Transport& transport, Instant now) override;
+  void send(const MonitoredRun& team, Instant now, Outbox& out) override;
   OrderReport report(const MonitoredRun& team, Instant now) const override;
 
  private:

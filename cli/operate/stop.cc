@@ -80,15 +80,20 @@ class Stopping : public TeamCommand {
       print(run, options_.at_once ? "stopping all vehicles at once"
                                   : "asking the coordinator to end the mission");
     }
-    if (!request.code) request.order.send(team, *transport_, now());
+    if (request.code) return;
+    Outbox out;
+    request.order.send(team, now(), out);
+    transport_->publish(out);
   }
 
   /// Runs beyond kMostRuns must stop, too. Other runs, or recordings of them, may fill the table.
   void send_stop_to_the_crowd() {
     if (!options_.at_once) return;
+    Outbox out;
     for (const auto& [run, tick] : crowd_) {
-      StopRequest(run, false, kAtOnce + host_name()).repeat(*transport_, now(), true, tick);
+      StopRequest(run, false, kAtOnce + host_name()).repeat(now(), true, tick, out);
     }
+    transport_->publish(out);
     crowded_ = crowded_ || !crowd_.empty();
     crowd_.clear();
   }

@@ -22,9 +22,9 @@ constexpr auto kLeastInsistence = 1s;
 StopOrder::StopOrder(RunId run, bool at_once, std::string reason, Instant now)
     : request_(run, false, std::move(reason)), at_once_(at_once), since_(now) {}
 
-void StopOrder::send(const MonitoredRun& team, Transport& transport, Instant now) {
+void StopOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   const bool obeyed = !at_once_ && team.over();
-  if (!obeyed) request_.repeat(transport, now, at_once_, team.tick());
+  if (!obeyed) request_.repeat(now, at_once_, team.tick(), out);
 }
 
 std::vector<std::string> StopOrder::awaited(const MonitoredRun& team, Instant now) const {

@@ -17,7 +17,7 @@ class StopOrder final : public Order {
   /// @param reason   the mission's record says it
   StopOrder(RunId run, bool at_once, std::string reason, Instant now);
 
-  void send(const MonitoredRun& team, Transport& transport, Instant now) override;
+  void send(const MonitoredRun& team, Instant now, Outbox& out) override;
   OrderReport report(const MonitoredRun& team, Instant now) const override;
 
  private:

@@ -11,7 +11,7 @@
 namespace ergocast::cli {
 namespace {
 
-constexpr auto kPeriod = std::chrono::milliseconds(100);
+constexpr auto kRepeatPeriod = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -21,16 +21,16 @@ StopRequest::StopRequest(RunId run, bool failed, std::string reason) {
   stop_.reason = std::move(reason);
 }
 
-void StopRequest::repeat(Transport& transport, Instant now, bool at_once, Tick newest) {
+void StopRequest::repeat(Instant now, bool at_once, Tick newest, Outbox& out) {
   // Sends at once when the tick becomes known, because a request without it may be ignored.
   const bool knows_now = stop_.header.tick == 0 && newest > 0;
   if (now < next_ && stop_.now == at_once && !knows_now) return;
-  next_ = now + kPeriod;
+  next_ = now + kRepeatPeriod;
   stop_.header.tick = newest;
   stop_.now = at_once;
   for (const Bus bus : {Bus::kCommand, Bus::kSwarm}) {  // the vehicles first
     ++stop_.header.sequence;
-    transport.publish({bus, stop_});
+    out.push_back({bus, stop_});
   }
 }
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/base/ids.h"
-#include "runtime/bus/transport.h"
 #include "team/messages.h"
 
 namespace ergocast::cli {
@@ -15,12 +14,12 @@ class StopRequest {
   /// @param failed  whether the mission is to count as failed
   StopRequest(RunId run, bool failed, std::string reason);
 
-  /// Sends STOP on every bus with a receiver for it, if the last one was long enough ago.
+  /// Appends STOP for every bus with a receiver for it, if the last one was long enough ago.
   /// @param at_once  all processes stop at once and the vehicles stand still; otherwise only the
   ///                 coordinator obeys and ends the mission in order
   /// @param newest   the newest known tick of the mission; 0 if none is known. Processes ignore a
   /// request that names an old tick
-  void repeat(Transport& transport, Instant now, bool at_once, Tick newest);
+  void repeat(Instant now, bool at_once, Tick newest, Outbox& out);
 
  private:
   Stop stop_;

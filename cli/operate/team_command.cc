@@ -77,7 +77,9 @@ std::optional<OrderReport> TeamCommand::obeyed(Order& order) {
   const MonitoredRun& team = runs_.begin()->second;
   bool answered = false;
   while (true) {
-    order.send(team, *transport_, now());
+    Outbox out;
+    order.send(team, now(), out);
+    transport_->publish(out);
     const OrderReport report = order.report(team, now());
     if (report.ended() || report.state == OrderReport::State::kObeyed) return report;
     if (report.state == OrderReport::State::kAnswered && !std::exchange(answered, true)) {

@@ -34,7 +34,7 @@ constexpr int kServeMs = 50;
 using namespace std::chrono_literals;
 
 /// The longest time between two looks at the page's requests.
-constexpr auto kAttendPeriod = 50ms;
+constexpr auto kControlPeriod = 50ms;
 /// The coordinator reports the end's reason after the end, and the logger closes the record.
 constexpr auto kLinger = 1s;
 
@@ -104,7 +104,7 @@ int control_team(WatchOptions options, const fs::path& run_dir, StopSignals& sig
   announce(watched.page().url());
   std::optional<Instant> over_since;
   while (signals.take() == 0) {
-    watched.control()->listen(now() + kAttendPeriod, signals.fd());
+    watched.control()->listen(now() + kControlPeriod, signals.fd());
     watched.attend(now());
     if (watched.control()->over() && !over_since) over_since = now();
     if (over_since && now() - *over_since >= kLinger) watched.page().finish();

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Who may order what from a page, and what is said of it, for a team of two.
+#include "cli/operate/control_desk.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/team.h"
+
+namespace ergocast::cli {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+
+class Desk : public ::testing::Test {
+ protected:
+  Desk() {
+    announce(small_mission(2));
+    give(team_, mission_part(0, MissionState::kRunning, roster_of(2)), now_);
+    move(100, 1);
+  }
+  /// The world's state: both vehicles at that speed.
+  void move(Tick tick, double speed_mps) {
+    WorldState state = world_state(tick, {{1, 1, 0}, {2, 2, 0}});
+    for (Vehicle& vehicle : state.vehicles_in_part()) vehicle.velocity_mps = {speed_mps, 0, 0};
+    give(team_, state, now_);
+    advance();
+  }
+  void pause_from(Tick tick) {
+    MissionPart part = mission_part(1, MissionState::kRunning, roster_of(2));
+    part.holds = {{tick, -1}};
+    part.content_hash = hash_of(part);
+    give(team_, part, now_);
+  }
+  void ask(ControlAct act, std::uint32_t operator_id = 1, std::optional<Tick> tick = {}) {
+    ControlRequest request;
+    request.operator_id = operator_id;
+    request.name = operator_id == 1 ? "anna" : "bert";
+    request.number = ++numbers_;
+    request.tick = tick.value_or(team_.tick());
+    request.act = act;
+    last_ = request;
+    desk_.receive(request, team_, now_);
+    advance();
+  }
+  void advance() {
+    sent_.clear();
+    desk_.advance(team_, now_, sent_);
+    for (std::string& line : desk_.take_lines()) lines_.push_back(std::move(line));
+  }
+  json state() const { return json::parse(desk_.state().dump()); }
+  json operator_name() const { return state()["operator"]; }
+  std::string refusal() const {
+    const json refused = state()["refused"];
+    return refused.is_null() ? "" : refused["text"].get<std::string>();
+  }
+  template <class M>
+  int sent() const {
+    return static_cast<int>(std::count_if(sent_.begin(), sent_.end(), [](const Outgoing& one) {
+      return std::holds_alternative<M>(one.message);
+    }));
+  }
+
+  Instant now_ = at(1s);
+  MonitoredRun team_{kRun, at(0s)};
+  ControlDesk desk_{"here"};
+  Outbox sent_;
+  std::vector<std::string> lines_;
+  ControlRequest last_;
+  std::int64_t numbers_ = 0;
+};
+
+TEST_F(Desk, OnlyTheOperatorsRequestsBecomeOrders) {
+  ask(ControlAct::kPause);
+  EXPECT_EQ(refusal(), "nobody has control: take it first");
+  ask(ControlAct::kTake);
+  EXPECT_EQ(operator_name()["name"], "anna");
+  ask(ControlAct::kPause, 2);
+  EXPECT_EQ(refusal(), "anna has control now");
+  EXPECT_EQ(sent<Pause>(), 0);
+  ask(ControlAct::kPause);
+  EXPECT_EQ(sent<Pause>(), 1);
+  EXPECT_EQ(lines_.back(), "control: anna asks for: pause, at tick 100, t = 10.0 s");
+}
+
+TEST_F(Desk, WhoeverHasTheTokenStopsTheTeamAtOnceAtAnyTick) {
+  now_ += 1min;
+  move(5000, 1);
+  now_ += 1min;
+  move(9000, 1);
+  ask(ControlAct::kStopNow, 2, 0);
+  EXPECT_EQ(sent<Stop>(), 2);  // on two buses
+  EXPECT_TRUE(std::get<Stop>(sent_.front().message).now);
+}
+
+TEST_F(Desk, APauseIsDoneOnceAllVehiclesStandAndNamesThoseThatMove) {
+  ask(ControlAct::kTake);
+  ask(ControlAct::kPause);
+  pause_from(110);
+  advance();
+  EXPECT_EQ(state()["acts"][0]["state"], "answered");
+  move(110, 1);
+  EXPECT_EQ(state()["acts"][0]["state"], "obeyed");
+  EXPECT_EQ(state()["acts"][0]["text"],
+            "paused at tick 110, t = 11.0 s: 0 of 2 stand; agent 0 and agent 1 still move");
+  move(111, 0);
+  EXPECT_EQ(state()["acts"][0]["state"], "done");
+  EXPECT_EQ(lines_.back(),
+            "control: pause of anna, asked for at tick 100, t = 10.0 s: paused at "
+            "tick 110, t = 11.0 s: 2 of 2 stand");
+}
+
+TEST_F(Desk, ANumberCountsOnce) {
+  ask(ControlAct::kTake);
+  const ControlRequest take = last_;
+  ask(ControlAct::kTake, 2);
+  desk_.receive(take, team_, now_);  // recorded, and sent again
+  EXPECT_EQ(operator_name()["name"], "bert");
+  EXPECT_EQ(lines_.back(), "control: bert takes control from anna at tick 100, t = 10.0 s");
+}
+
+TEST_F(Desk, ARequestThatNamesAnOldTickIsRefused) {
+  ask(ControlAct::kTake);
+  for (int i = 0; i < 4; ++i) {
+    now_ += 5s;
+    move(200 + 100 * i, 1);
+    ask(ControlAct::kHere);
+  }
+  ask(ControlAct::kPause, 1, 100);
+  EXPECT_EQ(refusal(),
+            "the page has shown nothing new for several seconds: look at the team again");
+  ask(ControlAct::kPause);
+  EXPECT_EQ(sent<Pause>(), 1);
+}
+
+TEST_F(Desk, AnOperatorWhoseBrowserIsSilentLosesControl) {
+  ask(ControlAct::kTake);
+  now_ += ControlDesk::kSilence;
+  advance();
+  EXPECT_FALSE(operator_name().is_null());
+  ask(ControlAct::kHere);
+  now_ += ControlDesk::kSilence + 1ms;
+  advance();
+  EXPECT_TRUE(operator_name().is_null());
+  EXPECT_EQ(lines_.back(),
+            "control: anna loses control at tick 100, t = 10.0 s: the browser has "
+            "been silent for 10 s");
+  EXPECT_EQ(sent<Stop>() + sent<Pause>(), 0);  // the mission goes on
+}
+
+TEST_F(Desk, ManyPressesAreOneOrder) {
+  ask(ControlAct::kTake);
+  for (int i = 0; i < 1000; ++i) ask(ControlAct::kPause);
+  EXPECT_EQ(state()["acts"].size(), 1U);
+  EXPECT_EQ(refusal(), "too many requests in a second");
+  now_ += 1s;
+  ask(ControlAct::kHere);
+  EXPECT_EQ(lines_.back().substr(0, 9), "control: ");
+  EXPECT_NE(lines_.back().find("requests were refused: too many in a second"), std::string::npos);
+  EXPECT_LT(lines_.size(), 6U);
+}
+
+TEST_F(Desk, AStopAtOnceHasNoLimitOfRate) {
+  for (int i = 0; i < 1000; ++i) ask(ControlAct::kTake, 2);
+  ask(ControlAct::kStopNow);
+  EXPECT_EQ(sent<Stop>(), 2);
+}
+
+TEST_F(Desk, AResumptionEndsAPauseThatStillWaits) {
+  ask(ControlAct::kTake);
+  ask(ControlAct::kPause);
+  pause_from(110);
+  move(110, 1);
+  ask(ControlAct::kResume);
+  const auto found = std::find_if(lines_.begin(), lines_.end(), [](const std::string& line) {
+    return line.find("pause of anna: paused at") != line.npos;
+  });
+  ASSERT_NE(found, lines_.end());
+  EXPECT_NE(found->find("still move; then anna asks for: resume"), std::string::npos) << *found;
+  EXPECT_EQ(std::get<Pause>(sent_.back().message).changes, 1);
+}
+
+}  // namespace
+}  // namespace ergocast::cli
