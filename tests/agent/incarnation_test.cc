@@ -187,8 +187,8 @@ TEST(AgentJoining, ReportsWhatItWaitsFor) {
   EXPECT_EQ(agent.blocked_reason(), "waiting to be admitted");
   give(agent, mission_part(1, MissionState::kWaiting, {{{1, 77}, 0, -1}}), at(0s));
   EXPECT_EQ(agent.blocked_reason(),
-            "waiting to be admitted: the roster has another agent 1, whose end the coordinator may "
-            "not have noticed yet");
+            "waiting to be admitted: the roster has another agent 1; if that one has stopped, the "
+            "coordinator has not noticed it yet");
   give(agent, mission_part(2, MissionState::kWaiting, roster_of(2)), at(0s));
   EXPECT_EQ(agent.blocked_reason(), "admitted as agent 1, waiting for the quorum");
   give(agent, mission_part(3, MissionState::kRunning, roster_of(2)), at(0s));

@@ -441,7 +441,7 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
   const auto every_fourth = [](std::uint32_t sequence) { return doctor::is_large(sequence); };
   const auto every_fifth = [](std::uint32_t sequence) { return sequence % 5 == 2; };
   return {
-      {"peers", "no other host was received", "problem", 1, "", "ttl=1", test},
+      {"peers", "no probe of another host arrived", "problem", 1, "", "ttl=1", test},
       {"peers", "cannot send: ", "problem", 1,
        "nft 'add table inet w; add chain inet w o { type filter hook output priority 0; }; "
        "add rule inet w o udp dport $PORT drop'",
