@@ -130,6 +130,8 @@ inline const std::vector<Rule> kRules = {
      {"text", "core", "plan", "team", "lcmtypes", "target", "scenario", "runtime/bus",
       "runtime/record", "runtime/process", "logger", "report", "cli"},
      {kJson, kFiles, kSystem}},
+    // What an operator orders of a team; commands and the page give these orders.
+    {"cli/operate", {"core", "team", "runtime/bus", "cli/team"}, {}},
     {"cli/record",
      {"text", "core", "modes", "plan", "team", "lcmtypes", "scenario", "runtime/bus",
       "runtime/record", "runtime/process", "logger", "report", "report/export", "lab", "cli",
@@ -142,7 +144,8 @@ inline const std::vector<Rule> kRules = {
     {"cli/watch/page_server.cc", {"runtime/bus", "runtime/process", "cli/watch"}, {kHttp, kSystem}},
     {"cli/launch",
      {"text", "core", "modes", "plan", "team", "scenario", "scenario/parse", "runtime/bus",
-      "runtime/record", "runtime/process", "logger", "cli", "cli/team", "cli/record", "cli/watch"},
+      "runtime/record", "runtime/process", "logger", "cli", "cli/team", "cli/operate", "cli/record",
+      "cli/watch"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     {"cli/study",
      {"text", "core", "plan", "scenario", "scenario/parse", "runtime/process", "logger", "report",
