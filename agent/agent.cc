@@ -68,14 +68,22 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
     return finish(true, *std::move(why));
   if (in_mission()) in_mission()->note_roster(me_);
   const RosterEntry* own = own_entry();
+  if (own == nullptr && number_is_closed()) return finish(false, kSentOut);
   if (own == nullptr) return;
-  if (auto why = MissionRun::evicted(me_, std::max<Tick>(tick(), 0)))
-    return finish(true, *std::move(why));
+  if (auto over = MissionRun::evicted(me_, std::max<Tick>(tick(), 0)))
+    return finish(over->failed, std::move(over->reason));
   if (!in_mission()) {
     me_.set_id(own->author.agent);
     state_.emplace<MissionRun>(me_, *own);
   }
   if (follower().state() == MissionState::kRunning) in_mission()->start(arrival.now);
+}
+
+/// Whether the agent with its number was sent out of the mission. No other agent follows it.
+bool Agent::number_is_closed() const {
+  return std::ranges::any_of(follower().roster(), [this](const RosterEntry& entry) {
+    return entry.author.agent == requested_id_ && entry.leaves;
+  });
 }
 
 void Agent::on(const Hello& hello, const Arrival& arrival) {
@@ -109,7 +117,7 @@ void Agent::advance(Instant now, Outbox& out) {
   ask_for_admission(now, out);
   if (phase() == AgentPhase::kRunning) {
     auto over = in_mission()->advance(me_, now, out);
-    if (over) finish(over->failed, std::move(over->reason));
+    if (over) finish(over->failed, std::move(over->reason), over->stops_vehicle);
   }
   if (!finished() && mission_repeat_.due(now)) repeat_mission(now, out);
   if (MissionRun* const run = in_mission()) {

@@ -128,6 +128,7 @@ class Agent {
   /// Its mission, also after its end; null if it was never admitted.
   const MissionRun* mission_run() const;
   const RosterEntry* own_entry() const { return follower().entry_of(me_.incarnation()); }
+  bool number_is_closed() const;
   bool may_ask() const { return !finished() && me_.run() != 0 && own_entry() == nullptr; }
   void ask_for_admission(Instant now, Outbox& out);
   void repeat_mission(Instant now, Outbox& out);

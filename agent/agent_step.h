@@ -26,6 +26,7 @@ struct AgentStep {
   Tick counted = -1;                 ///< its number among the ticks that count
   bool held = false;                 ///< the mission is paused: it does not count
   std::int64_t roster_revision = 0;  ///< the world's, at `tick`
+  bool recalled = false;  ///< the operator has sent it home: it rests, core/mission/roster.h
   Instant begun{};
   Eigen::Vector3d x_m{0, 0, 0};     ///< the point of the domain nearest to body_m
   Eigen::Vector3d body_m{0, 0, 0};  ///< a robot may be outside of the domain

@@ -101,7 +101,8 @@ Digest AntiEntropy::digest(const CoverageTable& table, const std::vector<RosterE
 PacingClock::duration AntiEntropy::request_lifetime() const { return seconds(3 + 2 * round_s_); }
 
 void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
-                     const std::vector<RosterEntry>& roster, Instant now, Tick tick) {
+                     const std::vector<RosterEntry>& roster, Instant now, Tick tick,
+                     std::int64_t revision) {
   settled_differs_ = settled_differs_ || theirs.settled_hash != settled_hash_;
   const Author requester{theirs.header.sender, theirs.header.incarnation};
   if (requests_.size() >= kMaxRequests) {
@@ -119,7 +120,8 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
     // We broadcast our own coverage only when it is due: in lockstep, ticks depend on that.
     if (author == self_ || author == requester || roster[member].author != author) continue;
     if (table.author(row) != author) continue;
-    const bool will_speak = roster[member].active_until < 0;
+    const bool will_speak =
+        roster[member].active_until < 0 && !roster[member].recalled_at(revision);
     const bool lacks = lacks_something(table, row, will_speak, steps, state_hash);
     consider(theirs.header, author, lacks, now, tick);
   }

@@ -47,9 +47,10 @@ class AntiEntropy {
 
   /// Takes in what a teammate holds, in ascending order of authors. An author's row is answered if
   /// the teammate was behind ours in two consecutive digests. Behind means by more than two of the
-  /// author's broadcast periods, or by any block if the author has left the roster.
+  /// author's broadcast periods, or by any block if the author has left the roster or rests.
+  /// @param revision  of the roster that the world uses; it decides which recalled agents rest
   void on(const Digest& theirs, const CoverageTable& table, const std::vector<RosterEntry>& roster,
-          Instant now, Tick tick);
+          Instant now, Tick tick, std::int64_t revision = 0);
 
   /// Another agent has repeated `theirs`. If it is as new as ours, we do not repeat it.
   void on_relayed(const Contribution& theirs, const CoverageTable& table);

@@ -60,16 +60,22 @@ void CoverageExchange::add_sample(const AgentStep& step) {
 }
 
 /// An agent that learns late of a pause has counted too many ticks. The tick that it announced is
-/// then too late, so it broadcasts at once.
-void CoverageExchange::broadcast(bool all, Tick counted, Participant& me, Outbox& out) {
+/// then too late, so it broadcasts at once. So does an agent that rests no more, because its recall
+/// was lost with a coordinator.
+void CoverageExchange::broadcast(bool all, const AgentStep& step, Participant& me, Outbox& out) {
+  const Tick counted = step.counted, end = std::max(counted + 1, me.timing().tick_count);
+  all = all || (rests_ && !step.recalled);
+  rests_ = step.recalled;
   for (int b = 0; b < table_.block_count(); ++b) {
     Contribution& published = published_[static_cast<std::size_t>(b)];
     const bool counted_less = counted < published.header.tick;
     if (!all && !counted_less && counted < published.next_broadcast_tick) continue;
     Contribution block = table_.block(self_, b);
+    if (rests_ && block.steps == 0) continue;  // it has rested since its admission
     if (block.encoding == ContributionEncoding::kFixed16) note_gains(published, block);
     block.header.tick = counted;  // repeats keep it: forecasts count a block's age from it
-    block.next_broadcast_tick = next_broadcast(me.mission(), self_.agent, counted, b);
+    block.next_broadcast_tick =
+        rests_ ? end : next_broadcast(me.mission(), self_.agent, counted, b);
     me.publish(Bus::kSwarm, block, counted, out);
     published = std::move(block);
   }
@@ -127,6 +133,8 @@ AgentId CoverageExchange::awaited(const AgentStep& step, const RadioRange& radio
     if (!radio.receives(self_.agent, entry.author.agent)) continue;
     // An agent that rests since its admission never broadcasts.
     if (rests(me.mission(), entry.author.agent, me.counted(entry.active_from))) continue;
+    // Others get what a resting agent has sent by repairs.
+    if (entry.recalled_at(step.roster_revision) && !table_.steps_held(entry.author)) continue;
     if (!table_.holds_due(entry.author, step.counted)) return entry.author.agent;
   }
   return kUnassigned;
@@ -136,7 +144,15 @@ AgentId CoverageExchange::awaited(const AgentStep& step, const RadioRange& radio
 
 void CoverageExchange::on(const Digest& theirs, const AgentStep& step, const Participant& me,
                           Instant now) {
-  anti_entropy_.on(theirs, table_, me.follower().roster(), now, step.counted);
+  anti_entropy_.on(theirs, table_, me.follower().roster(), now, step.counted, step.roster_revision);
+  if (!rests_) return;  // it will broadcast
+  const std::int64_t held = table_.steps_held(self_).value_or(0);
+  const auto entries =
+      std::span(theirs.entries).first(static_cast<std::size_t>(theirs.entry_count));
+  own_repeat_wanted_ =
+      own_repeat_wanted_ || std::ranges::any_of(entries, [&](const DigestEntry& entry) {
+        return entry.author == self_ && entry.steps < held;
+      });
 }
 
 void CoverageExchange::repair(const std::vector<RosterEntry>& roster, const AgentStep& step,
@@ -145,6 +161,7 @@ void CoverageExchange::repair(const std::vector<RosterEntry>& roster, const Agen
     me.relay(Bus::kSwarm, block, out);
   }
   if (!next_digest_.due(now, step.counted)) return;
+  if (std::exchange(own_repeat_wanted_, false)) repeat(me, out);
   next_digest_ =
       Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, me.timing().dt_s, step.counted);
   const Digest digest = anti_entropy_.digest(table_, roster, step.counted);
@@ -162,6 +179,7 @@ Tick CoverageExchange::oldest_update_age(const AgentStep& step, const Participan
   for (const RosterEntry& entry : me.follower().roster()) {
     if (entry.author == self_ || !entry.active_at(step.tick)) continue;
     if (rests(me.mission(), entry.author.agent, step.counted)) continue;
+    if (entry.recalled_at(step.roster_revision)) continue;
     const Tick* const last_update = last_update_.find(entry.author);
     const Tick last = last_update == nullptr ? -1 : *last_update;
     const Tick joined = me.counted(entry.active_from);

@@ -35,8 +35,9 @@ class CoverageExchange {
 
   // ---- the own coverage ----
   void add_sample(const AgentStep& step);
-  /// Broadcasts the own blocks that are due at the tick with the number `counted`, or all.
-  void broadcast(bool all, Tick counted, Participant& me, Outbox& out);
+  /// Broadcasts the own blocks that are due at `step`, or all. A recalled agent sends each block
+  /// once more when it is due, and then nothing till the end.
+  void broadcast(bool all, const AgentStep& step, Participant& me, Outbox& out);
   /// Sends the own blocks again, as they were broadcast.
   void repeat(Participant& me, Outbox& out) const;
 
@@ -80,6 +81,8 @@ class CoverageExchange {
   std::vector<Contribution> published_;  // own blocks as last broadcast
   AuthorMap<Tick> last_update_;          // counted tick at which a teammate's coverage last grew
   Deadline next_digest_;
+  bool rests_ = false;              // it was recalled at the newest tick that it has begun, …
+  bool own_repeat_wanted_ = false;  // … and a teammate lacks some of its coverage
   std::int64_t received_ = 0;
   mutable Coefficients team_coverage_;  // as of the last call of team_coverage()
 };

@@ -49,6 +49,7 @@ Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,
                                      const std::vector<RosterEntry>& roster,
                                      const AgentStep& step) {
   if (forecast_) {
+    forecast_->note_revision(step.roster_revision);
     forecast_->look_ahead(table, roster, step.counted, foreseen_);
   } else {
     table.average(foreseen_);

@@ -47,10 +47,11 @@ MissionRun::MissionRun(const Participant& me, const RosterEntry& self)
   note_roster(me);
 }
 
-std::optional<std::string> MissionRun::evicted(const Participant& me, Tick tick) {
+std::optional<MissionOver> MissionRun::evicted(const Participant& me, Tick tick) {
   const RosterEntry* own = me.follower().entry_of(me.incarnation());
   if (own == nullptr || own->active_until < 0 || own->active_until > tick) return std::nullopt;
-  return "evicted from the roster at tick " + std::to_string(own->active_until);
+  if (own->leaves) return MissionOver{false, kSentOut, true};
+  return MissionOver{true, "evicted from the roster at tick " + std::to_string(own->active_until)};
 }
 
 // ---- what the agent learns ----
@@ -59,6 +60,8 @@ std::optional<std::string> MissionRun::evicted(const Participant& me, Tick tick)
 void MissionRun::note_roster(const Participant& me) {
   const MissionFollower& known = me.follower();
   motion_.bodies().note_roster(known.roster());
+  const RosterEntry* const own = known.entry_of(me.incarnation());
+  if (own != nullptr && own->recalled()) motion_.prepare_recall(me.mission());
   if (!known.holds().empty()) held_roster_ = in_counted_ticks(known.roster(), known.holds());
 }
 
@@ -95,6 +98,8 @@ void MissionRun::on(const Contribution& theirs, const Arrival& arrival, Particip
   // Before our first tick we do not know the mission's time. The count may be right, so it is
   // ignored and not counted as refused.
   if (step_.tick < 0 && theirs.steps > limit) return;
+  // Its author may not know yet that it was sent out of the mission.
+  if (entry->leaves && theirs.steps > limit) return;
   const auto refusal = exchange_.merge(theirs, entry->kind, limit, step_.counted);
   if (refusal) me.count_refused(*refusal);
 }
@@ -144,7 +149,7 @@ std::optional<MissionOver> MissionRun::advance(Participant& me, Instant now, Out
   }
   if (stalled(me, now)) {
     stall_announced_ = now;
-    exchange_.broadcast(true, step_.counted, me, out);
+    exchange_.broadcast(true, step_, me, out);
   }
   if (!me.cut_off(step_.tick, now)) return std::nullopt;
   return MissionOver{true,
@@ -169,7 +174,7 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
     step_.tick = own.tick;
     return MissionOver{false, "mission complete"};
   }
-  if (auto why = evicted(me, own.tick)) return MissionOver{true, *std::move(why)};
+  if (auto over = evicted(me, own.tick)) return over;
   if (step_.tick >= 0) missed_ticks_ += own.tick - step_.tick - 1;
   step_.tick = own.tick;
   step_.counted = me.counted(own.tick);
@@ -180,11 +185,15 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   step_.body_mps = own.velocity_mps;
   step_.x_m = mission.domain.nearest(own.position_m);
   step_.basis_at.emplace(step_.x_m, mission.domain, mission.basis);
+  const RosterEntry* const entry = me.follower().entry_of(me.incarnation());
+  step_.recalled = entry != nullptr && entry->recalled_at(own.roster_revision);
+  if (step_.recalled && entry->leaves) return MissionOver{false, kSentOut, true};
   motion_.bodies().begin(own, step_, me, out);
   // A restarted world may be a tick behind the roster. Our predecessor has covered that tick.
   if (step_.tick < active_from_ || step_.held) return std::nullopt;
-  if (!rests(mission, me.id(), step_.counted)) exchange_.add_sample(step_);
-  exchange_.broadcast(false, step_.counted, me, out);
+  const bool covers = !step_.recalled && !rests(mission, me.id(), step_.counted);
+  if (covers) exchange_.add_sample(step_);
+  exchange_.broadcast(false, step_, me, out);
   return std::nullopt;
 }
 
@@ -255,6 +264,9 @@ Instant MissionRun::next_wakeup() const {
 
 AgentPhase MissionRun::phase(const Participant& me) const {
   if (!started()) return AgentPhase::kWaiting;
+  if (step_.recalled)
+    return motion_.is_home(me.mission(), step_.body_m) ? AgentPhase::kResting
+                                                       : AgentPhase::kReturning;
   if (!motion_.has_station()) return AgentPhase::kRunning;
   if (rests(me.mission(), me.id(), step_.counted)) return AgentPhase::kResting;
   return motion_.returns() ? AgentPhase::kReturning : AgentPhase::kRunning;

@@ -36,15 +36,19 @@ namespace ergocast {
 struct MissionOver {
   bool failed;
   std::string reason;
+  bool stops_vehicle = false;  ///< the vehicle's driver goes on, so it needs a last command
 };
+
+/// The reason of an agent that was sent out of the mission.
+inline constexpr const char* kSentOut = "sent out of the mission by the operator";
 
 class MissionRun {
  public:
   /// @param self  the agent's entry in the roster
   MissionRun(const Participant& me, const RosterEntry& self);
 
-  /// The reason if the process is no longer a member at `tick`, else nothing.
-  static std::optional<std::string> evicted(const Participant& me, Tick tick);
+  /// Why the mission is over for the process if it is no longer a member at `tick`, else nothing.
+  static std::optional<MissionOver> evicted(const Participant& me, Tick tick);
 
   // ---- what the agent learns ----
   /// Takes in the newest roster.

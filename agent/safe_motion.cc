@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "core/base/geometry.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
+#include "core/motion/home.h"
 
 namespace ergocast {
 
@@ -17,10 +19,21 @@ void BlockedTicks::note(const SafeVelocity& safe) {
 }
 
 SafeMotion::SafeMotion(const Mission& mission, const Author& self, std::int64_t revision)
-    : id_(self.agent), bodies_(mission, self, revision) {
+    : id_(self.agent),
+      bodies_(mission, self, revision),
+      has_station_(station_of(mission, self.agent).has_value()) {
   if (filters_commands(mission, id_)) separation_.emplace(mission, unguarded_hold_ticks(mission));
   if (follows_walls(mission)) wall_follower_.emplace(mission, id_);
-  if (station_of(mission, id_)) way_home_.emplace(mission, id_);
+  if (has_station_) way_home_.emplace(mission, id_);
+}
+
+void SafeMotion::prepare_recall(const Mission& mission) {
+  if (!way_home_ && home_of(mission, id_)) way_home_.emplace(mission, id_);
+}
+
+bool SafeMotion::is_home(const Mission& mission, const Eigen::Vector3d& x_m) const {
+  const auto home = home_of(mission, id_);
+  return !home || length_of(*home - x_m) <= home_m(mission, id_);
 }
 
 void SafeMotion::on(const WorldState& world) {
@@ -37,10 +50,15 @@ Eigen::Vector3d SafeMotion::command_mps(const Eigen::Vector3d& wanted_mps, const
   return command.velocity_mps;
 }
 
+bool SafeMotion::goes_home(const AgentStep& step) {
+  if (!way_home_ || step.held) return false;
+  return step.recalled || (has_station_ && way_home_->begun(step.counted, step.x_m));
+}
+
 /// The velocity to ask the filter for: that of the way home, or `wanted_mps`, or along a wall.
 Eigen::Vector3d SafeMotion::aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step) {
-  if (way_home_ && !step.held && way_home_->begun(step.counted, step.x_m))
-    return way_home_->velocity_mps(step.body_m, step.body_mps);
+  if (goes_home(step)) return way_home_->velocity_mps(step.body_m, step.body_mps);
+  if (step.recalled) return {0, 0, 0};
   if (!wall_follower_ || returns()) return wanted_mps;
   return wall_follower_->aim(step.tick, step.body_m, wanted_mps);
 }

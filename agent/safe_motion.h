@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From the velocity that the law wants to the command of the vehicle, in four steps:
 //
-// 1. the way home takes the law's place, once it has begun (core/motion/way_home.h);
+// 1. the way home takes the law's place, once it has begun (core/motion/way_home.h), also for an
+//    agent that was recalled; one that has no home stays where it is;
 // 2. an agent that walls hold up goes along the wall, but not on its way home
 //    (core/motion/wall_following.h);
 // 3. the filter keeps the vehicle apart from walls, edges and the bodies of TeamBodies
@@ -50,9 +51,13 @@ class SafeMotion {
   /// Whether a tick can be answered: only once the position of every body is known.
   bool knows_bodies(Tick tick) const { return !separation_ || bodies_.complete(tick); }
 
-  bool has_station() const { return way_home_.has_value(); }
-  /// Whether it has begun its way home.
+  bool has_station() const { return has_station_; }
+  /// Whether it has begun the way to its station.
   bool returns() const { return way_home_ && way_home_->begun(); }
+  /// Prepares the way home of an agent that is recalled.
+  void prepare_recall(const Mission& mission);
+  /// Whether the vehicle is at home, or has none. @pre prepare_recall() was called
+  bool is_home(const Mission& mission, const Eigen::Vector3d& x_m) const;
 
   /// The velocity to command where the law wants `wanted_mps`. In a pause the way home does not
   /// begin or go on.
@@ -61,6 +66,7 @@ class SafeMotion {
   const BlockedTicks& blocked() const { return blocked_; }
 
  private:
+  bool goes_home(const AgentStep& step);
   Eigen::Vector3d aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step);
   SafeVelocity safe(const Eigen::Vector3d& aim_mps, const AgentStep& step, const Participant& me);
 
@@ -68,7 +74,8 @@ class SafeMotion {
   TeamBodies bodies_;
   std::optional<SeparationFilter> separation_;
   std::optional<WallFollower> wall_follower_;  // where there are walls
-  std::optional<WayHome> way_home_;            // if it has a station
+  bool has_station_;
+  std::optional<WayHome> way_home_;  // if it has a station, or was recalled and has a home
   BlockedTicks blocked_;
 };
 

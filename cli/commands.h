@@ -41,6 +41,8 @@ void add_export(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);
 /// `pause` and `resume`: a mission stands still for a while.
 void add_pause(CLI::App& app, Action& action);
+/// `recall`: agents go home, or leave the mission.
+void add_recall(CLI::App& app, Action& action);
 /// `stop`: ends a mission that another command started, in order or at once.
 void add_stop(CLI::App& app, Action& action);
 /// `spy`: LCM's viewer on one bus of a mission.

@@ -11,13 +11,14 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 verify, status or doctor found something; 2 bad scenario, arguments or\n"
     "run directory; 3 LCM cannot be used on this machine; 4 the mission failed or its record "
     "broke\n"
-    "off, some of many missions failed, or stop, pause or resume did not see the team obey.";
+    "off, some of many missions failed, or stop, pause, resume or recall did not see the team\n"
+    "obey.";
 
 /// In the order of --help.
 constexpr void (*kCommands[])(CLI::App&, Action&) = {
-    add_run,    add_simulate, add_study, add_check,  add_report, add_verify,
-    add_keygen, add_deploy,   add_list,  add_status, add_watch,  add_run_page,
-    add_export, add_replay,   add_pause, add_stop,   add_spy,    add_doctor};
+    add_run,    add_simulate, add_study,  add_check, add_report,   add_verify, add_keygen,
+    add_deploy, add_list,     add_status, add_watch, add_run_page, add_export, add_replay,
+    add_pause,  add_recall,   add_stop,   add_spy,   add_doctor};
 
 int parse_and_do(int argc, char** argv) {
   CLI::App app("Ergocast: teams of robots that spread their time over a region as a map demands.",

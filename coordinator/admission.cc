@@ -75,7 +75,8 @@ std::optional<Newcomer> Admission::admitted(const Hello& hello, const Mission& m
   }
   std::optional<AgentId> id = hello.requested_id;
   if (*id == kUnassigned) id = free_id(hello, mission, members, signs);
-  if (!id) return std::nullopt;  // no number is free yet, or the team is full
+  if (!id || members.is_closed(*id))
+    return std::nullopt;  // no number is free yet, or the team is full
   if (const RosterEntry* holder = members.active_entry(*id)) {
     if (signs.alive(*holder)) return std::nullopt;  // the holder of the number keeps it
     // The silence of a member matters only for its own number. On a network with long delays
@@ -114,7 +115,7 @@ std::optional<AgentId> Admission::free_id(const Hello& hello, const Mission& mis
   for (AgentId id = 0; id < kMaxAgents; ++id) {
     const RosterEntry* holder = members.active_entry(id);
     const bool is_free = holder == nullptr || !signs.alive(*holder);
-    if (is_free && suits_number(mission, brought, id)) return id;
+    if (is_free && !members.is_closed(id) && suits_number(mission, brought, id)) return id;
   }
   return std::nullopt;
 }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <utility>
 
+#include "coordinator/recalling.h"
 #include "core/base/require.h"
 #include "plan/plan.h"
 #include "team/median_metric.h"
@@ -113,7 +114,10 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
   }
   // An agent repeated a revision of a coordinator that is gone. The team must accept our revisions
   // again.
-  if (arrival.mission_changed) pausing_.adopt(me_.follower().holds());
+  if (arrival.mission_changed) {
+    pausing_.adopt(me_.follower().holds());
+    adopt_recalls(me_.follower().roster(), members_);
+  }
   announcement_.exceed(part.revision);
 }
 
@@ -145,6 +149,11 @@ void Coordinator::on(const Stop& stop, const Arrival& arrival) {
 void Coordinator::on(const Pause& pause, const Arrival& arrival) {
   if (looking() || state_ != MissionState::kRunning) return;
   pausing_.obey(pause, timing(), ticks_, signs_at(arrival.now), announcement_);
+}
+
+void Coordinator::on(const Recall& recall, const Arrival&) {
+  if (looking() || state_ != MissionState::kRunning) return;
+  obey(recall, members_, announcement_);
 }
 
 // ---- time ----
@@ -230,6 +239,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
   const auto other = other_coordinator_.revision_to_exceed(announcement_.revision(), signs);
   if (other) announcement_.exceed(*other);
   if (state_ == MissionState::kRunning) {
+    end_departed(ticks_.newest(), signs, members_, announcement_);
     coverage_review_.review(*mission_, ticks_, members_, signs, announcement_);
   }
   if (state_ == MissionState::kWaiting) check_admission(now);
@@ -252,6 +262,8 @@ void Coordinator::admit(const Newcomer& newcomer, Instant now) {
   }
   RosterEntry entry{author, state_ == MissionState::kRunning ? ticks_.newest() : 0, -1};
   entry.kind = newcomer.kind;
+  if (const RosterEntry* recalled = members_.recalled_entry(author.agent))
+    entry.recall_revision = recalled->recall_revision;
   members_.add(entry);
   me_.presume_alive(author, now);
   admission_.forget(author.incarnation);

@@ -106,6 +106,7 @@ class Coordinator {
   void on(const TeamStatus& theirs, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
   void on(const Pause& pause, const Arrival& arrival);
+  void on(const Recall& recall, const Arrival& arrival);
 
   const Timing& timing() const { return mission_->timing; }
   Tick end_tick() const { return tick_after(holds(), timing().tick_count); }

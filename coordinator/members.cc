@@ -18,6 +18,18 @@ RosterEntry* Members::active_entry(AgentId id) {
   return const_cast<RosterEntry*>(std::as_const(*this).active_entry(id));
 }
 
+const RosterEntry* Members::recalled_entry(AgentId id) const {
+  const auto at = std::ranges::find_if(roster_, [id](const RosterEntry& entry) {
+    return entry.author.agent == id && entry.recalled();
+  });
+  return at == roster_.end() ? nullptr : &*at;
+}
+
+bool Members::is_closed(AgentId id) const {
+  return std::ranges::any_of(
+      roster_, [id](const RosterEntry& entry) { return entry.author.agent == id && entry.leaves; });
+}
+
 bool Members::contains(Incarnation incarnation) const {
   return std::any_of(roster_.begin(), roster_.end(), [incarnation](const RosterEntry& entry) {
     return entry.author.incarnation == incarnation;

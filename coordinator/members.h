@@ -48,6 +48,11 @@ class Members {
   /// The present member under a number; null if there is none.
   const RosterEntry* active_entry(AgentId id) const;
   RosterEntry* active_entry(AgentId id);
+  /// A present or former member under a number that was recalled; null if there is none. All that
+  /// follow it are recalled, too.
+  const RosterEntry* recalled_entry(AgentId id) const;
+  /// Whether the number's last member was sent out of the mission. It then stays empty.
+  bool is_closed(AgentId id) const;
   /// Whether a process is a present or former member.
   bool contains(Incarnation incarnation) const;
   int alive_count(const SignsOfLife& signs) const;

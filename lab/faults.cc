@@ -31,6 +31,8 @@ constexpr FaultField kFields[] = {
     {"world_crashes_per_s", &Faults::world_crashes_per_s, 1},
     {"pauses_per_s", &Faults::pauses_per_s, 1},
     {"pause_max_s", &Faults::pause_max_s, 60},
+    {"recalls_per_s", &Faults::recalls_per_s, 1},
+    {"departure_share", &Faults::departure_share, 1},
     {"downtime_max_s", &Faults::downtime_max_s, 60},
     {"clock_rate_error", &Faults::clock_rate_error, 0.2},
     {"clock_offset_max_s", &Faults::clock_offset_max_s, 1e8},
@@ -45,7 +47,8 @@ enum Stream : std::uint32_t {
   kAgents,
   kCoordinator,
   kWorldProcess,
-  kOperator
+  kOperator,
+  kRecalls
 };
 
 }  // namespace
@@ -93,6 +96,10 @@ Faults drawn(std::uint64_t seed) {
     faults.pauses_per_s = random.log_uniform(0.03, 0.15);
     faults.pause_max_s = random.log_uniform(0.1, 10);
   }
+  if (random.coin()) {
+    faults.recalls_per_s = random.log_uniform(0.02, 0.1);
+    faults.departure_share = random.uniform();
+  }
   return faults;
 }
 
@@ -139,6 +146,10 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
        one_of_one(kCoordinatorCrash));
   draw(kWorldProcess, faults.world_crashes_per_s, faults.downtime_max_s, one_of_one(kWorldCrash));
   draw(kOperator, faults.pauses_per_s, faults.pause_max_s, one_of_one(kPause));
+  draw(kRecalls, faults.recalls_per_s, 0, [&](RandomStream& random) {
+    const auto kind = random.uniform() < faults.departure_share ? kDeparture : kRecall;
+    return std::pair(kind, random.word() % static_cast<std::uint64_t>(agents));
+  });
   std::stable_sort(all.begin(), all.end(),
                    [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;

@@ -33,6 +33,8 @@ struct Faults {
   double world_crashes_per_s = 0;
   double pauses_per_s = 0;        ///< an operator pauses the mission, …
   double pause_max_s = 0;         ///< … and resumes it after up to so long, uniform
+  double recalls_per_s = 0;       ///< an operator sends an agent home, …
+  double departure_share = 0;     ///< … or, with this share of recalls, out of the mission
   double downtime_max_s = 0;      ///< until a crashed process is started again, uniform
   double clock_rate_error = 0;    ///< a process's clock runs at a rate of 1 ± so much, uniform
   double clock_offset_max_s = 0;  ///< and started up to so long before, uniform
@@ -62,11 +64,21 @@ Faults drawn(std::uint64_t seed);
 
 /// A fault that happens at a given moment, independently of messages.
 struct FaultEvent {
-  enum class Kind { kSplit, kOneWayCut, kAgentCrash, kCoordinatorCrash, kWorldCrash, kPause };
+  enum class Kind {
+    kSplit,
+    kOneWayCut,
+    kAgentCrash,
+    kCoordinatorCrash,
+    kWorldCrash,
+    kPause,
+    kRecall,
+    kDeparture
+  };
   Kind kind;
   double at_s;  ///< after the start of the mission
   double lasts_s;
-  std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash: which agent
+  std::uint64_t
+      who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall: which agent
 };
 
 /// The events of `horizon_s` seconds, by time.

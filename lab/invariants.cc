@@ -70,7 +70,7 @@ void Invariants::started(const Author& author) {
 void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
   if (const auto* part = std::get_if<MissionPart>(&outgoing.message))
-    return void(truth_.receive(*part));
+    return truth_.receive(*part) ? check_closed_numbers(t_s) : void();
   if (const auto* command = std::get_if<Command>(&outgoing.message)) {
     // A repeated command was checked before.
     const bool answers = speaker != nullptr && command->header.tick == speaker->answered;
@@ -90,6 +90,7 @@ void Invariants::check(double t_s, const WorldState& world) {
   check_paused(t_s, world);
   check_home(t_s, world);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
+    places_m_[vehicle.id] = vehicle.position_m;
     if (!mission_.walls.empty()) check_wall(t_s, vehicle);
     if (mission_.domain.contains(vehicle.position_m)) continue;
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
@@ -156,7 +157,9 @@ void Invariants::check(double t_s, const Command& command, const TableView& spea
   const double margin_mps =
       8 * 0x1p-53 * (v_mps.norm() + contraction_mps.norm() + noise_mps.norm());
   if (u_mps <= (law.u_max_mps + push_mps) * (1 + 1e-12) + margin_mps) return;
-  const bool may_go_home = home_from_.contains(command.header.sender);
+  const RosterEntry* const own = entry_of(*speaker.roster, speaker.self);
+  const bool may_go_home =
+      home_from_.contains(command.header.sender) || (own != nullptr && is_recalled(*own, speaker));
   if (may_go_home && v_mps.norm() <= law.u_max_mps * (1 + 1e-12)) return;
   violate(t_s, Invariant::kInputsBounded, "agent " + std::to_string(command.header.sender),
           text("|u| = ", u_mps, " m/s > ", law.u_max_mps, " m/s at tick ", command.header.tick));
@@ -271,7 +274,9 @@ void Invariants::ended(double t_s, const std::string& still_running, const std::
             text(counted, " of ", mission_.timing.tick_count, " ticks, and only ", excused,
                  " may be missing"));
   }
-  const double goal = mission_.goal_ergodic_metric;
+  const bool recalled =
+      std::ranges::any_of(truth_.roster(), [](const auto& entry) { return entry.recalled(); });
+  const double goal = recalled ? 0 : mission_.goal_ergodic_metric;  // fewer agents may miss it
   if (goal > 0 && !(facts.ergodic_metric_last <= goal)) {
     violate(t_s, Invariant::kGoalReached, "the team",
             text("phi^2 = ", facts.ergodic_metric_last, " > ", goal,

@@ -37,6 +37,7 @@ enum class Invariant : std::uint8_t {
   kDistanceKept,
   kWallsKept,
   kHomeInTime,
+  kRecalledComeHome,
   kSumsBounded,
   kRelaysAnswerDigests,
   kDigestsSayWhatIsHeld,
@@ -52,6 +53,7 @@ enum class Invariant : std::uint8_t {
   kZerothIsOne,
   kHonestMessagesAccepted,
   kNoEarlyEnd,
+  kClosedNumbersStayEmpty,
   kNoWakeupInThePast,
   kHeardLoggerIsKept,
   // Liveness.
@@ -77,6 +79,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kDistanceKept, "bodies keep their distance"},
         {Invariant::kWallsKept, "bodies keep out of walls"},
         {Invariant::kHomeInTime, "agents are home in time"},
+        {Invariant::kRecalledComeHome, "recalled agents come home"},
         {Invariant::kSumsBounded, "|S_mn| <= S_00 = steps dt"},
         {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
         {Invariant::kDigestsSayWhatIsHeld, "a digest lists what is held"},
@@ -92,6 +95,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kZerothIsOne, "c_00 = 1"},
         {Invariant::kHonestMessagesAccepted, "no honest message is refused"},
         {Invariant::kNoEarlyEnd, "no agent ends before the mission"},
+        {Invariant::kClosedNumbersStayEmpty,
+         "the number of an agent that was sent out stays empty"},
         {Invariant::kNoWakeupInThePast, "no process asks to be woken in the past"},
         {Invariant::kHeardLoggerIsKept, "a logger whose messages arrive is not given up"},
         {Invariant::kEverybodyIsBack, "every process is back in the mission"},
@@ -165,8 +170,9 @@ class Invariants {
   /// it for each MISSION, because one of them admits the agent and names its first tick.
   void received(const TableView& listener, const Message& message);
   /// An agent has begun the tick `holder.answered`, and may not have answered it yet. It has more
-  /// steps than before if the tick counts, and no more if not. Call it for each tick, before the
-  /// agent receives anything else.
+  /// steps than before if the tick counts, and no more if not, or if it was recalled. In lockstep a
+  /// recalled point is at home after the time that the longest way takes. Call it for each tick,
+  /// before the agent receives anything else.
   void began(double t_s, const TableView& holder);
   /// An agent has answered a tick. What it holds never shrinks; no author's steps exceed the ticks
   /// so far that count; c_k is Σ S / Σ elapsed of what it holds; c_00 = 1. Where its law looks
@@ -237,6 +243,9 @@ class Invariants {
   void note_positions(double t_s, const WorldState& world);
   void check_wall(double t_s, const Vehicle& vehicle);
   void check_home(double t_s, const WorldState& world);
+  void check_recalled_home(double t_s, const TableView& holder);
+  bool recalled_in_truth(const TableView& holder) const;
+  void check_closed_numbers(double t_s);
   void check_distances(double t_s, const WorldState& world);
   void check_counted(double t_s, const TableView& holder, const std::vector<TableView>& living);
   void check_neighbours(double t_s, const std::vector<TableView>& living);
@@ -258,8 +267,10 @@ class Invariants {
   std::map<Author, Shadow>
       shadows_;  // of each incarnation of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
-  std::map<AgentId, Tick> home_from_;  // where agents have stations
-  StateAssembler state_;               // where a distance is kept
+  std::map<AgentId, Tick> home_from_;            // where agents have stations
+  std::map<Author, Tick> rested_;                // counted ticks since an agent was recalled
+  std::map<AgentId, Eigen::Vector3d> places_m_;  // in lockstep, of the newest state
+  StateAssembler state_;                         // where a distance is kept
   std::map<AgentId, Eigen::Vector3d>
       positions_m_;  // only with a radio range, like the next members
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first

@@ -12,7 +12,7 @@ namespace ergocast::lab {
 namespace {
 
 /// Where agent `id` is to be.
-Eigen::Vector3d home_of(const Mission& mission, AgentId id) {
+Eigen::Vector3d station_m_of(const Mission& mission, AgentId id) {
   int place = id;
   for (const AgentKind& kind : mission.kinds) {
     if (place < kind.count)
@@ -53,12 +53,57 @@ void Invariants::check_home(double t_s, const WorldState& world) {
       return entry.author.agent == vehicle.id && entry.active_from == 0;
     });
     if (!from_the_start) continue;
-    const double apart_m = (vehicle.position_m - home_of(mission_, vehicle.id)).norm();
+    const double apart_m = (vehicle.position_m - station_m_of(mission_, vehicle.id)).norm();
     const double most_m = tolerated_m(mission_, vehicle.id);
     if (apart_m <= most_m * (1 + 1e-9)) continue;
     violate(t_s, Invariant::kHomeInTime, "vehicle " + std::to_string(vehicle.id),
             text("is ", apart_m, " m from its station at tick ", world.header.tick, ", and ",
                  most_m, " m are tolerated"));
+  }
+}
+
+/// Whether it rests because it was recalled, by the newest roster that was sent.
+bool Invariants::recalled_in_truth(const TableView& holder) const {
+  const RosterEntry* const entry = truth_.entry_of(holder.self.incarnation);
+  return entry != nullptr && is_recalled(*entry, holder);
+}
+
+/// Checks points in lockstep that nothing keeps from their way.
+void Invariants::check_recalled_home(double t_s, const TableView& holder) {
+  const AgentId id = holder.self.agent;
+  const bool free = mission_.separation.distance_m == 0 && mission_.walls.empty() &&
+                    mission_.disturbance_intensity == 0 && motion_of(mission_, id).is_point();
+  const auto rested = rested_.find(holder.self);
+  const auto place = places_m_.find(id);
+  if (mission_.timing.pace == Pace::kRealtime || !free || rested == rested_.end() ||
+      place == places_m_.end())
+    return;
+  const double limit_mps = motion_of(mission_, id).speed_limit_mps;
+  double v_mps = law_of(mission_, planned_kind(mission_, id)).u_max_mps;
+  if (limit_mps > 0) v_mps = std::min(v_mps, limit_mps);
+  const double longest_s = mission_.domain.size_m.norm() / v_mps + 2 * mission_.timing.dt_s;
+  if (static_cast<double>(rested->second) * mission_.timing.dt_s <= longest_s) return;
+  const bool has_station = home_from_.contains(id);
+  const Eigen::Vector3d home_m =
+      has_station ? station_m_of(mission_, id) : mission_.starts_m[static_cast<std::size_t>(id)];
+  const double apart_m = (place->second - home_m).norm();
+  const double most_m = tolerated_m(mission_, id);
+  if (apart_m <= most_m * (1 + 1e-9)) return;
+  violate(t_s, Invariant::kRecalledComeHome, name_of(holder.self),
+          text("is ", apart_m, " m from home at tick ", holder.answered, ", ", rested->second,
+               " ticks after it was recalled"));
+}
+
+/// A number has no other present member than the one that was sent out.
+void Invariants::check_closed_numbers(double t_s) {
+  for (const RosterEntry& gone : truth_.roster()) {
+    if (!gone.leaves) continue;
+    for (const RosterEntry& other : truth_.roster()) {
+      if (other.author.agent != gone.author.agent || other.author == gone.author) continue;
+      if (other.active_until >= 0) continue;
+      violate(t_s, Invariant::kClosedNumbersStayEmpty, name_of(other.author),
+              text("follows ", name_of(gone.author)));
+    }
   }
 }
 

@@ -191,7 +191,7 @@ void Invariants::check_view(double t_s, const TableView& holder,
       stale_s += static_cast<double>(std::max<std::int64_t>(lacks, 0)) * weight_s;
       continue;
     }
-    if (entry == nullptr || entry->active_until >= 0) continue;
+    if (entry == nullptr || entry->active_until >= 0 || is_recalled(*entry, holder)) continue;
     // Two periods until a digest asks for it, and two ticks on the way.
     const Tick period = holder.table->announced_period(author);
     stale_s += static_cast<double>(2 * period + 2) * weight_s;
@@ -220,14 +220,14 @@ void Invariants::check_rows(double t_s, const TableView& holder,
     const RosterEntry* entry = entry_of(*holder.roster, author);
     // The coordinator stopped before it sent this admission to any other process: no member.
     if (entry == nullptr) continue;
-    const bool speaks = entry->active_until < 0;
+    const bool speaks = entry->active_until < 0 && !is_recalled(*entry, holder);
     const Tick period = holder.table->announced_period(author);
     const std::int64_t tolerated = speaks ? 2 * period + 2 : 0;
     const std::int64_t held = steps_of(*holder.table, author);
     if ((held > 0 || newest == 0) && held + tolerated >= newest) continue;
     violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
             text("holds ", held, " of ", newest, " steps of ", name_of(author),
-                 speaks ? ", a member" : ", which has left"));
+                 speaks ? ", a member" : ", which has left or rests"));
   }
 }
 

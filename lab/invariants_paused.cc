@@ -70,9 +70,15 @@ void Invariants::began(double t_s, const TableView& holder) {
   // In lockstep all messages about the mission decide; in real time, what the agent knows of them.
   const bool exact = mission_.timing.pace == Pace::kLockstep;
   const std::span<const Hold> holds = exact ? std::span<const Hold>(truth_.holds()) : holder.holds;
-  const bool idle = is_held(holds, holder.answered) ||
-                    rests(mission_, holder.self.agent, counted_ticks(holds, holder.answered));
-  if (idle && steps > before) {
+  const bool by_plan = is_held(holds, holder.answered) ||
+                       rests(mission_, holder.self.agent, counted_ticks(holds, holder.answered));
+  const RosterEntry* const own = entry_of(*holder.roster, holder.self);
+  const bool recalled = own != nullptr && is_recalled(*own, holder);
+  if (recalled && !is_held(holds, holder.answered)) ++rested_[holder.self];
+  if (!recalled) rested_.erase(holder.self);
+  check_recalled_home(t_s, holder);
+  const bool idle = by_plan || recalled;
+  if ((idle || (exact && recalled_in_truth(holder))) && steps > before) {
     violate(t_s, Invariant::kNothingCountsWhilePaused, name_of(holder.self),
             text("has ", steps - before, " more steps at tick ", holder.answered));
   }

@@ -199,7 +199,7 @@ bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, T
 
 bool has_forecast(const Mission& mission, const TableView& agent, const RosterEntry& entry) {
   return entry.author != agent.self && !is_forgotten(entry, agent) &&
-         is_newest(*agent.roster, entry, agent.counted) &&
+         is_newest(*agent.roster, entry, agent.counted) && !is_recalled(entry, agent) &&
          agent.counted < covers_until(mission, entry.author.agent);
 }
 

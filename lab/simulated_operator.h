@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A simulated operator: it pauses a mission and resumes it.
+// A simulated operator: it pauses a mission and resumes it, and sends agents home or out of it.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "coordinator/coordinator.h"
 #include "core/base/ids.h"
@@ -24,12 +27,19 @@ class SimulatedOperator {
   void end_pause(Instant now) {
     if (paused_until_ && *paused_until_ <= now) paused_until_.reset();
   }
-  /// Wants the mission to go on.
-  void want_no_pause() { paused_until_.reset(); }
+  /// Wants an agent to go home, or out of the mission if it `leaves`.
+  void want_recall(AgentId id, bool leaves) { recalls_.push_back({{}, id, leaves, {}}); }
+  /// Wants nothing but that the mission goes on.
+  void want_nothing() {
+    paused_until_.reset();
+    recalls_.clear();
+  }
+  /// Whether it has sent an agent out of the mission.
+  bool sent_out(AgentId id) const { return sent_out_.contains(id); }
   /// When its pause ends; Instant::max(): it wants none.
   Instant next() const { return paused_until_.value_or(Instant::max()); }
   /// Whether it has wanted nothing yet, and wants nothing now.
-  bool idle() const { return messages_ == 0 && !paused_until_; }
+  bool idle() const { return messages_ == 0 && !paused_until_ && recalls_.empty(); }
 
   /// The message that it sends now. It repeats its wish until a tick is named.
   std::optional<Pause> message(Instant now, RunId run, const Coordinator& coordinator) {
@@ -42,6 +52,15 @@ class SimulatedOperator {
     next_message_ = now + kPeriod;
     return Pause{{run, kOperator, 1, ++messages_, coordinator.tick()}, named_changes(holds), {}};
   }
+  /// The recalls that it sends now. The coordinator receives each of them at once.
+  std::vector<Recall> take_recalls(RunId run, const Coordinator& coordinator) {
+    if (coordinator.state() != MissionState::kRunning) return {};
+    for (Recall& recall : recalls_) {
+      recall.header = {run, kOperator, 1, ++messages_, coordinator.tick()};
+      if (recall.leaves) sent_out_.insert(recall.agent);
+    }
+    return std::exchange(recalls_, {});
+  }
 
  private:
   /// As `ergocast pause` repeats it.
@@ -50,6 +69,8 @@ class SimulatedOperator {
   std::optional<Instant> paused_until_;
   Instant next_message_;  // until its wish is obeyed
   std::int64_t messages_ = 0;
+  std::vector<Recall> recalls_;  // to be sent
+  std::set<AgentId> sent_out_;
 };
 
 }  // namespace ergocast::lab

@@ -56,7 +56,7 @@ struct SimulationCounts {
   MessageFaults faults;
   std::int64_t splits = 0, one_way_cuts = 0;
   std::int64_t agent_crashes = 0, coordinator_crashes = 0, world_crashes = 0, skewed_clocks = 0;
-  std::int64_t pauses = 0;
+  std::int64_t pauses = 0, recalls = 0;
 };
 
 /// Is called at once for each event of a simulation.
@@ -123,6 +123,8 @@ class Simulation {
   Tick last_tick() const { return last_tick_; }
   /// The last tick was published, or a coordinator has announced the end.
   bool mission_over() const { return end_announced_ || counted_ >= mission_.timing.tick_count; }
+  /// Whether the operator has sent an agent out of the mission.
+  bool sent_out(AgentId id) const { return operator_.sent_out(id); }
   /// The last moment at which a process was down or cut off, or at which messages were too late or
   /// too few to judge recovery.
   std::optional<Instant> hindered() const { return hindered_; }

@@ -71,6 +71,11 @@ void Simulation::begin(const FaultEvent& event) {
       ++counts_.pauses;
       operator_.want_pause(now_, event.lasts_s);
       return;
+    case kRecall:
+    case kDeparture:
+      ++counts_.recalls;
+      operator_.want_recall(static_cast<AgentId>(event.who), event.kind == kDeparture);
+      return;
   }
 }
 
@@ -91,7 +96,13 @@ void Simulation::send_to_coordinator() {
   if (operator_.idle()) return;
   if (!up(node) || finished(node) || coordinator().looking() || mission_over()) return;
   const auto pause = operator_.message(now_, run_, coordinator());
-  if (pause) deliver(node, *pause, Delivery{Bus::kSwarm, kOperator, {}, nullptr});
+  const Delivery by_operator{Bus::kSwarm, kOperator, {}, nullptr};
+  if (pause) deliver(node, *pause, by_operator);
+  // The operator repeats it; only the first one has an effect.
+  for (const Recall& recall : operator_.take_recalls(run_, coordinator())) {
+    deliver(node, recall, by_operator);
+    deliver(node, recall, by_operator);
+  }
 }
 
 /// An evicted agent has ended, and sends nothing any more.
@@ -139,7 +150,7 @@ void Simulation::supervise_coordinator() {
 
 void Simulation::heal() {
   faults_.heal();
-  operator_.want_no_pause();
+  operator_.want_nothing();
   network_.heal(now_);
   for (Node& node : nodes_) {
     if (!node.up) node.restart = now_;

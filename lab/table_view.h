@@ -50,6 +50,11 @@ inline bool is_forgotten(const RosterEntry& entry, const TableView& by) {
   return entry.author != by.self && entry.forgotten_at(by.answered, by.roster_revision);
 }
 
+/// Whether the agent rests because it was recalled, by the roster that `by` knows.
+inline bool is_recalled(const RosterEntry& entry, const TableView& by) {
+  return entry.recall_revision >= 0 && by.roster_revision >= entry.recall_revision;
+}
+
 /// The first tick, of those that count, at which an agent with a station covers no more; the
 /// greatest number without one.
 inline Tick covers_until(const Mission& mission, AgentId id) {

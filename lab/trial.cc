@@ -107,11 +107,13 @@ void Trial::started(NodeId node, Incarnation incarnation, bool again) {
 void Trial::sends(NodeId node, const Outbox& outbox) {
   if (is_agent(node)) note_tick(node);
   // Computed once for all messages, because adding up c_k takes long.
-  const TableView view = is_agent(node) ? view_of(node) : TableView();
+  // An agent that has finished knows no more about the tick that it stops its vehicle at.
+  const bool takes_part = is_agent(node) && !simulation_.agent(node).finished();
+  const TableView view = takes_part ? view_of(node) : TableView();
   for (const Outgoing& sent : outbox) {
     invariants_.sent(t_s(), sent, view.table != nullptr ? &view : nullptr);
     const auto* command = std::get_if<Command>(&sent.message);
-    if (command != nullptr && is_agent(node)) note_answer(node, *command, view);
+    if (command != nullptr && takes_part) note_answer(node, *command, view);
   }
 }
 
@@ -121,8 +123,9 @@ void Trial::note_tick(NodeId node) {
   // The tick after the last one is not begun.
   if (agent.finished() || agent.tick() == at(node).begun) return;
   at(node).begun = agent.tick();
-  TableView view{agent.author(), agent.coverage()};
+  TableView view{agent.author(), agent.coverage(), nullptr, &agent.counted_roster()};
   view.answered = agent.tick();
+  view.roster_revision = agent.roster_revision();
   view.holds = agent.follower().holds();
   invariants_.began(t_s(), view);
 }
@@ -160,7 +163,7 @@ void Trial::advanced(NodeId node, bool hurries) {
     look_for_recovery(node);
     if (!agent.finished() || at(node).judged) return;
     at(node).judged = true;  // by the state at this moment
-    const bool over = simulation_.mission_over() || evicted(node);
+    const bool over = simulation_.mission_over() || evicted(node) || simulation_.sent_out(node);
     invariants_.finished(t_s(), agent.author(), agent.reason(), over);
   } else if (node == simulation_.world_node()) {
     const World& world = simulation_.world();
@@ -325,7 +328,7 @@ TrialResult Trial::result() {
   figures_.ergodic_metric = simulation_.recorder().facts().ergodic_metric_last;
   figures_.view_error = invariants_.largest_view_error();
   for (NodeId node = 0; is_agent(node); ++node) {
-    figures_.evictions += simulation_.finished(node) && struck(node);
+    figures_.evictions += simulation_.finished(node) && struck(node) && !simulation_.sent_out(node);
   }
   if (figures_.recoveries > 0) {
     figures_.recovery_mean_s = recovery_sum_s_ / static_cast<double>(figures_.recoveries);

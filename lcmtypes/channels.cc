@@ -15,7 +15,8 @@ namespace {
 constexpr std::array<std::string_view, std::variant_size_v<Message>> kNames = {
     "ERGOCAST_HELLO",       "ERGOCAST_MISSION", "ERGOCAST_CONTRIBUTION", "ERGOCAST_AGENT_STATUS",
     "ERGOCAST_TEAM_STATUS", "ERGOCAST_STOP",    "ERGOCAST_WORLD_STATE",  "ERGOCAST_COMMAND",
-    "ERGOCAST_RECORD_ACK",  "ERGOCAST_DIGEST",  "ERGOCAST_PAUSE",        "ERGOCAST_BEACON"};
+    "ERGOCAST_RECORD_ACK",  "ERGOCAST_DIGEST",  "ERGOCAST_PAUSE",        "ERGOCAST_BEACON",
+    "ERGOCAST_RECALL"};
 
 template <class T>
 constexpr bool kPerAgent =

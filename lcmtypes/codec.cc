@@ -83,6 +83,7 @@ const Decoder* decoder_for(std::uint64_t wanted) {
                                        entry<Hello>(),
                                        entry<Stop>(),
                                        entry<Pause>(),
+                                       entry<Recall>(),
                                        entry<Digest>(),
                                        entry<Beacon>(),
                                        entry<Contribution, Averages>(),

@@ -17,6 +17,7 @@
 #include <ergocast/low_sums_t.hpp>
 #include <ergocast/mission_t.hpp>
 #include <ergocast/pause_t.hpp>
+#include <ergocast/recall_t.hpp>
 #include <ergocast/record_ack_t.hpp>
 #include <ergocast/stop_t.hpp>
 #include <ergocast/team_status_t.hpp>
@@ -66,6 +67,9 @@ struct Fields<MissionPart> {
       io.count(entry.since_tick);
       io.count(entry.since_revision);
       io.small(entry.kind, kMaxKinds - 1);
+      io.count_or_none(entry.recall_revision);
+      io.flag(entry.leaves);
+      io.holds(entry.recalled() || !entry.leaves);
     }
     io.bytes(m.plan);
     io.count_or_none(m.stand_by_revision);
@@ -195,6 +199,16 @@ struct Fields<Pause> {
   static void list(auto& io, auto& m) {
     io.bytes(m.signature);
     io.within(m.changes, 0, 2 * static_cast<int>(kMaxHolds));
+  }
+};
+
+template <>
+struct Fields<Recall> {
+  using Generated = recall_t;
+  static void list(auto& io, auto& m) {
+    io.bytes(m.signature);
+    io.within(m.agent, 0, kMaxAgents - 1);
+    io.flag(m.leaves);
   }
 };
 

@@ -55,6 +55,8 @@ Result<Past> read_past(const fs::path& folder, std::vector<std::byte> plan) {
       past.plan.assign(all.begin(), all.end());
     }
   }
+  const auto summary = read_summary(folder);
+  past.rows.recalls = recorded_recalls(folder, summary.value_or(nlohmann::ordered_json()));
   const bool begun = damage || !past.rows.empty() || !past.rows.metrics.empty();
   const bool known = decode_plan(past.plan).has_value();
   if (!known && (begun || !past.plan.empty())) {
@@ -161,7 +163,9 @@ class RunLogger {
         write_file(record_.folder() / kSummaryFile, to_text(summarize(recorder_, context)));
     if (problem) note(problem);
     std::error_code ignored;
-    if (!problem) fs::remove(record_.folder() / kHoldsFile, ignored);
+    for (const char* file : {kHoldsFile, kRecallsFile}) {
+      if (!problem) fs::remove(record_.folder() / file, ignored);
+    }
   }
 
  private:
@@ -183,17 +187,22 @@ class RunLogger {
     }
   }
 
-  /// Writes the plan once it is known, and each hold once it is known. Without a summary, no other
-  /// file shows which ticks count.
+  /// Writes the plan once it is known, and each hold and recall once it is known. Without a
+  /// summary, no other file shows which ticks count, and which agents rest.
   std::optional<std::string> write_mission() {
     const MissionFollower& heard = recorder_.follower();
     if (!heard.mission()) return std::nullopt;
     if (!plan_written_) {
       if (auto problem = write_plan()) return problem;
     }
-    if (std::ranges::equal(heard.holds(), holds_written_)) return std::nullopt;
-    auto problem = write_file(record_.folder() / kHoldsFile, to_text(holds_json(heard.holds())));
-    if (!problem) holds_written_.assign(heard.holds().begin(), heard.holds().end());
+    if (!std::ranges::equal(heard.holds(), holds_written_)) {
+      auto problem = write_file(record_.folder() / kHoldsFile, to_text(holds_json(heard.holds())));
+      if (problem) return problem;
+      holds_written_.assign(heard.holds().begin(), heard.holds().end());
+    }
+    if (recorder_.facts().recalls.size() == recalls_written_) return std::nullopt;
+    auto problem = write_file(record_.folder() / kRecallsFile, to_text(recalls_json(recorder_)));
+    if (!problem) recalls_written_ = recorder_.facts().recalls.size();
     return problem;
   }
 
@@ -222,6 +231,7 @@ class RunLogger {
   bool stuck_ = false, plan_written_ = false, removal_reported_ = false;
   int interruptions_ = 0;
   std::vector<Hold> holds_written_;
+  std::size_t recalls_written_ = 0;
   std::vector<std::byte> plan_of_record_;  // of the record that it continues; empty: any
   Recorder recorder_;
   Tick seen_rows_ = 0;

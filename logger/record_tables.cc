@@ -95,6 +95,7 @@ RowTick RecordTables::replay(const RunData& past, const MissionFollower& followe
     facts_.ergodic_metric_first = facts_.ergodic_metric.front();
     facts_.ergodic_metric_last = facts_.ergodic_metric.back();
   }
+  facts_.recalls = past.recalls;
   RowTick row;
   const Context context{row, follower, reports};
   std::size_t vehicles = 0, expected = mission.starts_m.size();
@@ -124,7 +125,7 @@ void RecordTables::write(const RowTick& row, const TickState& now, const TickSta
                          const MissionFollower& follower, const AgentReports& reports) {
   // A pause that only the world received is lost if its coordinator stops: its ticks then count.
   facts_.held_ticks = std::min(facts_.held_ticks, now.uncounted_ticks);
-  const Context context{row, follower, reports};
+  const Context context{row, follower, reports, now.roster_revision};
   write_trajectory(context, now, next);
   end_row(context);
   if (row.tick <= former_end_.first) return;
@@ -170,12 +171,26 @@ void RecordTables::note_home(const Mission& mission, AgentId id, const Eigen::Ve
   farthest_m = std::max(farthest_m, (x_m - *home_m).norm());
 }
 
+/// Whether an agent rests because it was recalled. It then rests in all later rows, too.
+bool RecordTables::is_recalled(const Context& context, AgentId id) {
+  const Tick tick = context.row.tick;
+  if (const auto known = facts_.recalls.find(id); known != facts_.recalls.end())
+    return tick >= known->second;
+  const bool recalled =
+      std::ranges::any_of(context.follower.roster(), [&](const RosterEntry& entry) {
+        return entry.author.agent == id && entry.recalled_at(context.roster_revision);
+      });
+  if (recalled) facts_.recalls.emplace(id, tick);
+  return recalled;
+}
+
 void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m) {
   const Mission& mission = context.mission();
   const RosterEntry* entry = member(context.follower, id, context.row.tick);
+  const bool covers = entry != nullptr && context.row.counts && !is_recalled(context, id);
   if (rests(mission, id, context.row.counted())) {
     note_home(mission, id, x_m);
-  } else if (entry != nullptr && context.row.counts) {
+  } else if (covers) {
     observer_.see(mission, entry->kind, x_m);
     if (in_cosines_) cosines_.see(*in_cosines_, entry->kind, x_m);
   }

@@ -3,6 +3,7 @@
 // rows of metrics.csv, and the facts of the summary.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
@@ -41,6 +42,8 @@ struct RunFacts {
   /// For each agent with a station (core/mission/station.h): the greatest distance of its vehicle
   /// from there [m]. Recorded ticks of its rest and the end of the mission count.
   std::map<AgentId, double> from_home_m;
+  /// For each agent that was recalled: the first row in which it rests for that reason.
+  std::map<AgentId, Tick> recalls;
 };
 
 /// Which tick a row is of.
@@ -102,11 +105,13 @@ class RecordTables {
     const RowTick& row;
     const MissionFollower& follower;
     const AgentReports& reports;
+    std::int64_t roster_revision = -1;  // the world's; −1: not known
     const Mission& mission() const { return *follower.mission(); }
   };
 
   void write_trajectory(const Context& context, const TickState& now, const TickState& next);
   void note_home(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m);
+  bool is_recalled(const Context& context, AgentId id);
   void observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m);
   void end_row(const Context& context);
   void write_due_metrics(const Context& context);

@@ -141,6 +141,12 @@ std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
 
 }  // namespace
 
+bool RunData::rests(const Mission& mission, AgentId id, Tick tick) const {
+  const auto recall = recalls.find(id);
+  return (recall != recalls.end() && tick >= recall->second) ||
+         ergocast::rests(mission, id, counted_ticks(holds, tick));
+}
+
 double RunData::end_s() const {
   double end_s = metrics.empty() ? 0 : metrics.back().t_s;
   for (const auto& [agent, track] : tracks) end_s = std::max(end_s, track.back().t_s);
@@ -189,7 +195,9 @@ Result<RunData> read_run(const std::filesystem::path& run_dir) {
   RunData run;
   if (auto problem = read_up_to_damage(run_dir, run)) return failure(*problem);
   const auto summary = read_summary(run_dir);
-  run.holds = recorded_holds(run_dir, summary.value_or(nlohmann::ordered_json()));
+  const auto known = summary.value_or(nlohmann::ordered_json());
+  run.holds = recorded_holds(run_dir, known);
+  run.recalls = recorded_recalls(run_dir, known);
   return run;
 }
 
@@ -228,7 +236,7 @@ Coefficients coverage_of(const RunData& run, const Mission& mission) {
     const Sensor& sensor = sensors.of(planned_kind(mission, agent));
     for (const TrackPoint& point : track) {
       if (!mission.domain.contains(point.x_m) || is_held(run.holds, point.tick)) continue;
-      if (rests(mission, agent, counted_ticks(run.holds, point.tick))) continue;
+      if (run.rests(mission, agent, point.tick)) continue;
       samples += sensor.sample(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
                                sums.data());
     }

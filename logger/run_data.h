@@ -43,7 +43,11 @@ struct RunData {
   std::map<AgentId, Track> tracks;  ///< without empty ones
   std::vector<MetricsRow> metrics;
   std::vector<Hold> holds;  ///< ticks that do not count, from holds.json or summary.json
+  /// From which tick on a recalled agent rests, from recalls.json or summary.json.
+  std::map<AgentId, Tick> recalls;
 
+  /// Whether an agent rests at a tick: by the plan, or because it was recalled.
+  bool rests(const Mission& mission, AgentId id, Tick tick) const;
   bool empty() const { return tracks.empty(); }
   double end_s() const;  ///< time of the last row, 0 if there is none
 };

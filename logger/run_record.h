@@ -22,6 +22,8 @@ inline constexpr const char* kScenarioFile = "scenario.textproto";
 inline constexpr const char* kPlanFile = "plan.binpb";
 /// The ticks that do not count, until a summary has them.
 inline constexpr const char* kHoldsFile = "holds.json";
+/// From which ticks recalled agents rest, likewise.
+inline constexpr const char* kRecallsFile = "recalls.json";
 
 /// File `segment` of a table: trajectory.csv, trajectory-001.csv, trajectory-002.csv …
 std::filesystem::path segment_file(const std::filesystem::path& folder, const std::string& table,

@@ -27,11 +27,11 @@ constexpr double kNotableShare = 0.01;
 /// The relative tolerance of a distance, for rounding.
 constexpr double kRounding = 1e-9;
 /// The limits of a summary that is read again: several times the size for the largest roster.
-/// Limit (Record): length of `summary.json` and `holds.json` [bytes]. Beyond it: `verify`, `report`
-/// and other commands refuse the record.
+/// Limit (Record): length of `summary.json`, `holds.json` and `recalls.json` [bytes]. Beyond it:
+/// `verify`, `report` and other commands refuse the record.
 constexpr std::size_t kMostSummaryBytes = std::size_t{16} << 20;
-/// Limit (Record): values in `summary.json` and `holds.json`. Beyond it: `verify`, `report` and
-/// other commands refuse the record.
+/// Limit (Record): values in `summary.json`, `holds.json` and `recalls.json`. Beyond it: `verify`,
+/// `report` and other commands refuse the record.
 constexpr std::size_t kMostSummaryValues = 1'000'000;
 
 /// JSON has no infinity and no NaN.
@@ -189,6 +189,7 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
 void add_ticks(const Recorder& recorder, Json& summary) {
   const RunFacts& facts = recorder.facts();
   summary["ticks"] = facts.ticks - facts.held_ticks;
+  if (!facts.recalls.empty()) summary["recalls"] = recalls_json(recorder);
   const auto holds = recorder.follower().holds();
   if (holds.empty()) return;
   summary["held_ticks"] = facts.held_ticks;
@@ -260,6 +261,22 @@ Result<Json> read_json(const std::filesystem::path& file) {
   }
 }
 
+/// Reads a list of recalls_json(); empty if its content is impossible.
+std::map<AgentId, Tick> recalls_in(const Json& list) {
+  std::map<AgentId, Tick> recalls;
+  if (!list.is_array()) return recalls;
+  for (const Json& recall : list) {
+    const auto number = [&](const char* key) {
+      const Json value = recall.is_object() ? recall.value(key, Json()) : Json();
+      return value.is_number_unsigned() ? value.get<Tick>() : -1;
+    };
+    const Tick agent = number("agent"), from = number("from_tick");
+    if (agent < 0 || agent >= kMaxAgents || from < 0) return {};
+    recalls.emplace(static_cast<AgentId>(agent), from);
+  }
+  return recalls;
+}
+
 /// Reads a list of holds_json(); empty if its content is impossible.
 std::vector<Hold> holds_in(const Json& list) {
   std::vector<Hold> holds;
@@ -309,6 +326,26 @@ std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir, const Jso
   const auto early = read_json(run_dir / kHoldsFile);
   if (early && early->is_array()) return holds_in(*early);
   return summary.is_object() ? holds_in(summary.value("holds", Json())) : std::vector<Hold>();
+}
+
+Json recalls_json(const Recorder& recorder) {
+  Json list = Json::array();
+  const auto& roster = recorder.follower().roster();
+  for (const auto& [id, from_tick] : recorder.facts().recalls) {
+    const bool sent_out = std::ranges::any_of(roster, [id = id](const RosterEntry& entry) {
+      return entry.author.agent == id && entry.leaves;
+    });
+    list.push_back({{"agent", id}, {"from_tick", from_tick}, {"sent_out", sent_out}});
+  }
+  return list;
+}
+
+std::map<AgentId, Tick> recorded_recalls(const std::filesystem::path& run_dir,
+                                         const Json& summary) {
+  const auto early = read_json(run_dir / kRecallsFile);
+  if (early && early->is_array()) return recalls_in(*early);
+  return summary.is_object() ? recalls_in(summary.value("recalls", Json()))
+                             : std::map<AgentId, Tick>();
 }
 
 std::string to_text(const Json& summary) {

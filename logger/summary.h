@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -44,6 +45,16 @@ nlohmann::ordered_json holds_json(std::span<const Hold> holds);
 /// exists until the logger writes a summary. Empty if the content is impossible.
 std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir,
                                  const nlohmann::ordered_json& summary);
+
+/// The agents that were recalled, as JSON: each with the first tick at which it rests for that
+/// reason, and whether it was sent out of the mission.
+nlohmann::ordered_json recalls_json(const Recorder& recorder);
+
+/// From which tick on the recalled agents of a run directory rest: from recalls.json, else from
+/// `summary`. recalls.json exists until the logger writes a summary. Empty if the content is
+/// impossible.
+std::map<AgentId, Tick> recorded_recalls(const std::filesystem::path& run_dir,
+                                         const nlohmann::ordered_json& summary);
 
 /// The text of the file. Bytes that are not UTF-8 are replaced, because the network may bring some.
 std::string to_text(const nlohmann::ordered_json& summary);

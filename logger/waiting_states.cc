@@ -16,6 +16,7 @@ void WaitingStates::take(const WorldState& part, bool several_drivers) {
   } else {
     state.parts.begin(part);
     state.uncounted_ticks = part.uncounted_ticks;
+    state.roster_revision = part.roster_revision;
     state.vehicles.clear();
   }
   for (const Vehicle& vehicle : part.vehicles_in_part()) state.vehicles[vehicle.id] = vehicle;

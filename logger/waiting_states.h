@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 
@@ -19,7 +20,8 @@ inline constexpr std::size_t kMaxWaitingStates = 1024;
 /// The world at one tick, as far as its parts have arrived.
 struct TickState {
   ArrivedParts parts;
-  Tick uncounted_ticks = 0;  ///< before it; as its first part has it
+  Tick uncounted_ticks = 0;          ///< before it; as its first part has it
+  std::int64_t roster_revision = 0;  ///< likewise
   std::map<AgentId, Vehicle> vehicles;
 };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Decides by its tick, without a common clock, whether an operator's command is recent enough.
 //
-// The signature of STOP or PAUSE never expires. So an outsider could record a command that no
-// process obeyed, and send it again at a chosen moment. A command therefore names the newest tick
-// that its sender knew. A receiver refuses it if it already knew a later tick some time ago, by its
-// own clock. The alternative, a time of day in the command, would need hosts with equal clocks.
+// The signature of STOP, PAUSE or RECALL never expires. So an outsider could record a command that
+// no process obeyed, and send it again at a chosen moment. A command therefore names the newest
+// tick that its sender knew. A receiver refuses it if it already knew a later tick some time ago,
+// by its own clock. The alternative, a time of day in the command, would need hosts with equal
+// clocks.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,8 @@ class CommandWindow {
  public:
   /// A command is obeyed for at least so long after its tick has passed, and at most for twice as
   /// long.
-  /// Limit (Time): age up to which a STOP or PAUSE of an operator is obeyed [s]. Beyond it: it may
+  /// Limit (Time): age up to which a STOP, PAUSE or RECALL of an operator is obeyed
+  /// [s]. Beyond it: it may
   /// be refused with `late`; after twice this time it always is.
   static constexpr std::chrono::seconds kLength{5};
 

@@ -23,7 +23,7 @@ namespace ergocast {
 /// Limit (Messages): vehicles in a part of WORLD_STATE. Beyond it: the state has several parts.
 inline constexpr int kMaxVehiclesPerState = 16;
 /// Limit (Messages): roster entries in a part of MISSION. Beyond it: the mission has several parts.
-inline constexpr int kMaxRosterEntriesPerMessage = 8;
+inline constexpr int kMaxRosterEntriesPerMessage = 6;
 /// Limit (Messages): entries of a digest. Beyond it: entries take turns.
 inline constexpr int kMaxDigestEntriesPerMessage = 40;
 /// Limit (Messages): bytes of the plan in a part of MISSION. Beyond it: the mission has several
@@ -110,8 +110,8 @@ struct Digest {
   std::array<DigestEntry, kMaxDigestEntriesPerMessage> entries;
 };
 
-/// An agent with a station (core/mission/station.h) may also be kReturning, on its way home, or
-/// kResting.
+/// An agent that has a station (core/mission/station.h) or was recalled may also be kReturning, on
+/// its way home, or kResting.
 enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished, kReturning, kResting };
 const char* to_string(AgentPhase phase);
 /// Whether it answers ticks.
@@ -170,6 +170,15 @@ struct Pause {
   /// How many beginnings and ends of holds are already named (named_changes(),
   /// core/mission/hold.h). An even number pauses, an odd one resumes.
   std::int32_t changes = 0;
+  Signature signature{};
+};
+
+/// Sends an agent home for the rest of the mission, or out of it. Only the coordinator obeys, and
+/// only once: a recording names an agent that was recalled already, or an old tick.
+struct Recall {
+  Header header;  ///< header.tick: the newest that the operator knows
+  AgentId agent = 0;
+  bool leaves = false;  ///< out of the mission; its number stays empty
   Signature signature{};
 };
 
@@ -239,7 +248,7 @@ struct RecordAck {
 inline constexpr Tick kRecordWindowTicks = 64;
 
 using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
-                             WorldState, Command, RecordAck, Digest, Pause, Beacon>;
+                             WorldState, Command, RecordAck, Digest, Pause, Beacon, Recall>;
 
 enum class Bus { kSwarm, kWorld, kCommand };
 inline constexpr int kBusCount = 3;

@@ -33,6 +33,7 @@ std::uint64_t hash_of(const MissionPart& part) {
     add(entry.active_from), add(entry.active_until);
     add(entry.forgotten), add(entry.since_tick), add(entry.since_revision);
     add(entry.kind);
+    add(entry.recall_revision), add(entry.leaves);
   }
   for (const Hold& hold : part.holds) add(hold.from), add(hold.until);
   for (const std::byte byte : part.plan) add(byte);

@@ -103,6 +103,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     coordinator/farewell_test.cc
     coordinator/mission_pages_test.cc
     coordinator/pausing_test.cc
+    coordinator/recalling_test.cc
     coordinator/takeover_test.cc
     sim/command_history_test.cc
     sim/world_resume_test.cc
@@ -245,4 +246,5 @@ ergocast_test(NAME lab_tests LABELS lab
     lab/large_team_test.cc
     lab/message_loss_test.cc
     lab/pause_test.cc
+    lab/recall_test.cc
   LIBS ergocast_lab ergocast::scenario)

@@ -98,6 +98,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/commands/status_test.cc
     process/home_test.cc
     process/pause_test.cc
+    process/recall_test.cc
     process/commands/stop_test.cc
     process/commands/study_test.cc
     process/team_size_test.cc

@@ -76,6 +76,7 @@ std::optional<std::string> Launcher::start() {
   for (int id = 0; id < setup_.agents; ++id) {
     plan(Role::kAgent, "agent-" + std::to_string(id), "ergocast-agent",
          {"--id", std::to_string(id)});
+    processes_.back().agent = id;
     if (setup_.kinds.empty()) continue;
     for (const std::string& word :
          {std::string("--kind"), setup_.kinds[static_cast<std::size_t>(id)]})
@@ -134,6 +135,7 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   process.end_noted = true;
   const auto code = process.child->exit_code();
   if (implies_the_end(process)) expect_end(now);
+  if (process.departs) return display_.print(process.name + " was sent out of the mission");
   if (ended_as_expected(process)) return;
   const bool refused = code == kExitUnavailable || !process.child->executed();
   // A process that exits normally may have received the mission's end before us.
@@ -232,6 +234,14 @@ bool Launcher::all_ended() {
   return std::all_of(processes_.begin(), processes_.end(), [this](Process& process) {
     return (!process.child || !process.child->running()) && (end_expected_ || !process.restart_at);
   });
+}
+
+void Launcher::expect_departure(AgentId id) {
+  for (Process& process : processes_) {
+    if (process.agent != id || process.departs) continue;
+    process.departs = true;
+    process.restart_at.reset();
+  }
 }
 
 void Launcher::expect_end(Instant now) {

@@ -61,6 +61,9 @@ class Launcher {
   /// Call when the mission ends: attend() restarts no more processes and waits until they exit.
   void expect_end(Instant now);
 
+  /// The operator has sent an agent out of the mission: its process is not started again.
+  void expect_departure(AgentId id);
+
   /// Marks the mission as failed; the first reason counts.
   void fail(std::string reason);
   const std::optional<std::string>& failure() const { return failure_; }
@@ -87,6 +90,8 @@ class Launcher {
     Role role;
     Child::Program program;
     std::optional<Child> child;
+    AgentId agent = kUnassigned;  // kAgent: its number
+    bool departs = false;         // it was sent out of the mission
     bool end_noted = false, given_up = false;
     int restarts = 0;  // after the process ran and ended
     std::optional<Instant> restart_at;

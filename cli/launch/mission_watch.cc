@@ -92,6 +92,14 @@ void MissionWatch::reach(Tick tick, Instant now) {
   tick_since_ = now;
 }
 
+std::vector<AgentId> MissionWatch::sent_out() const {
+  std::vector<AgentId> agents;
+  for (const RosterEntry& entry : me_.follower().roster()) {
+    if (entry.leaves) agents.push_back(entry.author.agent);
+  }
+  return agents;
+}
+
 std::optional<std::string> MissionWatch::overdue(Instant now) const {
   const bool waiting = timing_.pace == Pace::kLockstep && stage_ == Stage::kRunning;
   if (!waiting || now - tick_since_ < seconds(timing_.lockstep_timeout_s)) return std::nullopt;

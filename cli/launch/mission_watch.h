@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/operate/stop_request.h"
 #include "cli/watch/progress.h"
@@ -53,6 +54,9 @@ class MissionWatch {
     return stage_ == Stage::kOver && me_.counted(tick_) >= timing_.tick_count;
   }
   const std::string& reason() const { return reason_; }
+
+  /// The agents that the operator has sent out of the mission.
+  std::vector<AgentId> sent_out() const;
 
   /// Lockstep: the error text of a tick that was not answered in time.
   std::optional<std::string> overdue(Instant now) const;

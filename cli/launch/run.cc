@@ -72,6 +72,7 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
       mission.stop(false, "Ctrl-C or SIGTERM");
     }
     if (mission.stopping()) launcher.expect_end(now());
+    for (const AgentId id : mission.sent_out()) launcher.expect_departure(id);
     launcher.attend(now(), mission.stage());
     if (page != nullptr) page->attend(now());
     // Without a coordinator no other process detects an overdue tick.

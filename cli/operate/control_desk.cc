@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/operate/pause_order.h"
+#include "cli/operate/recall_order.h"
 #include "cli/operate/stop_order.h"
 
 namespace ergocast::cli {
@@ -164,6 +165,9 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
       return stop(false);
     case ControlAct::kStopNow:
       return stop(true);
+    case ControlAct::kHome:
+    case ControlAct::kOut:
+      return std::make_unique<RecallOrder>(request.agent, request.act == ControlAct::kOut, now);
     default:
       return nullptr;
   }

@@ -1,8 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Says in words which vehicles stand.
+// Sentences that several orders share.
 #include "cli/operate/order.h"
 
 namespace ergocast::cli {
+namespace {
+
+/// How long to wait for the whole mission; agents of a large team send it in turn.
+constexpr std::chrono::seconds kMissionPatience{20};
+
+}  // namespace
+
+OrderReport waiting_for_mission(const MonitoredRun& team, Instant::duration waited) {
+  using State = OrderReport::State;
+  if (team.over()) return {State::kFailed, "the mission is over: " + team.reason()};
+  if (waited < kMissionPatience) return {State::kSent, "waiting for the mission"};
+  return {State::kFailed,
+          team.knows_mission()
+              ? "the mission has not begun: it waits for its quorum, and no vehicle moves"
+              : "the mission was not received: is its coordinator running?"};
+}
 
 std::string standing_text(const MonitoredRun& team) {
   const MonitoredRun::Standing vehicles = team.standing();

@@ -46,6 +46,9 @@ class Order {
   virtual OrderReport report(const MonitoredRun& team, Instant now) const = 0;
 };
 
+/// The report of an order that has waited so long for the mission.
+OrderReport waiting_for_mission(const MonitoredRun& team, Instant::duration waited);
+
 /// "4 of 6 stand, 1 circles; agent 2 still moves", of the newest states of the world; a fixed wing
 /// cannot stand.
 std::string standing_text(const MonitoredRun& team);

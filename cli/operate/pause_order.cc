@@ -14,8 +14,6 @@ namespace {
 using namespace std::chrono_literals;
 using State = OrderReport::State;
 
-/// How long to wait for the whole mission; agents of a large team send it in turn.
-constexpr auto kMissionPatience = 20s;
 constexpr auto kAskPeriod = 100ms;
 
 std::string in_seconds(double seconds) {
@@ -60,21 +58,12 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
 }
 
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {
-  if (!changes_) return without_mission(team, now);
+  if (!changes_) return waiting_for_mission(team, now - since_);
   if (team.over()) return {State::kFailed, "the mission had already ended: " + team.reason()};
   if (!is_named(team) && was_named_)
     return {State::kDone, pauses_ ? "the mission was resumed" : "the mission was paused again"};
   if (!is_named(team)) return unnamed(team, now);
   return pauses_ ? paused(team) : resumed(team);
-}
-
-OrderReport PauseOrder::without_mission(const MonitoredRun& team, Instant now) const {
-  if (team.over()) return {State::kFailed, "the mission is over: " + team.reason()};
-  if (now - since_ < kMissionPatience) return {State::kSent, "waiting for the mission"};
-  return {State::kFailed,
-          team.knows_mission()
-              ? "the mission has not begun: it waits for its quorum, and no vehicle moves"
-              : "the mission was not received: is its coordinator running?"};
 }
 
 OrderReport PauseOrder::unnamed(const MonitoredRun& team, Instant now) const {

@@ -21,7 +21,6 @@ class PauseOrder final : public Order {
 
  private:
   bool is_named(const MonitoredRun& team) const;
-  OrderReport without_mission(const MonitoredRun& team, Instant now) const;
   OrderReport unnamed(const MonitoredRun& team, Instant now) const;
   OrderReport paused(const MonitoredRun& team) const;
   OrderReport resumed(const MonitoredRun& team) const;

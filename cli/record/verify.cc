@@ -83,6 +83,10 @@ std::string what_cannot_be_repeated(const Json& summary, const Mission& mission)
     return "its roster has " + std::to_string(roster.size()) + " entries for " +
            std::to_string(agents) + " agents: agents were restarted, or never came";
   }
+  if (const auto recalls = summary.value("recalls", Json::array()); !recalls.empty()) {
+    return "the operator recalled agent " + recalls.at(0).at("agent").dump() + " at tick " +
+           recalls.at(0).at("from_tick").dump();
+  }
   for (const auto& agent : roster) {
     const std::string who = "agent " + agent.at("id").dump();
     if (!agent.at("active_until").is_null()) {

@@ -48,6 +48,7 @@ constexpr Count kCounts[] = {
     {"world_crashes", "worlds crashed",
      [](TrialFigures& f) -> std::int64_t& { return f.world_crashes; }},
     {"pauses", "pauses", [](TrialFigures& f) -> std::int64_t& { return f.pauses; }},
+    {"recalls", "recalls", [](TrialFigures& f) -> std::int64_t& { return f.recalls; }},
     {"held_ticks", "ticks held", [](TrialFigures& f) -> std::int64_t& { return f.held_ticks; }},
     {"skewed_clocks", "clocks skewed",
      [](TrialFigures& f) -> std::int64_t& { return f.skewed_clocks; }},

@@ -55,7 +55,7 @@ void MonitoredRun::on(const AgentStatus& status, const Arrival& arrival) {
   const Author author{status.header.sender, status.header.incarnation};
   if (!arrival.fresh || author.agent < 0) return;
   if (agents_.size() >= kMaxIncarnations && !agents_.contains(author)) return;
-  agents_[author] = status.phase == AgentPhase::kFinished;
+  agents_[author] = status.phase;
 }
 
 /// Each robot may have its own driver, which has its own ticks.
@@ -124,8 +124,9 @@ bool MonitoredRun::there(AgentId process, Instant now) const {
 
 std::vector<std::string> MonitoredRun::agents_there(Instant now) const {
   std::vector<std::string> names;
-  for (const auto& [author, finished] : agents_) {
-    if (!finished && !silent(author, now)) names.push_back(name_of(author.agent));
+  for (const auto& [author, phase] : agents_) {
+    if (phase != AgentPhase::kFinished && !silent(author, now))
+      names.push_back(name_of(author.agent));
   }
   return names;
 }
@@ -147,10 +148,23 @@ std::vector<std::string> MonitoredRun::still_moving(Instant now) const {
 
 std::vector<std::string> MonitoredRun::lost(Instant now) const {
   std::vector<std::string> names;
-  for (const auto& [author, finished] : agents_) {
-    if (!finished && silent(author, now)) names.push_back(name_of(author.agent));
+  for (const auto& [author, phase] : agents_) {
+    if (phase != AgentPhase::kFinished && silent(author, now))
+      names.push_back(name_of(author.agent));
   }
   return names;
+}
+
+const RosterEntry* MonitoredRun::present_member(AgentId id) const {
+  const auto at = std::ranges::find_if(roster(), [id](const RosterEntry& entry) {
+    return entry.author.agent == id && entry.active_until < 0;
+  });
+  return at == roster().end() ? nullptr : &*at;
+}
+
+AgentPhase MonitoredRun::phase_of(const Author& author) const {
+  const auto at = agents_.find(author);
+  return at == agents_.end() ? AgentPhase::kJoining : at->second;
 }
 
 std::string MonitoredRun::mission_time(Tick tick) const {

@@ -82,6 +82,12 @@ class MonitoredRun {
   std::vector<std::string> still_moving(Instant now) const;
   /// Members that are silent and have not reported that they finished.
   std::vector<std::string> lost(Instant now) const;
+  /// In ascending order of authors; as the whole MISSION has it.
+  const std::vector<RosterEntry>& roster() const { return me_.follower().roster(); }
+  /// The entry of the present member under a number; null if there is none.
+  const RosterEntry* present_member(AgentId id) const;
+  /// The phase that a member has reported last; kJoining: none.
+  AgentPhase phase_of(const Author& author) const;
   int agents() const { return static_cast<int>(agents_.size()); }
 
  private:
@@ -104,7 +110,7 @@ class MonitoredRun {
 
   Participant me_;
   Instant since_;
-  std::map<Author, bool> agents_;            // whether the agent reported that it finished
+  std::map<Author, AgentPhase> agents_;      // as each reported last; kJoining: it reported none
   std::map<Author, bool> processes_;         // worlds and loggers: whether they reported their end
   std::map<AgentId, VehicleSeen> vehicles_;  // in the newest state that names it
   Tick tick_ = 0;

@@ -127,6 +127,11 @@ void CoverageRow::replace(const Contribution& theirs, const GainRule& rule) {
   sum_up();
 }
 
+void CoverageRow::postpone(const Contribution& theirs) {
+  blocks_[static_cast<std::size_t>(theirs.block)].postpone(theirs.next_broadcast_tick);
+  sum_up();
+}
+
 void CoverageRow::write(Contribution& out, std::size_t size) const {
   const CoverageBlock& held = block(out.block);
   held.write_header(out);

@@ -5,6 +5,7 @@
 // messages. A row that is sampled keeps all its sums in one array instead.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -69,6 +70,10 @@ class CoverageBlock {
   void replace(const Contribution& theirs, const GainRule& rule);
   /// Takes over a newer block without gains.
   void replace(const Contribution& theirs);
+  /// Its author will broadcast only at a later tick, because it rests until then.
+  void postpone(Tick next_broadcast_tick) {
+    next_broadcast_tick_ = std::max(next_broadcast_tick_, next_broadcast_tick);
+  }
   /// One more step, whose sample the row has.
   void add_step() { ++steps_; }
   void forgo_gains() { gained_steps_ = 0; }
@@ -136,6 +141,8 @@ class CoverageRow {
 
   /// Takes over a newer block.
   void replace(const Contribution& theirs, const GainRule& rule);
+  /// Takes over when the block with the same steps comes next, if that is later than announced.
+  void postpone(const Contribution& theirs);
   /// Sets all that the row has of the block `out.block`, except for its elapsed time. The message
   /// already has its block and encoding.
   /// @param size  how many numbers this block has on the wire

@@ -146,7 +146,9 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   }
   CoverageRow* const row = find_or_add(theirs.author());
   if (row == nullptr) return Merge::kRefusedLimit;
-  if (theirs.steps <= row->block(theirs.block).steps()) return Merge::kStale;
+  const CoverageBlock& held = row->block(theirs.block);
+  if (theirs.steps == held.steps()) row->postpone(theirs);
+  if (theirs.steps <= held.steps()) return Merge::kStale;
   row->replace(theirs, gain_rule_);
   return Merge::kNewer;
 }

@@ -52,10 +52,11 @@ class CoverageTable {
   /// From now on the row of `author`, if there is one, counts with this quality. The default is 1.
   void set_quality(const Author& author, double quality);
 
-  /// Merges one block. These are refused without effect: another encoding; another number of modes;
-  /// a block that does not exist or has another length; numbers that are not possible
-  /// (core/law/coverage_row.h); more steps than `max_steps` (a forged future would win for ever); a
-  /// new row for a full table.
+  /// Merges one block. One with the steps of the block held only postpones its author's next
+  /// broadcast, if it announces a later one. These are refused without effect: another encoding;
+  /// another number of modes; a block that does not exist or has another length; numbers that are
+  /// not possible (core/law/coverage_row.h); more steps than `max_steps` (a forged future would win
+  /// for ever); a new row for a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
   /// One block of a row as its author sent it, with the header except for the run. If the block is

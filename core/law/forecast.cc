@@ -73,7 +73,7 @@ void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>
     while (entry < roster.size() && roster[entry].author < author) ++entry;
     if (entry == roster.size() || roster[entry].author != author || author == self_) continue;
     if (!table.counts(row) || !is_newest(roster, entry, tick)) continue;
-    if (tick >= rest_from(author.agent)) continue;
+    if (tick >= rest_from(author.agent) || roster[entry].recalled_at(revision_)) continue;
     outlooks_[row].any = true;
     if (dead_reckons_) outlooks_[row].track = extended_track(table, row, roster[entry]);
   }

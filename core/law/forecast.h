@@ -57,6 +57,10 @@ class Forecast {
   /// own vehicle, for a tick that is already known, and outside the domain.
   void see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m);
 
+  /// The revision of the roster that the world uses from now on: it decides which of the recalled
+  /// agents rest.
+  void note_revision(std::int64_t revision) { revision_ = revision; }
+
   /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if it counts,
   /// its gains are possible, and its author is active in the roster without a newer incarnation and
   /// does not rest: n is 1 + the number of such rows, for each block. Allocates only for a
@@ -88,6 +92,7 @@ class Forecast {
   LookAhead look_ahead_;
   bool dead_reckons_;
   std::size_t most_places_;
+  std::int64_t revision_ = 0;
   std::vector<Tick> rest_from_;  // by number, where any agent has a station
   std::map<AgentId, RowTrack> tracks_;
   std::uint64_t looks_ = 0;        // calls of look_ahead()

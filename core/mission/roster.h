@@ -16,8 +16,18 @@ struct RosterEntry {
   Tick since_tick = 0;              ///< … from this tick on, …
   std::int64_t since_revision = 0;  ///< … once the world uses this revision or a later one
   int kind = 0;                     ///< of core/mission/kinds.h
+  /// The operator has sent it home, and it rests there once the world uses this revision or a later
+  /// one; −1: it was not sent home.
+  std::int64_t recall_revision = -1;
+  bool leaves = false;  ///< it was sent out of the mission; then it is also recalled
   bool active_at(Tick tick) const {
     return tick >= active_from && (active_until < 0 || tick < active_until);
+  }
+  bool recalled() const { return recall_revision >= 0; }
+  /// Whether it rests at a tick for which the world uses roster `revision`: it covers and
+  /// broadcasts no more, and no teammate forecasts it. Its coverage still counts.
+  bool recalled_at(std::int64_t revision) const {
+    return recalled() && revision >= recall_revision;
   }
   /// Whether its coverage does not count at a tick for which the world uses roster `revision`. All
   /// agents that receive the world's messages agree on it, even if some know a newer roster.

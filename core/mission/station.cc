@@ -38,6 +38,12 @@ std::optional<Eigen::Vector3d> station_of(const Mission& mission, AgentId id) {
   return kind->stations_m[std::min(static_cast<std::size_t>(place), count - 1)];
 }
 
+std::optional<Eigen::Vector3d> home_of(const Mission& mission, AgentId id) {
+  if (const auto station_m = station_of(mission, id)) return station_m;
+  const auto at = static_cast<std::size_t>(id);
+  return at < mission.starts_m.size() ? std::optional(mission.starts_m[at]) : std::nullopt;
+}
+
 bool any_station(const Mission& mission) {
   return std::ranges::any_of(mission.kinds,
                              [](const AgentKind& kind) { return !kind.stations_m.empty(); });

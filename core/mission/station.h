@@ -11,6 +11,9 @@
 // plan alone, so all processes know it without a message. The agent itself decides when it goes
 // home, core/motion/way_home.h.
 //
+// An agent that the operator sends home rests from another tick on (RosterEntry::recalled_at). It
+// then goes home whether it has a station or not.
+//
 // A station belongs to an agent's number, as a vehicle does, whichever process drives it. Numbers
 // beyond the plan have none.
 #pragma once
@@ -25,7 +28,11 @@ namespace ergocast {
 /// Where agent `id` is at the end, if it has a station.
 std::optional<Eigen::Vector3d> station_of(const Mission& mission, AgentId id);
 
-/// Whether any agent has one.
+/// Where agent `id` goes when the operator sends it home: to its station, or else where it begins
+/// by the plan. Nothing for a number beyond the plan.
+std::optional<Eigen::Vector3d> home_of(const Mission& mission, AgentId id);
+
+/// Whether any agent has a station.
 bool any_station(const Mission& mission);
 
 /// R of agent `id`; the greatest number if it has no station.

@@ -44,7 +44,7 @@ double closing_s(double response_s, double dt_s) {
 
 WayHome::WayHome(const Mission& mission, AgentId id)
     : motion_(motion_of(mission, id)),
-      home_m_(station_of(mission, id).value()),
+      home_m_(home_of(mission, id).value()),
       rest_from_(rest_from(mission, id)),
       speed_mps_(home_speed_mps(mission, id)),
       slack_s_(slack_s(mission)),

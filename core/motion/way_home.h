@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way home of an agent that has a station, core/mission/station.h: when it begins, and the
-// velocity that the agent asks the filter for.
+// The way home of an agent: when it begins for an agent that has a station
+// (core/mission/station.h), and the velocity that the agent asks the filter for. An agent that the
+// operator sends home goes at once.
 //
 // At a tick t that counts, from a place whose way home is w long, an agent goes home if
 //
@@ -28,7 +29,7 @@ namespace ergocast {
 
 class WayHome {
  public:
-  /// @pre the agent has a station
+  /// @pre the agent has a home, home_of()
   WayHome(const Mission& mission, AgentId id);
 
   /// An upper bound of the time that the way home takes from `x_m` without others in the way [s];
@@ -36,7 +37,7 @@ class WayHome {
   double needed_s(const Eigen::Vector3d& x_m) const;
 
   /// Whether the agent goes home at a tick, by its number among those that count. Once it does, it
-  /// goes on.
+  /// goes on. @pre the agent has a station
   bool begun(Tick counted, const Eigen::Vector3d& x_m);
   bool begun() const { return begun_; }
 

@@ -100,8 +100,7 @@ class McapExport {
         shown = 1 + static_cast<int>(std::floor(last_s / end_s * kCoveragePictures));
       }
       last_s = point.t_s;
-      if (!mission_.domain.contains(point.x_m) ||
-          rests(mission_, agent, counted_ticks(record_.run.holds, point.tick)))
+      if (!mission_.domain.contains(point.x_m) || record_.run.rests(mission_, agent, point.tick))
         return;
       samples += sensors.of(planned_kind(mission_, agent))
                      .sample(BasisAt(point.x_m, mission_.domain, mission_.basis), mission_.basis, 1,

@@ -57,20 +57,21 @@ WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi"
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
-WRAPPED(void, receive_at_agent, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, receive_at_agent, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconENS_6RecallEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSJ_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
 WRAPPED(void, advance, "_ZN8ergocast5Agent7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Agent*, Instant, Outbox&)
 WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*)
 WRAPPED(void, coordinate, "_ZN8ergocast11Coordinator7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Coordinator*, Instant, Outbox&)
 WRAPPED(void, turn_world, "_ZN8ergocast5World7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", World*, Instant, Outbox&)
 WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const World*)
-WRAPPED(void, receive_at_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
-WRAPPED(void, receive_at_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, receive_at_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconENS_6RecallEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSJ_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, receive_at_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconENS_6RecallEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSJ_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
 WRAPPED(bool, is_held, "_ZN8ergocast7is_heldESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, counted_ticks, "_ZN8ergocast13counted_ticksESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, tick_after, "_ZN8ergocast10tick_afterESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
 WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
 WRAPPED(bool, goes_home, "_ZN8ergocast7WayHome5begunElRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEE", WayHome*, Tick, const Eigen::Vector3d&)
+WRAPPED(Eigen::Vector3d, go_home, "_ZN8ergocast7WayHome12velocity_mpsERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEES5_", WayHome*, const Eigen::Vector3d&, const Eigen::Vector3d&)
 WRAPPED(bool, filters_again, "_ZN8ergocast13filters_againERKNS_7MissionE", const Mission&)
 WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
 WRAPPED(void, make_book, "_ZN8ergocast10BeaconBookC1ERKNS_7MissionERKNS_6AuthorEl", BeaconBook*, const Mission&, const Author&, std::int64_t)
@@ -292,6 +293,12 @@ Tick bug_tick_after(std::span<const Hold> holds, Tick count) {
   return bug("the end does not move") ? count : real_tick_after(holds, count);
 }
 
+Eigen::Vector3d bug_go_home(WayHome* self, const Eigen::Vector3d& x_m,
+                            const Eigen::Vector3d& v_mps) {
+  if (bug("a recalled agent stays where it is")) return {0, 0, 0};
+  return real_go_home(self, x_m, v_mps);
+}
+
 /// A second and a half late.
 bool bug_goes_home(WayHome* self, Tick counted, const Eigen::Vector3d& x_m) {
   return real_goes_home(self, bug("an agent goes home late") ? counted - 15 : counted, x_m);
@@ -358,6 +365,19 @@ void bug_make_table(CoverageTable* self, const Basis& basis, double dt_s, Tick j
   sent_to[self] = {basis, dt_s, joined, {}};
 }
 
+namespace {
+
+/// The same roster, in which no agent was sent home. Those that were sent out still are.
+template <class HasRoster>
+HasRoster without_recalls(HasRoster one) {
+  for (RosterEntry& entry : one.roster) {
+    if (!entry.leaves) entry.recall_revision = -1;
+  }
+  return one;
+}
+
+}  // namespace
+
 void bug_receive_at_agent(Agent* self, const Message& message, Bus bus, AgentId transmitter,
                           Instant now) {
   listener = self;
@@ -370,6 +390,9 @@ void bug_receive_at_agent(Agent* self, const Message& message, Bus bus, AgentId 
     if (taken.header.tick < self->tick()) taken.header.tick = self->tick() + 1;
     return real_receive_at_agent(self, taken, bus, transmitter, now);
   }
+  const auto* part = std::get_if<MissionPart>(&message);
+  if (part != nullptr && bug("recalls are ignored"))
+    return real_receive_at_agent(self, without_recalls(*part), bus, transmitter, now);
   real_receive_at_agent(self, message, bus, transmitter, now);
 }
 
@@ -468,6 +491,9 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table,
   const bool mistakes_it = the_dead_are_foreseen() || foresees_itself() ||
                            bug("a late block becomes the one before") ||
                            bug("a relayed block becomes the one before");
+  if (bug("the recalled are foreseen"))
+    return real_look_ahead(self, table, without_recalls(MissionPart{.roster = roster}).roster, tick,
+                           coverage);
   if (!mistakes_it) return real_look_ahead(self, table, roster, tick, coverage);
   real_look_ahead(self, mistaken(table, tick), roster, tick, coverage);
 }
@@ -540,11 +566,27 @@ Instant bug_next_wakeup(const Agent* self) {
 
 // ---- coordinator and world ----
 
+namespace {
+
+void give_away_closed_numbers(std::vector<RosterEntry>& roster) {
+  for (std::size_t i = 0, count = roster.size(); i < count; ++i) {
+    if (!roster[i].leaves || std::ssize(roster) == kMaxRosterEntriesPerMessage) continue;
+    roster.push_back({{roster[i].author.agent, 1}, roster[i].active_from});
+  }
+}
+
+}  // namespace
+
 void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
   const bool due = self->state() == MissionState::kRunning && self->tick() > kUnderWay;
   if (due && bug("the coordinator panics")) self->end(true, "no reason", now);
   if (due && bug("the coordinator ends too early")) self->end(false, "enough", now);
   real_coordinate(self, now, out);
+  if (!bug("a closed number is given away")) return;
+  for (Outgoing& one : out) {
+    auto* part = std::get_if<MissionPart>(&one.message);
+    if (part != nullptr) give_away_closed_numbers(part->roster);
+  }
 }
 
 void bug_receive_at_coordinator(Coordinator* self, const Message& message, Bus bus,

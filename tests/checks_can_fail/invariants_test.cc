@@ -30,6 +30,8 @@ const char* const kLateBlocks =
     "loss = 0.5\nreordering = 0.5\nreordering_max_s = 3\nswarm_bus_only = 1\nlasting_share = 1";
 const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20";
 const char* const kPauses = "pauses_per_s = 0.3\npause_max_s = 5";
+const char* const kRecalls = "recalls_per_s = 0.3";
+const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
 
 const char* const kCrowd =
@@ -137,7 +139,10 @@ const Plant kPlants[] = {
     {Invariant::kWallsKept, "nobody brakes before walls", "", kWalledWithInertia},
     {Invariant::kWallsKept, "a loiter circle may reach into walls", "", kWalledWithWings},
     {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
+    {Invariant::kRecalledComeHome, "a recalled agent stays where it is", kRecalls, "", "",
+     "--lockstep"},
     {Invariant::kForecastOfWhatIsKnown, "the resting are foreseen", "", kStations},
+    {Invariant::kForecastOfWhatIsKnown, "the recalled are foreseen", kRecalls},
     {Invariant::kSumsBounded, "a sum runs away"},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},
@@ -147,6 +152,7 @@ const Plant kPlants[] = {
     {Invariant::kNoStepCountsTwice, "a sample counts twice"},
     {Invariant::kNothingCountsWhilePaused, "a sample counts while all stand", kPauses},
     {Invariant::kNothingCountsWhilePaused, "one agent ignores pauses", kPauses},
+    {Invariant::kNothingCountsWhilePaused, "recalls are ignored", kRecalls, "", "", "--lockstep"},
     {Invariant::kWhatIsNotPausedCounts, "one agent goes on later", kPauses},
     {Invariant::kNobodyMovesWhilePaused, "an agent creeps on", kPauses, "", ": agent "},
     {Invariant::kNobodyMovesWhilePaused, "the world creeps on", kPauses, "", ": vehicle ",
@@ -169,6 +175,7 @@ const Plant kPlants[] = {
     {Invariant::kZerothIsOne, "a receiver rounds"},
     {Invariant::kHonestMessagesAccepted, "an honest block is refused"},
     {Invariant::kNoEarlyEnd, "an agent gives up"},
+    {Invariant::kClosedNumbersStayEmpty, "a closed number is given away", kDepartures},
     {Invariant::kNoWakeupInThePast, "an agent never sleeps"},
     {Invariant::kHeardLoggerIsKept, "the world ignores the logger"},
     {Invariant::kEverybodyIsBack, "a newcomer is mute", "", "agents { quorum: 3 }"},

@@ -30,7 +30,8 @@ void merge(const Contribution& theirs) {
 bool has_flags(const Message& message) {
   return std::holds_alternative<Stop>(message) || std::holds_alternative<TeamStatus>(message) ||
          std::holds_alternative<MissionPart>(message) || std::holds_alternative<Pause>(message) ||
-         std::holds_alternative<WorldState>(message) || std::holds_alternative<RecordAck>(message);
+         std::holds_alternative<Recall>(message) || std::holds_alternative<WorldState>(message) ||
+         std::holds_alternative<RecordAck>(message);
 }
 
 void check_accepted(const Message& message, std::string_view channel,

@@ -131,6 +131,7 @@ inline const std::vector<Rule> kRules = {
      {"text", "core", "plan", "team", "lcmtypes", "target", "scenario", "runtime/bus",
       "runtime/record", "runtime/process", "logger", "report", "cli"},
      {kJson, kFiles, kSystem}},
+    // What an operator orders of a team; commands and the page give these orders.
     {"cli/record",
      {"text", "core", "modes", "plan", "team", "lcmtypes", "scenario", "runtime/bus",
       "runtime/record", "runtime/process", "logger", "report", "report/export", "lab", "cli",

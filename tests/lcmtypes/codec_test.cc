@@ -17,6 +17,7 @@
 #include <ergocast/low_sums_t.hpp>
 #include <ergocast/mission_t.hpp>
 #include <ergocast/pause_t.hpp>
+#include <ergocast/recall_t.hpp>
 #include <ergocast/record_ack_t.hpp>
 #include <ergocast/stop_t.hpp>
 #include <ergocast/team_status_t.hpp>
@@ -183,6 +184,9 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_TRUE(part_wire.roster[1].forgotten);
   EXPECT_EQ(part_wire.roster[1].since_tick, 300);
   EXPECT_EQ(part_wire.roster[1].since_revision, 11);
+  EXPECT_EQ(part_wire.roster[0].recall_revision, -1);
+  EXPECT_EQ(part_wire.roster[1].recall_revision, 9);
+  EXPECT_TRUE(part_wire.roster[1].leaves);
   ASSERT_EQ(part_wire.plan_size, 300);
   EXPECT_EQ(std::memcmp(part_wire.plan.data(), part.plan.data(), 300), 0);
   EXPECT_EQ(std::memcmp(part_wire.mission_signature, a_signature().data(), 64), 0);
@@ -215,6 +219,12 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   expect_header(pause_wire.header, kOperator);
   EXPECT_EQ(std::memcmp(pause_wire.pause_signature, a_signature().data(), 64), 0);
   EXPECT_EQ(pause_wire.named_changes, 3);
+
+  const auto recall_wire = read_by_lcm<recall_t>(encoded(recall()));
+  expect_header(recall_wire.header, kOperator);
+  EXPECT_EQ(std::memcmp(recall_wire.recall_signature, a_signature().data(), 64), 0);
+  EXPECT_EQ(recall_wire.recalled_agent, 127);
+  EXPECT_EQ(recall_wire.agent_leaves, 1);
 }
 
 TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {

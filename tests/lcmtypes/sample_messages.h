@@ -47,7 +47,7 @@ inline MissionPart mission_part() {
   m.state = MissionState::kRunning;
   m.part = 2;
   m.parts = 5;
-  m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200, true, 300, 11, 3}};
+  m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200, true, 300, 11, 3, 9, true}};
   for (int i = 0; i < 300; ++i) m.plan.push_back(static_cast<std::byte>(i * 7));
   m.holds = {{55, -1}};
   m.stand_by_revision = 11;
@@ -143,6 +143,8 @@ inline Stop stop() { return {header_of_sender(kOperator), true, "enough", true, 
 
 inline Pause pause() { return {header_of_sender(kOperator), 3, a_signature()}; }
 
+inline Recall recall() { return {header_of_sender(kOperator), 127, true, a_signature()}; }
+
 inline WorldState world_state() {
   WorldState m;
   m.header = header_of_sender(kWorld);
@@ -188,9 +190,9 @@ inline Beacon beacon() {
 }
 
 inline std::vector<Message> every_message() {
-  return {hello(), mission_part(), contribution(), agent_status(), team_status(),
-          stop(),  world_state(),  command(),      record_ack(),   digest(),
-          pause(), averages(),     low_sums(),     low_averages(), beacon()};
+  return {hello(),       mission_part(), contribution(), agent_status(), team_status(), stop(),
+          world_state(), command(),      record_ack(),   digest(),       pause(),       averages(),
+          low_sums(),    low_averages(), beacon(),       recall()};
 }
 
 // ---- bytes ----

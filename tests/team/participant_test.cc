@@ -197,6 +197,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
 
 Stop stop_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, false, "enough"}; }
 Pause pause_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, 0}; }
+Recall recall_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, 1, false}; }
 
 TEST(Participant, RefusesACommandThatNamesATickWhichItSentLongAgo) {
   for (const Role role :
@@ -215,6 +216,9 @@ TEST(Participant, RefusesACommandThatNamesATickWhichItSentLongAgo) {
     EXPECT_EQ(accept(one, pause_at(150), at(20s)).has_value(), pauses);
     EXPECT_FALSE(accept(one, pause_at(90), at(20s)));
     EXPECT_EQ(one.refused(Refusal::kLate), pauses ? 2 : 1);
+    EXPECT_EQ(accept(one, recall_at(150), at(20s)).has_value(), pauses);
+    EXPECT_FALSE(accept(one, recall_at(90), at(20s)));
+    EXPECT_EQ(one.refused(Refusal::kLate), pauses ? 3 : 1);
   }
 }
 

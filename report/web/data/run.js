@@ -40,6 +40,7 @@ export class Run {
     this.times = []; // their t
     // In ticks that count.
     this.restFrom = new Map((mission.stations ?? []).map(station => [station.id, station.rest_from]));
+    this.recalledFrom = new Map(); // world's tick from which a recalled agent rests
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
     this.coverage = new Coverage(this);
@@ -75,6 +76,7 @@ export class Run {
   }
   rests(id, row) {
     return (
+      row * this.stride >= (this.recalledFrom.get(id) ?? Infinity) ||
       Math.round(this.counted(row * this.step) / this.mission.dt_s) >= (this.restFrom.get(id) ?? Infinity)
     );
   }
@@ -178,6 +180,11 @@ function decodeDensity(coded) {
   return coded && { width: coded.width, height: coded.height, full: coded.full, cells: bytesOf(coded.data) };
 }
 
+// The objects of a list in a summary, which may be damaged.
+function listOf(value) {
+  return Array.isArray(value) ? value.filter(one => one && typeof one === 'object') : [];
+}
+
 // A record as report/page.h writes it.
 export function recordedRun(record) {
   const run = new Run(record.mission, record.stride, record.rows);
@@ -188,12 +195,13 @@ export function recordedRun(record) {
       ? record.summary
       : null;
   run.setHolds(run.summary?.holds);
+  run.recalledFrom = new Map(
+    listOf(run.summary?.recalls).map(recall => [recall.agent, recall.from_tick]),
+  );
   run.homeFrom = new Map(Object.entries(record.home_from ?? {}).map(([id, tick]) => [Number(id), tick]));
   run.slope = record.slope;
   run.ticks = record.ticks;
-  const agents = Array.isArray(run.summary?.agents)
-    ? run.summary.agents.filter(a => a && typeof a === 'object')
-    : [];
+  const agents = listOf(run.summary?.agents);
   run.setRoster(agents);
   const roster = rosterIncidents(agents, run.mission.dt_s, run.end);
   const heard = record.team?.incidents ?? [];

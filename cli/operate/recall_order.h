@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The order to send one agent home, or out of the mission.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/operate/order.h"
+#include "core/base/ids.h"
+#include "team/messages.h"
+
+namespace ergocast::cli {
+
+class RecallOrder final : public Order {
+ public:
+  /// @param leaves  out of the mission
+  RecallOrder(AgentId agent, bool leaves, Instant now);
+
+  void send(const MonitoredRun& team, Instant now, Outbox& out) override;
+  OrderReport report(const MonitoredRun& team, Instant now) const override;
+
+  /// The error if the order cannot be given. @pre team.is_running()
+  std::optional<std::string> why_impossible(const MonitoredRun& team) const;
+
+ private:
+  std::string name() const;
+  bool is_gone(const MonitoredRun& team) const;
+  bool is_named(const MonitoredRun& team) const;
+  OrderReport unnamed(const MonitoredRun& team, Instant now) const;
+  OrderReport named(const MonitoredRun& team, Instant now) const;
+
+  Recall recall_;
+  Instant since_, next_{};
+  bool checked_ = false;                // whether the mission was known
+  std::optional<std::string> problem_;  // why it was impossible then
+};
+
+}  // namespace ergocast::cli
