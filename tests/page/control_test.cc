@@ -87,6 +87,30 @@ TEST_F(ControlledPage, PausesResumesAndStopsATeamFromAPhonesWindow) {
   expect_no_errors();
 }
 
+TEST_F(ControlledPage, SendsOneAgentHomeAndAnotherOneOut) {
+  control();
+  take_control();
+  // The agent that is pinned is the one that is chosen.
+  EXPECT_TRUE(
+      browser_->becomes("return document.querySelectorAll('#orderedAgent option').length === 4"));
+  js("ergocast.pin(2)");
+  EXPECT_TRUE(browser_->becomes("return document.getElementById('orderedAgent').value === '2'"));
+  order("home");
+  EXPECT_TRUE(becomes("controlText", "agent 2 home: agent 2 (is on its way|rests at) home"));
+  js("ergocast.pin(-1); document.getElementById('orderedAgent').value = 1");
+  order("out");
+  EXPECT_TRUE(becomes("controlText", "agent 1 out of the mission: agent 1 has left the mission"));
+  EXPECT_TRUE(
+      browser_->becomes("return ergocast.S.facts.state.agents.some(a => a.id === 2 && "
+                        "/home|rest/.test(a.phase))"))
+      << js("return ergocast.S.facts.state.agents");
+  screenshot("control_recalled");
+  order("stop");
+  end_with_the_mission();
+  EXPECT_EQ(summary()["recalls"].size(), 2U) << summary()["recalls"];
+  EXPECT_EQ(summary()["result"], "stopped");
+}
+
 TEST_F(ControlledPage, StopsAtOnceWithOnePressThatIsAlwaysInSight) {
   control();
   js("scrollTo(0, document.body.scrollHeight)");
