@@ -254,5 +254,35 @@ TEST_F(MotionInABrowser, OfManyOnlyTheChosenHaveRingsAndBlocksNameTheirBodies) {
   expect_no_errors();
 }
 
+TEST_F(MotionInABrowser, ALiveTeamHasHeadingsAndBlocks) {
+  const auto file = folder_ / "mission.textproto";
+  std::ofstream(file) << kFew << "agents { random_count: 6 }";
+  Child mission = launch_endless(
+      file, {"--set", "vehicle.kind=UNICYCLE", "--set", "vehicle.max_turn_radps=1", "--set",
+             "time.pace=REALTIME", "--set", "time.realtime_factor=5", "--watch", "--port", "8816"});
+  browser_->open("http://127.0.0.1:8816/");
+  EXPECT_TRUE(
+      browser_->becomes("return Boolean(window.ergocast?.S.run) && ergocast.S.run.rows > 20 && "
+                        "ergocast.S.run.tracks.length === 6"));
+  EXPECT_TRUE(js(
+      "const { S, course, draw } = ergocast; draw(S.run.end); return S.run.tracks.every(track "
+      "=> { const { heading } = course(track.id), turns = track.h[track.rowAt(S.run.rows)] / 256;"
+      "return Math.abs(Math.sin((heading + 2 * Math.PI * turns) / 2)) < 1e-6; })"));
+  EXPECT_TRUE(browser_->becomes(
+      "const { S, block, svgText } = ergocast, two = v => Math.round(v * 100) / 100;"
+      "return S.run.tracks.some(({ id }) => {"
+      "  const said = S.run.teamAt(S.t)?.byId.get(id);"
+      "  if (!(said?.blocked_s >= 1 && typeof said.blocked_by === 'number')) return false;"
+      "  const [[a, b], [c, d]] = block(id, said.blocked_by);"
+      "  return svgText().includes(`M${two(a)} ${two(b)}L${two(c)} ${two(d)}M`); })"));
+  screenshot("live_motion");
+  expect_no_errors();
+  mission.send(SIGINT);
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
+}
+
 }  // namespace
 }  // namespace ergocast::test
