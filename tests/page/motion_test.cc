@@ -254,5 +254,41 @@ TEST_F(MotionInABrowser, OfManyOnlyTheChosenHaveRingsAndBlocksNameTheirBodies) {
   expect_no_errors();
 }
 
+TEST_F(MotionInABrowser, ALiveTeamHasHeadingsAndBlocks) {
+  const auto file = folder_ / "mission.textproto";
+  std::ofstream(file) << kFew << "agents { random_count: 6 }";
+  Child mission = launch_endless(
+      file, {"--set", "vehicle.kind=UNICYCLE", "--set", "vehicle.max_turn_radps=1", "--set",
+             "time.pace=REALTIME", "--set", "time.realtime_factor=5", "--watch", "--port", "8816"});
+  browser_->open("http://127.0.0.1:8816/");
+  EXPECT_TRUE(
+      browser_->becomes("return Boolean(window.ergocast?.S.run) && ergocast.S.run.rows > 20 && "
+                        "ergocast.S.run.tracks.length === 6"));
+  // Unicycles move along their headings: a step of a tick is a chord of the arc.
+  const auto angles =
+      js("const { run } = ergocast.S, angles = []; for (const { p, h, last } of run.tracks)"
+         "  for (let k = 1; k <= last; k++) {"
+         "    const dx = p[2 * k] - p[2 * k - 2], dy = p[2 * k + 1] - p[2 * k - 1],"
+         "      off = Math.atan2(dy, dx) - (2 * Math.PI * h[k]) / 256;"
+         "    if (Math.hypot(dx, dy) > 0.05) angles.push(Math.abs(Math.sin(off / 2))); }"
+         "return angles.length ? [angles.length, Math.max(...angles)] : [0, 1]");
+  EXPECT_GT(angles[0].get<int>(), 10);
+  EXPECT_LT(angles[1].get<double>(), 0.08);
+  EXPECT_TRUE(browser_->becomes(
+      "const { S, block, svgText } = ergocast, two = v => Math.round(v * 100) / 100;"
+      "return S.run.tracks.some(({ id }) => {"
+      "  const said = S.run.teamAt(S.t)?.byId.get(id);"
+      "  if (!(said?.blocked_s >= 1 && typeof said.blocked_by === 'number')) return false;"
+      "  const [[a, b], [c, d]] = block(id, said.blocked_by);"
+      "  return svgText().includes(`M${two(a)} ${two(b)}L${two(c)} ${two(d)}M`); })"));
+  screenshot("live_motion");
+  expect_no_errors();
+  mission.send(SIGINT);
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
+}
+
 }  // namespace
 }  // namespace ergocast::test
