@@ -78,6 +78,10 @@ void Invariants::check_average(double t_s, const TableView& holder) {
   // A newcomer covers nothing itself while the mission is paused, nor before its own first tick, to
   // which a restarted world may go back.
   if (holder.held) return;
+  // One that has rested since its admission covers nothing, and may have received nothing yet.
+  const RosterEntry* const own = entry_of(*holder.roster, holder.self);
+  const bool rests = own != nullptr && is_recalled(*own, holder);
+  if (rests && holder.table->covered_s() == 0) return;
   const auto shadow = shadows_.find(holder.self);
   if (shadow != shadows_.end() && holder.counted < shadow->second.active_from()) return;
   const double c_00 = (*holder.coverage)[0];
@@ -202,8 +206,8 @@ void Invariants::check_view(double t_s, const TableView& holder,
   const double error = (c - c_true).cwiseAbs().maxCoeff();
   if (covered_s <= stale_s) return;
   // One holder may have the author's own sums of a row, and another the sums that have travelled.
-  const double most =
-      2 * stale_s / (covered_s - stale_s) + 2 * rounding_of(mission_.timing.contribution_encoding);
+  const double most = 2 * stale_s / (covered_s - stale_s) +
+                      2 * rounding_of(mission_.timing.contribution_encoding) + rounding(last_tick_);
   if (error <= most) return;
   violate(t_s, Invariant::kViewsAgree, name_of(holder.self),
           text("|c - c_true| = ", error, " > ", most, " with ", stale_s, " s of ", covered_s,
