@@ -29,8 +29,8 @@
 namespace ergocast {
 
 /// `Generated` is lcm-gen's type: its fingerprint is on the wire, and its name is that of the
-/// channel. With kPerAgent each agent has a channel of its own. kSender is the only process that may
-/// send it, if there is one.
+/// channel. With kPerAgent each agent has a channel of its own. kSender is the only process that
+/// may send it, if there is one.
 template <class M>
 struct Fields;
 

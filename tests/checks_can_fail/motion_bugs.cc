@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bugs of the control law, of vehicles, walls and distances, and of what beacons say.
+// Bugs of the control law, of vehicles, walls and distances, and of beacons.
 #include <algorithm>
 #include <cmath>
 #include <map>

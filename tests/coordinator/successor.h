@@ -9,13 +9,13 @@ namespace ergocast::test {
 inline constexpr Incarnation kSuccessorLife = 0xc1;
 
 inline Coordinator successor(Takeover takeover, RunId run = 0,
-                      std::vector<std::byte> plan = encode_plan(small_mission(2))) {
+                             std::vector<std::byte> plan = encode_plan(small_mission(2))) {
   return {{run, kSuccessorLife, "here", kVersion}, std::move(plan), takeover};
 }
 
 /// An agent's copy of the predecessor's message at `tick`.
 inline MissionPart memory_of(std::int64_t revision, std::vector<RosterEntry> roster = roster_of(2),
-                      Tick tick = 0, MissionState state = MissionState::kRunning) {
+                             Tick tick = 0, MissionState state = MissionState::kRunning) {
   MissionPart part = mission_part(revision, state, std::move(roster));
   part.header.tick = tick;
   part.plan = encode_plan(small_mission(2));
