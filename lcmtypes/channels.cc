@@ -5,23 +5,28 @@
 #include <algorithm>
 #include <array>
 #include <utility>
-#include <vector>
+#include <variant>
 
+#include "lcmtypes/fields.h"
 #include "text/read_number.h"
 
 namespace ergocast {
 namespace {
 
-constexpr std::array<std::string_view, std::variant_size_v<Message>> kNames = {
-    "ERGOCAST_HELLO",       "ERGOCAST_MISSION", "ERGOCAST_CONTRIBUTION", "ERGOCAST_AGENT_STATUS",
-    "ERGOCAST_TEAM_STATUS", "ERGOCAST_STOP",    "ERGOCAST_WORLD_STATE",  "ERGOCAST_COMMAND",
-    "ERGOCAST_RECORD_ACK",  "ERGOCAST_DIGEST",  "ERGOCAST_PAUSE",        "ERGOCAST_BEACON",
-    "ERGOCAST_RECALL"};
+/// The channel of a type, such as ERGOCAST_TEAM_STATUS of team_status_t.
+template <class M>
+std::string name_of() {
+  const std::string type = Fields<M>::Generated::getTypeName();
+  std::string name = "ERGOCAST_";
+  for (const char c : type.substr(0, type.size() - 2))
+    name += c == '_' ? c : static_cast<char>(c - 'a' + 'A');
+  return name;
+}
 
-template <class T>
-constexpr bool kPerAgent =
-    std::is_same_v<T, Contribution> || std::is_same_v<T, AgentStatus> ||
-    std::is_same_v<T, Command> || std::is_same_v<T, Digest> || std::is_same_v<T, Beacon>;
+template <class M>
+constexpr bool kPerAgent = requires {
+  Fields<M>::kPerAgent;
+};
 
 bool per_agent(const Message& message) {
   return std::visit([](const auto& m) { return kPerAgent<std::decay_t<decltype(m)>>; }, message);
@@ -29,18 +34,28 @@ bool per_agent(const Message& message) {
 
 /// All names, created once.
 struct Table {
-  std::array<std::string, kNames.size()> plain;
-  std::array<std::array<std::string, kMaxAgents + 1>, kNames.size()> numbered;  // [0] is id −1
+  using Names = std::array<std::string, kMessageTypeCount>;
+  Names plain;
+  std::array<std::array<std::string, kMaxAgents + 1>, kMessageTypeCount> numbered;  // [0] is id −1
+  Names stems;  // plain, or the beginning of the numbered ones
+  std::array<ChannelName, kMessageTypeCount> names;
 
   static std::size_t index(AgentId id) { return static_cast<std::size_t>(id) + 1; }
 
-  Table() {
-    for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
-      plain[kind] = kNames[kind];
-      for (int id = -1; id < kMaxAgents; ++id) {
-        numbered[kind][index(id)] = plain[kind] + "_" + (id < 0 ? "NEW" : std::to_string(id));
-      }
-    }
+  Table() : Table(std::make_index_sequence<kMessageTypeCount>()) {}
+
+ private:
+  template <std::size_t... Kind>
+  explicit Table(std::index_sequence<Kind...>) {
+    (add<std::variant_alternative_t<Kind, Message>>(Kind), ...);
+  }
+  template <class M>
+  void add(std::size_t kind) {
+    plain[kind] = name_of<M>();
+    for (int id = -1; id < kMaxAgents; ++id)
+      numbered[kind][index(id)] = plain[kind] + "_" + (id < 0 ? "NEW" : std::to_string(id));
+    stems[kind] = plain[kind] + (kPerAgent<M> ? "_" : "");
+    names[kind] = {stems[kind], kPerAgent<M>};
   }
 };
 
@@ -61,24 +76,10 @@ const std::string& channel_of(const Message& message, AgentId relayer) {
   return name(message.index(), relayer == kUnassigned ? header_of(message).sender : relayer);
 }
 
-std::span<const ChannelName> channel_names() {
-  static const auto stems = [] {
-    std::array<std::string, kNames.size()> all;
-    for (std::size_t kind = 0; kind < kNames.size(); ++kind)
-      all[kind] = std::string(kNames[kind]) + "_";
-    return all;
-  }();
-  static const auto names = []<std::size_t... Kind>(std::index_sequence<Kind...>) {
-    return std::array{(kPerAgent<std::variant_alternative_t<Kind, Message>>
-                           ? ChannelName{stems[Kind], true}
-                           : ChannelName{kNames[Kind], false})...};
-  }
-  (std::make_index_sequence<kNames.size()>());
-  return names;
-}
+std::span<const ChannelName> channel_names() { return table().names; }
 
 bool is_channel_of(MessageTypes types, std::string_view channel) {
-  for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
+  for (std::size_t kind = 0; kind < kMessageTypeCount; ++kind) {
     if ((types >> kind & 1) == 0) continue;
     const ChannelName& name = channel_names()[kind];
     if (name.per_agent ? channel.starts_with(name.text) : channel == name.text) return true;

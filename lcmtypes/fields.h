@@ -29,7 +29,9 @@
 
 namespace ergocast {
 
-/// `Generated` is lcm-gen's type; only its fingerprint is used.
+/// `Generated` is lcm-gen's type: its fingerprint is on the wire, and its name is that of the
+/// channel. With kPerAgent each agent has a channel of its own. kSender is the only process that
+/// may send it, if there is one.
 template <class M>
 struct Fields;
 
@@ -48,6 +50,7 @@ struct Fields<Hello> {
 template <>
 struct Fields<MissionPart> {
   using Generated = mission_t;
+  static constexpr AgentId kSender = kCoordinator;
   static void list(auto& io, auto& m) {
     io.bytes(m.signature);
     io.count(m.revision);
@@ -86,6 +89,7 @@ struct Fields<MissionPart> {
 template <>
 struct Fields<Contribution> {
   using Generated = contribution_t;
+  static constexpr bool kPerAgent = true;
   static void list(auto& io, auto& m, std::size_t count = kBlockSize) {
     io.holds(m.header.sender >= 0);
     io.count(m.steps);
@@ -138,6 +142,7 @@ struct Fields<LowAverages> {
 template <>
 struct Fields<AgentStatus> {
   using Generated = agent_status_t;
+  static constexpr bool kPerAgent = true;
   static void list(auto& io, auto& m) {
     io.holds(m.header.sender >= kUnassigned);
     io.enumerator(m.phase, AgentPhase::kResting);
@@ -166,6 +171,7 @@ struct Fields<AgentStatus> {
 template <>
 struct Fields<TeamStatus> {
   using Generated = team_status_t;
+  static constexpr AgentId kSender = kCoordinator;
   static void list(auto& io, auto& m) {
     io.enumerator(m.state, MissionState::kFailed);
     io.count(m.tick_count);
@@ -215,6 +221,7 @@ struct Fields<Recall> {
 template <>
 struct Fields<WorldState> {
   using Generated = world_state_t;
+  static constexpr AgentId kSender = kWorld;
   static void list(auto& io, auto& m) {
     io.holds(m.header.tick >= 0);
     io.count(m.roster_revision);
@@ -239,6 +246,7 @@ struct Fields<WorldState> {
 template <>
 struct Fields<Command> {
   using Generated = command_t;
+  static constexpr bool kPerAgent = true;
   static void list(auto& io, auto& m) {
     io.holds(m.header.sender >= 0);
     io.vector(m.position_m);
@@ -250,12 +258,14 @@ struct Fields<Command> {
 template <>
 struct Fields<RecordAck> {
   using Generated = record_ack_t;
+  static constexpr AgentId kSender = kLogger;
   static void list(auto& io, auto& m) { io.flag(m.last); }
 };
 
 template <>
 struct Fields<Digest> {
   using Generated = digest_t;
+  static constexpr bool kPerAgent = true;
   static void list(auto& io, auto& m) {
     io.holds(m.header.sender >= 0);
     io.number(m.settled_hash);
@@ -271,6 +281,7 @@ struct Fields<Digest> {
 template <>
 struct Fields<Beacon> {
   using Generated = beacon_t;
+  static constexpr bool kPerAgent = true;
   static void list(auto& io, auto& m) {
     io.holds(m.header.sender >= 0 && m.header.tick >= 0);
     io.count(m.roster_revision);

@@ -18,31 +18,29 @@ class KindWriter : public FieldVisitor {
  public:
   KindWriter(const AgentKind& kind, bool planar) : planar_(planar) { list_fields(*this, kind); }
 
-  std::string text() {
+  std::string block() {
     enter("");
     return "  kind {\n" + fields_ + "  }\n";
   }
 
-  void kind_name(int, const char* name, const std::string& value) { put(name, '"' + value + '"'); }
-  void number(int, const char* name, double value, const Limits&, bool given = true) {
-    if (given) put(name, shortest(value));
+  void text(const Field& field, const std::string& value) { put(field.name, '"' + value + '"'); }
+  void number(const Field& field, double value) {
+    if (field.when.given) put(field.name, shortest(value));
   }
-  void choice(int, const char* name, auto value, Words words, bool = true) {
-    put(name, std::data(words)[static_cast<std::size_t>(value)]);
+  /// A kind of its own may be a point, which the mission's vehicle is not.
+  void choice(const Field& field, auto value, Words words) {
+    put(field.name, std::data(words)[static_cast<std::size_t>(value)]);
   }
-  void own_vehicle(int, const char* name, const std::optional<VehicleLimits>& vehicle) {
+  void part(const Field& field, const std::optional<VehicleLimits>& vehicle) {
     if (!vehicle) return;
-    part_ = std::string(name) + '.';
+    part_ = std::string(field.name) + '.';
     list_fields(*this, *vehicle);
     part_.clear();
   }
-  void number_unless(int, const char* name, double value, const Limits&, double usual) {
-    if (value != usual) put(name, shortest(value));
-  }
-  void stations(int, int, const char* name, const std::vector<Eigen::Vector3d>& places_m) {
+  void places(const Field& xy, const Field&, const std::vector<Eigen::Vector3d>& places_m) {
     enter("");
     for (const Eigen::Vector3d& x_m : places_m)
-      fields_ += "    " + std::string(name) + " { " + place_text(x_m, planar_) + " }\n";
+      fields_ += "    " + std::string(xy.name) + " { " + place_text(x_m, planar_) + " }\n";
   }
 
  private:
@@ -70,43 +68,40 @@ class TextWriter : public FieldVisitor {
   explicit TextWriter(const Mission& mission) : mission_(mission) { list_fields(*this, mission); }
 
   /// All fields, each in its block.
-  std::string text() {
+  std::string all() {
     enter("");
     return text_;
   }
 
-  void number(int, const char* name, double value, const Limits&, bool given = true) {
-    if (given) put(name, shortest(value));
+  void number(const Field& field, double value) {
+    if (is_given(field)) put(field.name, shortest(value));
   }
-  void number_unless(int, const char* name, double value, const Limits&, double usual) {
-    if (value != usual) put(name, shortest(value));
+  void flag(const Field& field, bool value) {
+    if (is_given(field)) put(field.name, value ? "true" : "false");
   }
-  void height(int, const char* name, double value, const Limits&, double) {
-    if (!mission_.domain.planar()) put(name, shortest(value));
+  void choice(const Field& field, auto value, Words words) {
+    if (is_given(field)) put(field.name, std::data(words)[static_cast<std::size_t>(value)]);
   }
-  void flag(int, const char* name, bool value) { put(name, value ? "true" : "false"); }
-  void choice(int, const char* name, auto value, Words words, bool given = true) {
-    if (given) put(name, std::data(words)[static_cast<std::size_t>(value)]);
-  }
-  void seed(int, const char* name, std::uint64_t value) { put(name, std::to_string(value)); }
-  void name(int, const char* name, const std::string& value) {
-    put(name, '"' + value + '"');
+  void text(const Field& field, const std::string& value) {
+    put(field.name, '"' + value + '"');
     put("description", "\"\"");
+    put("seed", std::to_string(mission_.seed));
   }
-  void kinds(int, const char*, const std::vector<AgentKind>& kinds) {
+  void part(const Field&, const std::vector<AgentKind>& kinds) {
     for (const AgentKind& kind : kinds) {
       enter("agents");
-      text_ += KindWriter(kind, mission_.domain.planar()).text();
+      text_ += KindWriter(kind, mission_.domain.planar()).block();
     }
   }
-  void part(int, const char* name, const auto& part) {
-    part_ = std::string(name) + '.';
+  void part(const Field& field, const auto& part) {
+    part_ = std::string(field.name) + '.';
     list_fields(*this, part);
     if (!last_.empty()) put("contraction_z_m", last_);
     last_.clear();
     part_.clear();
   }
-  void contraction_center(int, int, const Eigen::Vector3d& center_m) {
+  /// The centre of the contraction.
+  void places(const Field&, const Field&, const Eigen::Vector3d& center_m) {
     if (center_m == mission_.domain.center_m()) return put("contraction_center", "DOMAIN_CENTER");
     if (center_m.isZero(0)) return put("contraction_center", "COORDINATE_ORIGIN");
     put("contraction_center", "POINT");
@@ -114,8 +109,18 @@ class TextWriter : public FieldVisitor {
     put("contraction_y_m", shortest(center_m.y()));
     if (!mission_.domain.planar()) last_ = shortest(center_m.z());
   }
-  void duration(int, const Timing& timing) { put("duration_s", shortest(duration_s(timing))); }
-  void walls(int, const char*, const Rings& walls) {
+  void places(const Field&, const Field&, const std::vector<Eigen::Vector3d>& starts_m) {
+    enter("agents");
+    for (const Eigen::Vector3d& x_m : starts_m)
+      text_ += "  starts { " + place_text(x_m, mission_.domain.planar()) + " }\n";
+    put("agents.random_count", "0");
+  }
+  using FieldVisitor::derived;
+  /// The number of ticks.
+  void derived(const Field&, const Tick&) {
+    put("duration_s", shortest(duration_s(mission_.timing)));
+  }
+  void derived(const Field&, const Rings& walls) {
     const std::vector<int> depth = depths(walls);
     for (std::size_t i = 0; i < walls.size(); ++i) {
       enter("world");
@@ -128,14 +133,11 @@ class TextWriter : public FieldVisitor {
       if (i + 1 == walls.size() || depth[i + 1] % 2 == 0) text_ += "  }\n";
     }
   }
-  void starts(int, int, const std::vector<Eigen::Vector3d>& starts_m) {
-    enter("agents");
-    for (const Eigen::Vector3d& x_m : starts_m)
-      text_ += "  starts { " + place_text(x_m, mission_.domain.planar()) + " }\n";
-    put("agents.random_count", "0");
-  }
 
  private:
+  bool is_given(const Field& field) const {
+    return field.when.given || (field.when.in_box && !mission_.domain.planar());
+  }
   static std::string corners(const std::string& indent, const Ring& ring) {
     std::string text;
     for (const Eigen::Vector2d& corner_m : ring) {
@@ -165,6 +167,6 @@ class TextWriter : public FieldVisitor {
 
 }  // namespace
 
-std::string mission_text(const Mission& mission) { return TextWriter(mission).text(); }
+std::string mission_text(const Mission& mission) { return TextWriter(mission).all(); }
 
 }  // namespace ergocast

@@ -32,29 +32,25 @@ class EachWithinLimits : public FieldVisitor {
  public:
   bool ok = true;
 
-  void number(int, const char*, double value, const Limits& limits, bool given = true) {
-    ok = ok && (given ? limits.contain(value) : value == 0);
+  void number(const Field& field, double value) {
+    const When& when = field.when;
+    ok = ok && (when.given ? field.limits.contain(value) : value == when.otherwise);
   }
-  void number_unless(int, const char*, double value, const Limits& limits, double) {
-    ok = ok && limits.contain(value);
-  }
-  void height(int, const char*, double value, const Limits& limits, double in_plane) {
-    ok = ok && (value == in_plane || limits.contain(value));
-  }
-  void choice(int, const char*, auto value, Words words, bool = true) {
+  void choice(const Field&, auto value, Words words) {
     ok = ok && static_cast<std::size_t>(value) < words.size();
   }
-  void name(int, const char*, const std::string& name) { ok = ok && is_name(name); }
-  void part(int, const char*, const auto& part) { list_fields(*this, part); }
-  void kinds(int, const char*, const auto& kinds) {
+  void text(const Field& field, const std::string& name) {
+    ok = ok && is_name(name) && field.limits.contain(static_cast<double>(name.size()));
+  }
+  void part(const Field&, const auto& part) { list_fields(*this, part); }
+  void part(const Field&, const std::vector<AgentKind>& kinds) {
     for (const AgentKind& kind : kinds) list_fields(*this, kind);
   }
-  void kind_name(int, const char*, const std::string& name) { ok = ok && is_kind_name(name); }
-  void own_vehicle(int, const char*, const std::optional<VehicleLimits>& vehicle) {
+  void part(const Field&, const std::optional<VehicleLimits>& vehicle) {
     if (vehicle) list_fields(*this, *vehicle);
   }
-  void contraction_center(int, int, const Eigen::Vector3d& x_m) { ok = ok && is_place(x_m); }
-  void stations(int, int, const char*, const std::vector<Eigen::Vector3d>& places_m) {
+  void places(const Field&, const Field&, const Eigen::Vector3d& x_m) { ok = ok && is_place(x_m); }
+  void places(const Field&, const Field&, const std::vector<Eigen::Vector3d>& places_m) {
     ok = ok && std::ranges::all_of(places_m, is_place);
   }
 };

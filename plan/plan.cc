@@ -65,16 +65,24 @@ class PlanWriter {
     fields_[field] = tag(field, kBlock) + varint(bytes.size()) + bytes;
   }
   void value(int field, const Coefficients& numbers) {
-    value(field, bytes_of(numbers.data(), numbers.size()));
+    if (numbers.size() > 0) value(field, bytes_of(numbers.data(), numbers.size()));
   }
-  void value_if_any(int field, const Coefficients& numbers) {
-    if (numbers.size() > 0) value(field, numbers);
+  void value(int field, const Rings& rings) {
+    for (const Ring& ring : rings) {
+      std::string corners;
+      for (const Eigen::Vector2d& corner_m : ring) corners += bytes_of(corner_m.data(), 2);
+      PlanWriter block;
+      block.value(kRingCorners, corners);
+      add(field, block.bytes());
+    }
   }
-  void places_if_any(int xy, int z, const std::vector<Eigen::Vector3d>& places_m) {
-    if (!places_m.empty()) places(xy, z, places_m);
+  /// Omits the number if it equals `usual`.
+  void number(int field, auto value, double usual) {
+    if (value != usual || usual == 0) this->value(field, value);
   }
   /// A plan has no heights if all are 0.
   void places(int xy, int z, const std::vector<Eigen::Vector3d>& places_m) {
+    if (places_m.empty()) return;
     std::string bytes, heights;
     for (const Eigen::Vector3d& x_m : places_m) {
       bytes += bytes_of(x_m.data(), 2);
@@ -83,38 +91,15 @@ class PlanWriter {
     value(xy, bytes);
     if (heights.find_first_not_of('\0') != std::string::npos) value(z, heights);
   }
-  void unless(int field, auto value, double usual) {
-    if (value != usual || usual == 0) this->value(field, value);
-  }
-  PlanWriter open(int) const { return {}; }
-  /// Writes each kind as a block under the same number.
-  void blocks(int field, const std::vector<AgentKind>& kinds, const auto& write) {
-    for (const AgentKind& kind : kinds) {
-      PlanWriter block;
-      write(block, kind);
-      const std::string bytes = block.bytes();
-      fields_[field] += tag(field, kBlock) + varint(bytes.size()) + bytes;
-    }
-  }
-  void rings(int field, const Rings& rings) {
-    for (const Ring& ring : rings) {
-      std::string corners;
-      for (const Eigen::Vector2d& corner_m : ring) corners += bytes_of(corner_m.data(), 2);
-      PlanWriter block;
-      block.value(kRingCorners, corners);
-      const std::string bytes = block.bytes();
-      fields_[field] += tag(field, kBlock) + varint(bytes.size()) + bytes;
-    }
+  void part(int field, const auto& part, const auto& write) {
+    if (const std::string bytes = block_of(part, write); !bytes.empty()) add(field, bytes);
   }
   /// An empty block differs from an absent one.
-  void optional(int field, const std::optional<VehicleLimits>& part, const auto& write) {
-    if (!part) return;
-    PlanWriter block;
-    write(block, *part);
-    value(field, block.bytes());
+  void part(int field, const std::optional<VehicleLimits>& part, const auto& write) {
+    if (part) add(field, block_of(*part, write));
   }
-  void close(int field, const PlanWriter& block) {
-    if (const std::string bytes = block.bytes(); !bytes.empty()) value(field, bytes);
+  void part(int field, const std::vector<AgentKind>& kinds, const auto& write) {
+    for (const AgentKind& kind : kinds) add(field, block_of(kind, write));
   }
 
   std::string bytes() const {
@@ -124,6 +109,15 @@ class PlanWriter {
   }
 
  private:
+  static std::string block_of(const auto& part, const auto& write) {
+    PlanWriter block;
+    write(block, part);
+    return block.bytes();
+  }
+  /// Adds a block to those under the same number.
+  void add(int field, const std::string& block) {
+    fields_[field] += tag(field, kBlock) + varint(block.size()) + block;
+  }
   static std::string varint(std::uint64_t value) {
     std::string bytes;
     for (; value >= 0x80; value >>= 7) bytes += static_cast<char>(value | 0x80);
@@ -170,9 +164,18 @@ class PlanReader {
     const std::vector<double> numbers = numbers_at(field);
     coefficients = Eigen::Map<const Coefficients>(numbers.data(), std::ssize(numbers));
   }
-  void value_if_any(int field, Coefficients& coefficients) const { value(field, coefficients); }
-  void places_if_any(int xy, int z, std::vector<Eigen::Vector3d>& places_m) const {
-    places(xy, z, places_m);
+  void value(int field, Rings& rings) const {
+    for_each_block(field, [&rings](const PlanReader& block) {
+      const std::vector<double> numbers = block.numbers_at(kRingCorners);
+      Ring& ring = rings.emplace_back();
+      for (std::size_t i = 1; i < numbers.size(); i += 2)
+        ring.emplace_back(numbers[i - 1], numbers[i]);
+    });
+  }
+  template <class T>
+  void number(int field, T& value, double usual) const {
+    this->value(field, value);
+    if (usual != 0 && value == 0) value = static_cast<T>(usual);
   }
   void places(int xy, int z, std::vector<Eigen::Vector3d>& places_m) const {
     const std::vector<double> numbers = numbers_at(xy), heights = numbers_at(z);
@@ -181,34 +184,16 @@ class PlanReader {
       places_m.emplace_back(numbers[2 * i], numbers[2 * i + 1], height);
     }
   }
-  template <class T>
-  void unless(int field, T& value, double usual) const {
-    this->value(field, value);
-    if (value == 0) value = static_cast<T>(usual);
+  void part(int field, auto& part, const auto& read) const {
+    read(PlanReader(at(field).bytes), part);
   }
-  PlanReader open(int field) const { return PlanReader(at(field).bytes); }
-  void blocks(int field, std::vector<AgentKind>& kinds, const auto& read) const {
-    const auto [first, end] = fields_.equal_range(static_cast<std::uint64_t>(field));
-    for (auto at = first; at != end; ++at) {
-      const PlanReader block(at->second.bytes);
-      read(block, kinds.emplace_back());
-    }
+  void part(int field, std::optional<VehicleLimits>& part, const auto& read) const {
+    if (fields_.contains(static_cast<std::uint64_t>(field)))
+      read(PlanReader(at(field).bytes), part.emplace());
   }
-  void rings(int field, Rings& rings) const {
-    const auto [first, end] = fields_.equal_range(static_cast<std::uint64_t>(field));
-    for (auto at = first; at != end; ++at) {
-      const std::vector<double> numbers = PlanReader(at->second.bytes).numbers_at(kRingCorners);
-      Ring& ring = rings.emplace_back();
-      for (std::size_t i = 1; i < numbers.size(); i += 2)
-        ring.emplace_back(numbers[i - 1], numbers[i]);
-    }
+  void part(int field, std::vector<AgentKind>& kinds, const auto& read) const {
+    for_each_block(field, [&](const PlanReader& block) { read(block, kinds.emplace_back()); });
   }
-  void optional(int field, std::optional<VehicleLimits>& part, const auto& read) const {
-    if (!fields_.contains(static_cast<std::uint64_t>(field))) return;
-    const PlanReader block = open(field);
-    read(block, part.emplace());
-  }
-  void close(int, const PlanReader&) const {}
 
  private:
   struct Value {
@@ -226,6 +211,10 @@ class PlanReader {
       if (byte < 0x80) return value;
     }
     return std::nullopt;
+  }
+  void for_each_block(int field, const auto& read) const {
+    const auto [first, end] = fields_.equal_range(static_cast<std::uint64_t>(field));
+    for (auto at = first; at != end; ++at) read(PlanReader(at->second.bytes));
   }
   Value at(int field) const {
     const auto found = fields_.find(static_cast<std::uint64_t>(field));
@@ -248,55 +237,27 @@ class PlanFields : public FieldVisitor {
  public:
   explicit PlanFields(Wire& wire) : wire_(wire) {}
 
-  void number(int field, const char*, auto& value, const Limits&, bool = true) {
-    wire_.value(field, value);
+  void number(const Field& field, auto& value) {
+    wire_.number(field.number, value, field.when.otherwise);
   }
-  void number_unless(int field, const char*, auto& value, const Limits&, double usual) {
-    wire_.unless(field, value, usual);
-  }
-  void height(int field, const char*, auto& value, const Limits&, double in_plane) {
-    wire_.unless(field, value, in_plane);
-  }
-  void flag(int field, const char*, auto& value) { wire_.value(field, value); }
-  void choice(int field, const char*, auto& value, Words, bool = true) {
-    wire_.value(field, value);
-  }
-  void seed(int field, const char*, auto& value) { wire_.value(field, value); }
-  void name(int field, const char*, auto& value) { wire_.value(field, value); }
-  void part(int field, const char*, auto& part) {
-    Wire block = wire_.open(field);
-    PlanFields inner(block);
-    list_fields(inner, part);
-    wire_.close(field, block);
-  }
-  void contraction_center(int x, int z, auto& x_m) {
-    wire_.value(x, x_m.x());
-    wire_.value(x + 1, x_m.y());
-    wire_.value(z, x_m.z());
-  }
-  void duration(int field, auto& timing) { wire_.value(field, timing.tick_count); }
-  void target(int field, auto& target) { wire_.value(field, target); }
-  void kinds(int field, const char*, auto& kinds) {
-    wire_.blocks(field, kinds, [](auto& block, auto& kind) {
+  void choice(const Field& field, auto& value, Words) { wire_.value(field.number, value); }
+  void flag(const Field& field, auto& value) { wire_.value(field.number, value); }
+  void text(const Field& field, auto& value) { wire_.value(field.number, value); }
+  void derived(const Field& field, auto& value) { wire_.value(field.number, value); }
+  void part(const Field& field, auto& part) {
+    wire_.part(field.number, part, [](auto&& block, auto& fields) {
       PlanFields<std::remove_reference_t<decltype(block)>> inner(block);
-      list_fields(inner, kind);
+      list_fields(inner, fields);
     });
   }
-  void kind_name(int field, const char*, auto& name) { wire_.value(field, name); }
-  void own_vehicle(int field, const char*, auto& vehicle) {
-    wire_.optional(field, vehicle, [](auto& block, auto& present) {
-      PlanFields<std::remove_reference_t<decltype(block)>> inner(block);
-      list_fields(inner, present);
-    });
+  void places(const Field& xy, const Field& z, auto& places_m) {
+    wire_.places(xy.number, z.number, places_m);
   }
-  void starts(int xy, int z, auto& starts_m) { wire_.places(xy, z, starts_m); }
-  void stations(int xy, int z, const char*, auto& places_m) {
-    wire_.places_if_any(xy, z, places_m);
+  void places(const Field& xy, const Field& z, MaybeConst<Eigen::Vector3d> auto& x_m) {
+    wire_.value(xy.number, x_m.x());
+    wire_.value(xy.number + 1, x_m.y());
+    wire_.value(z.number, x_m.z());
   }
-  void walls(int field, const char*, auto& walls) { wire_.rings(field, walls); }
-  void hidden_flag(int field, auto& value) { wire_.value(field, value); }
-  void hash(int field, auto& value) { wire_.value(field, value); }
-  void other_target(int field, auto& target) { wire_.value_if_any(field, target); }
 
  private:
   Wire& wire_;

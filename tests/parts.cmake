@@ -87,16 +87,19 @@ ergocast_test(NAME process_logic_tests LABELS unit
     agent/control_test.cc
     agent/digest_test.cc
     agent/divided_team_test.cc
+    agent/end_test.cc
     agent/foresight_test.cc
     agent/forgetting_test.cc
     agent/receiving_test.cc
     agent/incarnation_test.cc
+    agent/joining_test.cc
     agent/mission_repeat_test.cc
     agent/pause_test.cc
     agent/radio_test.cc
     agent/reckoning_test.cc
     agent/repair_test.cc
     coordinator/admission_test.cc
+    coordinator/after_takeover_test.cc
     coordinator/announcement_test.cc
     coordinator/coordinator_test.cc
     coordinator/departure_test.cc

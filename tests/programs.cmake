@@ -18,6 +18,8 @@ ergocast_test(NAME same_mission_tests LABELS lab
   SOURCES
     lab/moved_scenario_test.cc
     studies/same_as_simulate_test.cc
+    support/drawn_agreement.cc
+    support/drawn_files.cc
     support/drawn_scenario.cc
   LIBS ergocast_studies ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
 ergocast_test(NAME paper_tests LABELS paper
@@ -140,16 +142,23 @@ ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
   SOURCES
     checks_can_fail/check_test.cc
     checks_can_fail/invariants_test.cc
+    checks_can_fail/mistaken_files.cc
     checks_can_fail/no_metric_test.cc
     checks_can_fail/refusals_test.cc
     checks_can_fail/scenario_mistakes.cc
+    checks_can_fail/target_mistakes.cc
     checks_can_fail/verify_test.cc
     checks_can_fail/words.cc
   LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
-# The real `ergocast` with selectable bugs. bugs.cc has the linker's names of the wrapped functions.
-set(bugs checks_can_fail/bugs.cc)
+# The real `ergocast` with selectable bugs, whose files have the linker's names of the wrapped
+# functions.
+set(bugs checks_can_fail/coverage_bugs.cc checks_can_fail/motion_bugs.cc checks_can_fail/participant_bugs.cc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${bugs})
-file(STRINGS ${bugs} wrapped REGEX "^WRAPPED")
+set(wrapped)
+foreach(file ${bugs})
+  file(STRINGS ${file} lines REGEX "^WRAPPED")
+  list(APPEND wrapped ${lines})
+endforeach()
 list(TRANSFORM wrapped REPLACE [[^[^"]*"([^"]*)".*$]] [[LINKER:--wrap=\1]])
 add_executable(ergocast-with-bugs ${bugs} $<TARGET_OBJECTS:ergocast>)
 target_link_options(ergocast-with-bugs PRIVATE ${wrapped})

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints what docs/reference/make cannot read from .proto and .lcm files: the rules that the
 // program applies to each field of a scenario, and the checks, receivers and signatures of each
-// message.
+// message. Also prints the messages of plan/plan.proto.
 //
 // Each line is a fact; its parts are separated by tabs.
 //   rule      MESSAGE.FIELD  LIMITS  DEFAULT  "required" or nothing
 //   message   CHANNEL  TYPE  "signed" or nothing  receivers on swarm, world and command bus
 //   fields    TYPE  the limits of each field, in the order of its .lcm file
+//   plan      a line of plan/plan.proto
+#include <algorithm>
 #include <array>
 #include <iostream>
 #include <string>
@@ -16,6 +18,7 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/fields.h"
 #include "lcmtypes/wire.h"
+#include "plan/mission_fields.h"
 #include "scenario/parse/fields.h"
 #include "scenario/scenario.pb.h"
 #include "team/subscriptions.h"
@@ -151,10 +154,103 @@ void print_messages() {
   print_message<LowAverages, Contribution>(kIndex);
 }
 
+// ---- The plan ----
+
+/// "sobolev_form" → "SobolevForm", and "world.walls" → "Walls".
+std::string type_name(std::string_view field) {
+  std::string name;
+  bool begins = true;
+  for (const char c : field.substr(field.rfind('.') + 1)) {
+    if (c != '_') name += begins ? static_cast<char>(c - 'a' + 'A') : c;
+    begins = c == '_';
+  }
+  return name;
+}
+
+/// Prints the fields of a part as those of a Protobuf message.
+class PlanSchema : public FieldVisitor {
+ public:
+  static constexpr const char* kTop = "  ";
+
+  explicit PlanSchema(std::string indent = kTop) : indent_(std::move(indent)) {}
+
+  void line(const std::string& text) const { print({"plan", indent_ + text}); }
+
+  void number(const Field& field, const auto& value) const {
+    const double otherwise = field.when.otherwise;
+    add(std::is_same_v<decltype(value), const double&> ? "double" : "int32", field,
+        otherwise == 0 ? "" : "absent: " + shortest(otherwise));
+  }
+  void flag(const Field& field, bool) const { add("bool", field); }
+  void text(const Field& field, const std::string&) const { add("string", field); }
+  void choice(const Field& field, auto, Words words) const {
+    line("enum " + type_name(field.name) + " {");
+    int value = 0;
+    for (const char* word : words)
+      line("  " + std::string(word) + " = " + std::to_string(value++) + ";");
+    line("}");
+    add(type_name(field.name), field);
+  }
+  void part(const Field& field, const auto& part) const {
+    message(field, part);
+    add(type_name(field.name), field);
+  }
+  void part(const Field& field, const std::optional<VehicleLimits>&) const {
+    add("Vehicle", field, "absent: the plan's; present but empty: a point");
+  }
+  void part(const Field& field, const std::vector<AgentKind>&) const {
+    message(field, AgentKind());
+    add("repeated " + type_name(field.name), field);
+  }
+  void places(const Field& x, const Field& z, const Eigen::Vector3d&) const {
+    add("double", x);
+    std::string y = x.name;
+    y[y.rfind('x')] = 'y';
+    add("double", {x.number + 1, y.c_str()});
+    add("double", z);
+  }
+  void places(const Field& xy, const Field& z, const std::vector<Eigen::Vector3d>&) const {
+    add("repeated double", xy, "x and y of each in turn");
+    add("repeated double", z, "z of each, unless all are 0");
+  }
+  void derived(const Field& field, const Tick&) const { add("int64", field); }
+  void derived(const Field& field, const std::uint64_t&) const { add("uint64", field); }
+  void derived(const Field& field, const bool&) const { add("bool", field); }
+  void derived(const Field& field, const Coefficients&) const { add("repeated double", field); }
+  void derived(const Field& field, const Rings&) const { add("repeated Ring", field); }
+
+ private:
+  /// A plan itself has no blocks of agents and of the world; a kind in it has no block of a band.
+  std::string name_in_plan(std::string name) const {
+    if (indent_ == kTop) return name.substr(name.rfind('.') + 1);
+    std::ranges::replace(name, '.', '_');
+    return name;
+  }
+  void add(const std::string& type, const Field& field, const std::string& note = "") const {
+    line(type + ' ' + name_in_plan(field.name) + " = " + std::to_string(field.number) + ';' +
+         (note.empty() ? "" : "  // " + note));
+  }
+  void message(const Field& field, const auto& part) const {
+    line("message " + type_name(field.name) + " {");
+    PlanSchema inner(indent_ + "  ");
+    list_fields(inner, part);
+    line("}");
+  }
+
+  std::string indent_;
+};
+
+void print_plan() {
+  PlanSchema plan;
+  const Mission mission;
+  list_fields(plan, mission);
+}
+
 }  // namespace
 }  // namespace ergocast
 
 int main() {
   ergocast::print_rules();
   ergocast::print_messages();
+  ergocast::print_plan();
 }

@@ -52,64 +52,59 @@ class BlockReader : public FieldVisitor {
   explicit BlockReader(const Message& block) : block_(block) {}
 
   template <class Number>
-  void number(int, const char* name, Number& value, const Limits&, bool = true) {
-    const auto [block, field] = find_field(block_, name);
-    value = static_cast<Number>(number_in(block, field));
+  void number(const Field& field, Number& value) {
+    const auto [block, found] = find_field(block_, field.name);
+    const bool is_set = block.GetReflection()->HasField(block, &found);
+    value = static_cast<Number>(is_set ? number_in(block, found) : field.when.otherwise);
   }
-  template <class Number>
-  void number_unless(int, const char* name, Number& value, const Limits&, double usual) {
-    const auto [block, field] = find_field(block_, name);
-    const bool is_set = block.GetReflection()->HasField(block, &field);
-    value = static_cast<Number>(is_set ? number_in(block, field) : usual);
-  }
-  template <class Number>
-  void height(int number, const char* name, Number& value, const Limits& limits, double in_plane) {
-    number_unless(number, name, value, limits, in_plane);
-  }
-  void flag(int, const char* name, bool& value) {
-    const auto [block, field] = find_field(block_, name);
-    value = block.GetReflection()->GetBool(block, &field);
+  void flag(const Field& field, bool& value) {
+    const auto [block, found] = find_field(block_, field.name);
+    value = block.GetReflection()->GetBool(block, &found);
   }
   template <class Enum>
-  void choice(int, const char* name, Enum& value, Words words, bool = true) {
-    const auto [block, field] = find_field(block_, name);
+  void choice(const Field& field, Enum& value, Words words) {
+    const auto [block, found] = find_field(block_, field.name);
     const auto* word =
-        std::ranges::find(words, block.GetReflection()->GetEnum(block, &field)->name());
+        std::ranges::find(words, block.GetReflection()->GetEnum(block, &found)->name());
     ERGOCAST_REQUIRE(word != words.end());
     value = static_cast<Enum>(word - words.begin());
   }
-  void kinds(int, const char* name, std::vector<AgentKind>& kinds) {
-    const auto [block, field] = find_field(block_, name);
-    const auto* fields = block.GetReflection();
-    for (int i = 0; i < fields->FieldSize(block, &field); ++i) {
-      BlockReader inner(fields->GetRepeatedMessage(block, &field, i));
-      list_fields(inner, kinds.emplace_back());
-    }
+  void text(const Field& field, std::string& value) {
+    const auto [block, found] = find_field(block_, field.name);
+    value = block.GetReflection()->GetString(block, &found);
   }
-  void kind_name(int, const char* name, std::string& value) {
-    const auto [block, field] = find_field(block_, name);
-    value = block.GetReflection()->GetString(block, &field);
-  }
-  void own_vehicle(int, const char* name, std::optional<VehicleLimits>& vehicle) {
-    const auto [block, field] = find_field(block_, name);
-    if (block.GetReflection()->HasField(block, &field)) part(0, name, vehicle.emplace());
-  }
-  void stations(int, int, const char* name, std::vector<Eigen::Vector3d>& places_m) {
-    const auto [block, field] = find_field(block_, name);
-    const auto* fields = block.GetReflection();
-    for (int i = 0; i < fields->FieldSize(block, &field); ++i) {
-      const auto& place =
-          static_cast<const proto::Start&>(fields->GetRepeatedMessage(block, &field, i));
+  void places(const Field& xy, const Field&, std::vector<Eigen::Vector3d>& places_m) {
+    for_each(xy, [&places_m](const Message& message) {
+      const auto& place = static_cast<const proto::Start&>(message);
       places_m.emplace_back(place.x_m(), place.y_m(), place.z_m());
-    }
+    });
   }
-  void part(int, const char* name, auto& part) {
-    const auto [block, field] = find_field(block_, name);
-    BlockReader inner(block.GetReflection()->GetMessage(block, &field));
+  using FieldVisitor::places;
+  void part(const Field& field, auto& part) {
+    const auto [block, found] = find_field(block_, field.name);
+    BlockReader inner(block.GetReflection()->GetMessage(block, &found));
     list_fields(inner, part);
+  }
+  void part(const Field& field, std::optional<VehicleLimits>& vehicle) {
+    const auto [block, found] = find_field(block_, field.name);
+    if (block.GetReflection()->HasField(block, &found)) part(field, vehicle.emplace());
+  }
+  void part(const Field& field, std::vector<AgentKind>& kinds) {
+    for_each(field, [&kinds](const Message& message) {
+      BlockReader inner(message);
+      list_fields(inner, kinds.emplace_back());
+    });
   }
 
  private:
+  /// Calls `read` with each message of a repeated field.
+  void for_each(const Field& field, const auto& read) const {
+    const auto [block, found] = find_field(block_, field.name);
+    const auto* fields = block.GetReflection();
+    for (int i = 0; i < fields->FieldSize(block, &found); ++i)
+      read(fields->GetRepeatedMessage(block, &found, i));
+  }
+
   const Message& block_;
 };
 
@@ -188,12 +183,9 @@ void make_walls(proto::Scenario& scenario) {
 
 Mission mission_of(const proto::Scenario& scenario) {
   auto mission = part_of<Mission>(scenario);
-  mission.name = scenario.name();
   mission.seed = scenario.seed();
   mission.law.contraction_center_m = contraction_center_of(scenario.law(), mission.domain);
   mission.timing.tick_count = std::llround(scenario.time().duration_s() / mission.timing.dt_s);
-  for (const proto::Start& start : scenario.agents().starts())
-    mission.starts_m.emplace_back(start.x_m(), start.y_m(), start.z_m());
   for (const proto::Polygon& wall : scenario.world().walls()) add_rings(wall, mission.walls);
   for (const proto::Polygon& keep_out : scenario.target().keep_outs()) {
     if (keep_out.solid()) add_rings(keep_out, mission.walls);

@@ -112,27 +112,23 @@ class RuleCollector : public FieldVisitor {
  public:
   RuleCollector(const Message& block, Rules& rules) : block_(block), rules_(rules) {}
 
-  void number(int, const char* name, double value, const Limits& limits, bool given = true) {
-    rules_.emplace(&find_field(block_, name).field,
-                   FieldRule{limits, given ? kDefaulted : kLeft, value});
+  void number(const Field& field, double value) {
+    rules_.emplace(&find_field(block_, field.name).field,
+                   FieldRule{field.limits, field.when.given ? kDefaulted : kLeft, value});
   }
-  void number_unless(int, const char* name, double value, const Limits& limits, double) {
-    number(0, name, value, limits, false);
+  void part(const Field& field, const auto& part) {
+    const auto [block, found] = find_field(block_, field.name);
+    RuleCollector inner(block.GetReflection()->GetMessage(block, &found), rules_);
+    list_fields(inner, part);
   }
-  void height(int, const char* name, double, const Limits& limits, double) {
-    rules_.emplace(&find_field(block_, name).field, FieldRule{limits, kLeft});
-  }
-  void kinds(int, const char*, const auto&) {
+  void part(const Field&, const std::vector<AgentKind>&) {
     const proto::Kind block;
     const AgentKind kind;
     RuleCollector inner(block, rules_);
     list_fields(inner, kind);
   }
-  void part(int, const char* name, const auto& part) {
-    const auto [block, field] = find_field(block_, name);
-    RuleCollector inner(block.GetReflection()->GetMessage(block, &field), rules_);
-    list_fields(inner, part);
-  }
+  /// The rules of a vehicle are those of the mission's own.
+  void part(const Field&, const std::optional<VehicleLimits>&) {}
 
  private:
   const Message& block_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests each invariant and goal of the laboratory with a bug that breaks it: the real program
-// simulates the same seeds with the bug (bugs.cc) and without.
+// simulates the same seeds with the bug (bugs.h) and without.
 #include "lab/invariants.h"
 
 #include <iterator>

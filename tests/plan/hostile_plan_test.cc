@@ -45,23 +45,21 @@ class Numbers : public FieldVisitor {
 
   std::vector<double*> all;
 
-  void number(int, const char*, int&, const Limits&) {}
-  void number(int, const char*, double& value, const Limits&, bool = true) {
-    all.push_back(&value);
-  }
-  void height(int, const char*, int&, const Limits&, double) {}
-  void height(int, const char*, double& value, const Limits&, double) { all.push_back(&value); }
-  void part(int, const char*, auto& part) { list_fields(*this, part); }
-  void contraction_center(int, int, Eigen::Vector3d& x_m) {
+  void number(const Field&, int&) {}
+  void number(const Field&, double& value) { all.push_back(&value); }
+  void part(const Field&, auto& part) { list_fields(*this, part); }
+  void part(const Field&, std::vector<AgentKind>&) {}
+  void places(const Field&, const Field&, Eigen::Vector3d& x_m) {
     all.insert(all.end(), {&x_m.x(), &x_m.y(), &x_m.z()});
   }
-  void walls(int, const char*, Rings& rings) {
+  void places(const Field& xy, const Field& z, std::vector<Eigen::Vector3d>& places_m) {
+    for (Eigen::Vector3d& x_m : places_m) places(xy, z, x_m);
+  }
+  using FieldVisitor::derived;
+  void derived(const Field&, Rings& rings) {
     for (Ring& ring : rings) {
       for (Eigen::Vector2d& x_m : ring) all.insert(all.end(), {&x_m.x(), &x_m.y()});
     }
-  }
-  void starts(int, int, std::vector<Eigen::Vector3d>& starts_m) {
-    for (Eigen::Vector3d& x_m : starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y(), &x_m.z()});
   }
 };
 

@@ -32,35 +32,29 @@ class Fields : public FieldVisitor {
 
   std::vector<std::string> texts;
 
-  void number(int, const char*, double value, const Limits&, bool = true) {
-    texts.push_back(text_of(value));
-  }
-  void number_unless(int, const char*, double value, const Limits&, double) {
-    texts.push_back(text_of(value));
-  }
-  void height(int, const char*, double value, const Limits&, double) {
-    texts.push_back(text_of(value));
-  }
-  void flag(int, const char*, bool value) { texts.push_back(std::to_string(value)); }
-  void choice(int, const char*, auto value, Words, bool = true) {
+  void number(const Field&, double value) { texts.push_back(text_of(value)); }
+  void flag(const Field&, bool value) { texts.push_back(std::to_string(value)); }
+  void choice(const Field&, auto value, Words) {
     texts.push_back(std::to_string(static_cast<int>(value)));
   }
-  void seed(int, const char*, std::uint64_t value) { texts.push_back(std::to_string(value)); }
-  void name(int, const char*, const std::string& value) { texts.push_back(value); }
-  void part(int, const char*, const auto& part) { list_fields(*this, part); }
-  void contraction_center(int, int, const Eigen::Vector3d& x_m) { texts.push_back(text_of(x_m)); }
-  void duration(int, const Timing& timing) { texts.push_back(std::to_string(timing.tick_count)); }
-  void target(int, const Coefficients& values) {
-    std::string all;
-    for (const double value : values) all += text_of(value);
-    texts.push_back(all);
+  void text(const Field&, const std::string& value) { texts.push_back(value); }
+  void part(const Field&, const auto& part) { list_fields(*this, part); }
+  void part(const Field&, const std::vector<AgentKind>&) {}
+  void places(const Field&, const Field&, const Eigen::Vector3d& x_m) {
+    texts.push_back(text_of(x_m));
   }
-  void starts(int, int, const std::vector<Eigen::Vector3d>& places_m) {
+  void places(const Field&, const Field&, const std::vector<Eigen::Vector3d>& places_m) {
     std::string all;
     for (const Eigen::Vector3d& x_m : places_m) all += text_of(x_m);
     texts.push_back(all);
   }
-  void walls(int, const char*, const Rings& rings) {
+  void derived(const Field&, std::integral auto value) { texts.push_back(std::to_string(value)); }
+  void derived(const Field&, const Coefficients& values) {
+    std::string all;
+    for (const double value : values) all += text_of(value);
+    texts.push_back(all);
+  }
+  void derived(const Field&, const Rings& rings) {
     std::string all;
     for (const Ring& ring : rings) {
       all += " ring";
@@ -68,9 +62,6 @@ class Fields : public FieldVisitor {
     }
     texts.push_back(all);
   }
-  void hidden_flag(int, bool value) { texts.push_back(std::to_string(value)); }
-  void hash(int, std::uint64_t value) { texts.push_back(std::to_string(value)); }
-  void other_target(int field, const Coefficients& values) { target(field, values); }
 
  private:
   static std::string text_of(double value) {
@@ -87,16 +78,18 @@ class Switch : public FieldVisitor {
   explicit Switch(int number) : left_(number) {}
 
   bool turned() const { return left_ < 0; }
-  void flag(int, const char*, bool& value) {
+  void flag(const Field&, bool& value) {
     if (left_-- == 0) value = !value;
   }
   template <class Enum>
-  void choice(int, const char*, Enum& value, Words words, bool = true) {
+  void choice(const Field&, Enum& value, Words words) {
     if (left_-- == 0)
       value = static_cast<Enum>((static_cast<std::size_t>(value) + 1) % words.size());
   }
-  void part(int, const char*, auto& part) { list_fields(*this, part); }
-  void hidden_flag(int, bool& value) { flag(0, "", value); }
+  void part(const Field&, auto& part) { list_fields(*this, part); }
+  void part(const Field&, std::vector<AgentKind>&) {}
+  void derived(const Field& field, bool& value) { flag(field, value); }
+  using FieldVisitor::derived;
 
  private:
   int left_;
@@ -112,8 +105,7 @@ void expect_travels(const Mission& mission) {
 
 TEST(Plan, CarriesEveryFieldOfAMission) {
   const Mission mission = rich_mission_in_space();
-  Mission plain_mission;
-  plain_mission.separation.distance_m = 1;  // so that all its fields are listed
+  const Mission plain_mission;
   const auto rich = Fields(mission).texts, plain = Fields(plain_mission).texts,
              moving = Fields(with_inertia(mission)).texts,
              flying = Fields(with_wings(mission)).texts, walled = Fields(with_walls(mission)).texts,

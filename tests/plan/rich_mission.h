@@ -8,24 +8,24 @@
 
 namespace ergocast::test {
 
-/// Gives every field another value than the default, within its limits.
+/// Gives every field of a plane another value than the default, within its limits.
 class Enricher : public FieldVisitor {
  public:
   template <class Number>
-  void number(int, const char*, Number& value, const Limits& limits, bool = true) {
+  void number(const Field& field, Number& value) {
+    if (field.when.in_box) return;
+    const Limits& limits = field.limits;
     ++count_;
     const double width = std::min(limits.high - limits.low, 10.0);
     value = static_cast<Number>(limits.low + width * count_ / (count_ + 1));
   }
-  void number_unless(int, const char*, auto& value, const Limits& limits, double) {
-    number(0, "", value, limits);
-  }
-  void flag(int, const char*, bool& value) { value = !value; }
+  void flag(const Field&, bool& value) { value = !value; }
   template <class Enum>
-  void choice(int, const char*, Enum& value, Words words, bool = true) {
+  void choice(const Field&, Enum& value, Words words) {
     value = static_cast<Enum>((static_cast<std::size_t>(value) + 1) % words.size());
   }
-  void part(int, const char*, auto& part) { list_fields(*this, part); }
+  void part(const Field&, auto& part) { list_fields(*this, part); }
+  void part(const Field&, std::vector<AgentKind>&) {}
 
  private:
   int count_ = 0;

@@ -29,58 +29,6 @@ void expect_all_said(const pb::Message& message) {
   }
 }
 
-/// Compares the names of plan/plan.proto by number with the list of a mission's fields.
-class PlanNames : public FieldVisitor {
- public:
-  explicit PlanNames(const pb::Descriptor& message) : message_(message) {}
-
-  void number(int number, const char* name, auto&, const Limits&, bool = true) {
-    expect(number, name);
-  }
-  void number_unless(int number, const char* name, auto&, const Limits&, double) {
-    expect(number, name);
-  }
-  void height(int number, const char* name, auto&, const Limits&, double) { expect(number, name); }
-  void flag(int number, const char* name, auto&) { expect(number, name); }
-  void choice(int number, const char* name, auto&, Words words, bool = true) {
-    const pb::FieldDescriptor* field = expect(number, name);
-    if (field == nullptr) return;
-    const pb::EnumDescriptor* values = field->enum_type();
-    ASSERT_NE(values, nullptr) << name;
-    ASSERT_EQ(values->value_count(), std::ssize(words)) << name;
-    for (int i = 0; i < values->value_count(); ++i) {
-      EXPECT_EQ(values->value(i)->name(), words.begin()[i]);
-      EXPECT_EQ(values->value(i)->number(), i);
-    }
-  }
-  void seed(int number, const char* name, auto&) { expect(number, name); }
-  void name(int number, const char* name, auto&) { expect(number, name); }
-  void walls(int number, const char* name, auto&) { expect(number, name); }
-  void part(int number, const char* name, auto& part) {
-    const pb::FieldDescriptor* field = expect(number, name);
-    if (field == nullptr) return;
-    PlanNames inner(*field->message_type());
-    list_fields(inner, part);
-  }
-
- private:
-  /// A block of the scenario, such as agents, is not a block of the plan.
-  const pb::FieldDescriptor* expect(int number, const std::string& name) {
-    const pb::FieldDescriptor* field = message_.FindFieldByNumber(number);
-    EXPECT_TRUE(field != nullptr && field->name() == name.substr(name.rfind('.') + 1))
-        << number << " of " << message_.full_name() << " is not " << name;
-    return field;
-  }
-
-  const pb::Descriptor& message_;
-};
-
-TEST(PlanProto, HasTheFieldsOfAMission) {
-  PlanNames names(*proto::Plan::descriptor());
-  const Mission mission;
-  list_fields(names, mission);
-}
-
 TEST(PlanProto, IsWhatAPlansBytesAre) {
   Mission rich = test::rich_mission_in_space();
   rich.wait_for_logger = true;
@@ -97,8 +45,8 @@ TEST(PlanProto, IsWhatAPlansBytesAre) {
     all.MergeFrom(plan);
   }
   proto::Plan::Kind kind;
-  for (const proto::Plan::Kind& one : all.kinds()) kind.MergeFrom(one);
-  *all.mutable_kinds(0) = kind;
+  for (const proto::Plan::Kind& one : all.kind()) kind.MergeFrom(one);
+  *all.mutable_kind(0) = kind;
   expect_all_said(all);
 }
 

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files beside a scenario, each with one mistake.
+#include "tests/checks_can_fail/mistaken_files.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "tests/checks_can_fail/scenario_mistakes.h"
+#include "tests/scenario/water_column.h"
+#include "tests/support/grey_png.h"
+
+namespace ergocast::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A good grid, and one for each mistake.
+void write_grids(const fs::path& folder) {
+  write_file(folder / "text.nc", "x,y\n1,2\n");
+  NetcdfWriter(folder / "grid.nc", {{"time", 2}, {"z", 1}, {"y", 2}, {"x", 2}, {"ends", 2}},
+               {{"x", {"x"}, {10, 30}, {{"units", "m"}}},
+                {"y", {"y"}, {10, 30}, {{"units", "m"}}},
+                {"z", {"z"}, {10}, {{"units", "m"}, {"bounds", "floor"}}},
+                {"floor", {"z", "ends"}, {0, 20}, {}},
+                {"v", {"time", "z", "y", "x"}, {1, 2, 3, 4, 5, 6, 7, 8}, {}}});
+  const auto grid = [&](const char* name, const std::function<void(WaterColumn&)>& change) {
+    WaterColumn column;
+    change(column);
+    column.write(folder / name);
+  };
+  const auto scale = [](NetcdfVariable& variable, double factor, double offset) {
+    for (double& value : variable.values) value = value * factor + offset;
+  };
+  grid("good.nc", [](WaterColumn&) {});
+  grid("sour.nc", [](WaterColumn& c) { c.at("chl").values[300] = -1; });
+  grid("salt.nc", [](WaterColumn& c) { c.at("chl").name = "salt"; });
+  grid("words.nc", [](WaterColumn& c) { c.at("chl").type = NetcdfType::kText; });
+  grid("member.nc", [](WaterColumn& c) { c.rename("depth", "member"); });
+  grid("flat.nc", [](WaterColumn& c) { c.at("chl").dimensions = {"time", "y", "x"}; });
+  grid("billion.nc", [](WaterColumn& c) { c.grow(1000); });
+  grid("long.nc", [](WaterColumn& c) { c.grow(9000); });
+  grid("uneven.nc", [](WaterColumn& c) { c.at("x").values[3] += 0.02; });
+  grid("bare.nc", [](WaterColumn& c) { c.at("x").name = "east"; });
+  grid("degrees.nc", [](WaterColumn& c) { c.at("x").attributes[1].second = "degrees_east"; });
+  grid("unitless.nc", [](WaterColumn& c) { c.at("x").attributes.pop_back(); });
+  grid("single.nc", [](WaterColumn& c) {
+    c.dimensions[1].second = 1;
+    c.at("depth").attributes.pop_back();
+  });
+  grid("shape.nc", [](WaterColumn& c) { c.at("depth").attributes[2].second = "nothing"; });
+  grid("nan.nc", [](WaterColumn& c) { c.at("x").values[2] = std::nan(""); });
+  grid("tangled.nc", [](WaterColumn& c) { std::swap(c.at("y").values[1], c.at("y").values[3]); });
+  grid("zero.nc", [&](WaterColumn& c) { scale(c.at("chl"), 0, 0); });
+  grid("away.nc", [&](WaterColumn& c) { scale(c.at("y"), 1, 10000); });
+}
+
+/// A file that root cannot open for reading either.
+fs::path unreadable_file() {
+  for (const auto& bus : fs::directory_iterator("/sys/bus")) {
+    const fs::path file = bus.path() / "drivers_probe";
+    if (fs::exists(file) && !std::ifstream(file).is_open()) return file;
+  }
+  ADD_FAILURE() << "no file on this machine that cannot be read";
+  return "/dev/null";
+}
+
+}  // namespace
+
+void write_file(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+void write_mistaken_files(const fs::path& folder) {
+  const auto write = [&](const char* name, const std::string& text) {
+    write_file(folder / name, text);
+  };
+  write_grids(folder);
+  const std::string header = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n";
+  write("good.asc", header + "1 2\n");
+  write("even.csv", "1,2\n3,4\n");
+  write("pier.geojson", R"({"type":"Polygon","coordinates":[[[9.2005,47.5001],[9.2006,47.5001],)"
+                        R"([9.2006,47.5002],[9.2005,47.5001]]]})");
+  write("many.geojson",
+        R"({"type":"Polygon","coordinates":[[)" + repeated(4100, "[9.2,47.5],") + "[9.2,47.5]]]}");
+  write("line.geojson", R"({"type":"LineString","coordinates":[]})");
+  write("square.svg", "<svg viewBox='0 0 1 1'><rect width='1' height='1'/></svg>");
+  write("many.svg",
+        "<svg viewBox='0 0 2 1'><path d='M0 0" + repeated(2100, "h.1v.1") + "'/></svg>");
+  fs::create_directory(folder / "folder.csv");
+  fs::create_symlink(unreadable_file(), folder / "locked.csv");
+  write("empty.csv", "");
+  write("wide.csv", repeated(9000, "1,") + "1\n");
+  write("long.csv", std::string(2 << 20, ' ') + "1\n");
+  write("ragged.csv", "1,2\n3\n");
+  write("zero.csv", "0,0\n");
+  write("words.csv", "1,two\n");
+  write("negative.csv", "1,-2\n");
+  write("huge.csv", "1,1e31\n");
+  write("nan.csv", "1,nan\n");
+  write("key.asc", "columns 2\n" + header + "1 2\n");
+  write("twice.asc", "ncols 2\n" + header + "1 2\n");
+  write("bare.asc", "ncols\nnrows\n1 2\n");
+  write("lacks.asc", "ncols 2\nnrows 1\n1 2\n");
+  write("both.asc", "ncols 2\nnrows 1\ncellsize 1\nxllcorner 0\nxllcenter 0\nyllcorner 0\n1 2\n");
+  write("half.asc", "ncols 2.5\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n1 2\n");
+  write("flat.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0\n1 2\n");
+  write("short.asc", header + "1\n");
+  write("more.asc", header + "1 2 3\n");
+  write("text.png", "P5 3 2 255 abcdef");
+  const auto grey = [](int x, int y, int) { return (x + y) % 2; };
+  write_png(folder / "cut.png", 20, 20, {}, grey);
+  fs::resize_file(folder / "cut.png", 60);
+  write_png(folder / "palette.png", 4, 4, {.color = PNG_COLOR_TYPE_PALETTE}, grey);
+  write_png(folder / "colour.png", 4, 4, {.color = PNG_COLOR_TYPE_RGB}, grey);
+  write_png(folder / "bits.png", 4, 4, {.bits = 1}, grey);
+  write_png(folder / "laced.png", 4, 4, {.interlace = PNG_INTERLACE_ADAM7}, grey);
+}
+
+}  // namespace ergocast::test
