@@ -15,7 +15,7 @@
 #include "cli/doctor/programs.h"
 #include "cli/doctor/routing.h"
 #include "runtime/bus/random_identity.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/shipped_folder.h"
 
 namespace ergocast::doctor {

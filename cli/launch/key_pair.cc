@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "runtime/process/key_file.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 
