@@ -230,7 +230,7 @@ ergocast_test(NAME doctor_tests LABELS unit
     cli/doctor/ports_test.cc
     cli/doctor/print_test.cc
     cli/doctor/probe_test.cc
-    cli/doctor/programs_test.cc
+    cli/doctor/host_conditions_test.cc
     cli/doctor/routing_test.cc
     cli/doctor/socket_table_test.cc
   LIBS ergocast_doctor nlohmann_json::nlohmann_json)
