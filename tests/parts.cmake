@@ -104,7 +104,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     coordinator/coordinator_test.cc
     coordinator/departure_test.cc
     coordinator/farewell_test.cc
-    coordinator/mission_pages_test.cc
+    coordinator/part_schedule_test.cc
     coordinator/pausing_test.cc
     coordinator/takeover_test.cc
     sim/command_history_test.cc
