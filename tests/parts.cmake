@@ -160,7 +160,7 @@ ergocast_test(NAME status_tests LABELS unit
     cli/team_history_test.cc
     cli/team_text_test.cc
     cli/team_view_test.cc
-  LIBS ergocast_registry ergocast_watch nlohmann_json::nlohmann_json)
+  LIBS ergocast_registry ergocast_team_page nlohmann_json::nlohmann_json)
 
 ergocast_test(NAME logger_tests LABELS unit
   SOURCES
