@@ -18,9 +18,9 @@ std::vector<std::size_t> PartSchedule::next(const std::vector<std::uint64_t>& ha
     parts_[p].owed = std::max(0, parts_[p].owed - 1);
   };
   for (std::size_t p = 0; p < hashes.size(); ++p) {
-    if (parts_[p].hash != hashes[p]) parts_[p] = {hashes[p], kTimesSaid};
+    if (parts_[p].hash != hashes[p]) parts_[p] = {hashes[p], kTimesSent};
   }
-  for (int owed = kTimesSaid; owed > 0; --owed) {  // those never sent come first
+  for (int owed = kTimesSent; owed > 0; --owed) {  // those never sent come first
     for (std::size_t p = 0; p < hashes.size(); ++p) {
       if (parts_[p].owed == owed) choose(p);
     }
@@ -32,7 +32,7 @@ std::vector<std::size_t> PartSchedule::next(const std::vector<std::uint64_t>& ha
 
 bool PartSchedule::behind() const {
   return std::any_of(parts_.begin(), parts_.end(),
-                     [](const Part& part) { return part.owed == kTimesSaid; });
+                     [](const Part& part) { return part.owed == kTimesSent; });
 }
 
 }  // namespace ergocast

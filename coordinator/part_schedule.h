@@ -15,7 +15,7 @@ class PartSchedule {
   /// ceil(P / kMostAtOnce) repetitions.
   static constexpr std::size_t kMostAtOnce = 32;
   /// How often a changed part is sent before the others.
-  static constexpr int kTimesSaid = 3;
+  static constexpr int kTimesSent = 3;
 
   /// The numbers of the parts to send now, ascending.
   /// @param hashes  of all parts as they are now

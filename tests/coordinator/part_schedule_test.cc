@@ -49,7 +49,7 @@ TEST(PartSchedule, WhatHasChangedIsSentThreeTimesAndTheOthersMeanwhile) {
   for (int turn = 0; turn < 7; ++turn) {
     const auto now = schedule.next(hashes);
     const bool sent = std::find(now.begin(), now.end(), 150U) != now.end();
-    EXPECT_TRUE(sent || turn >= PartSchedule::kTimesSaid) << turn;
+    EXPECT_TRUE(sent || turn >= PartSchedule::kTimesSent) << turn;
     EXPECT_FALSE(schedule.behind());
     others.insert(now.begin(), now.end());
   }
