@@ -10,7 +10,7 @@
 #include "runtime/bus/random_identity.h"
 #include "runtime/process/event_loop.h"
 #include "runtime/process/logging.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/traffic_watch.h"
 
 namespace ergocast {

@@ -2,7 +2,7 @@
 // ergocast: lists the commands and runs the one that the command line selects.
 #include "cli/commands.h"
 #include "cli/report_error.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 namespace {

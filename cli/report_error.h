@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "scenario/scenario.h"
 #include "text/printable.h"
 

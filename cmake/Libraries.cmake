@@ -15,7 +15,7 @@ set(INSTALLED ergocast_text ergocast_core ergocast_modes ergocast_plan ergocast_
 # They may be linked into a shared library, such as a robot's plug-in or a Python module.
 set(SHAREABLE ${INSTALLED} ergocast_coordinator ergocast_event_log ergocast_geo ergocast_lab ergocast_logger
   ergocast_report ergocast_run_directory ergocast_runtime ergocast_scenario ergocast_scenario_messages ergocast_sim
-  ergocast_status ergocast_watch ergocast_web_page)
+  ergocast_team_view ergocast_team_page ergocast_web_page)
 foreach(library ${SHAREABLE})
   set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${library} PRIVATE -fno-semantic-interposition)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Divides the mission into parts, and sends those that MissionPages names.
+// Divides the mission into parts, and sends those that PartSchedule names.
 #include "coordinator/announcement.h"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ void Announcement::repeat_soon() { next_ = std::min(next_, last_ + kMissionGap);
 
 void Announcement::plan_next(bool over, Instant now) {
   last_ = now;
-  next_ = now + (over || pages_.behind() ? kMissionGap : kMissionPeriod);
+  next_ = now + (over || schedule_.behind() ? kMissionGap : kMissionPeriod);
 }
 
 std::vector<MissionPart> Announcement::parts_of(const MissionContent& mission) const {
@@ -98,7 +98,7 @@ void Announcement::publish(const MissionContent& mission, Participant& me, Tick 
   std::vector<std::uint64_t> hashes;
   std::transform(parts.begin(), parts.end(), std::back_inserter(hashes), hash_of);
   const std::uint64_t sum = std::accumulate(hashes.begin(), hashes.end(), std::uint64_t{0});
-  for (const std::size_t p : pages_.next(hashes)) {
+  for (const std::size_t p : schedule_.next(hashes)) {
     parts[p].content_hash = sum;
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) me.publish(bus, parts[p], tick, out);
   }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "coordinator/members.h"
-#include "coordinator/mission_pages.h"
+#include "coordinator/part_schedule.h"
 #include "core/base/ids.h"
 #include "core/mission/hold.h"
 #include "core/mission/mission.h"
@@ -60,7 +60,7 @@ class Announcement {
   /// A process lacks the newest revision. Repetitions for this reason keep a distance in time, so
   /// that HELLO messages cannot flood the bus.
   void repeat_soon();
-  /// Sends the parts that MissionPages names, on the buses swarm and command.
+  /// Sends the parts that PartSchedule names, on the buses swarm and command.
   /// @param tick  the newest of the world
   void publish(const MissionContent& mission, Participant& me, Tick tick, Outbox& out);
   /// Plans the next repetition after one at `now`.
@@ -74,7 +74,7 @@ class Announcement {
   std::int64_t who_may_join_ = 0;  // the newest that affects all newcomers, …
   std::int64_t admits_from_ = -1;  // … and the one that a HELLO must know, once it was sent
   Instant next_{}, last_{};
-  MissionPages pages_;
+  PartSchedule schedule_;
 };
 
 }  // namespace ergocast

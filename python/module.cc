@@ -2,7 +2,7 @@
 // The native module; people import python/ergocast/.
 #include "python/module.h"
 
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 PYBIND11_MODULE(_native, module) {
   module.doc() = "The C++ part of the package ergocast.";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // ergocast-sim: the simulated world as a process. A driver of robots takes its place.
 #include "runtime/process/logging.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "sim/world_process.h"
 
 int main(int argc, char** argv) {

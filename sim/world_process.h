@@ -2,7 +2,7 @@
 // A world as a process, whatever moves its bodies.
 #pragma once
 
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "sim/physics.h"
 
 namespace ergocast {

@@ -104,7 +104,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     coordinator/coordinator_test.cc
     coordinator/departure_test.cc
     coordinator/farewell_test.cc
-    coordinator/mission_pages_test.cc
+    coordinator/part_schedule_test.cc
     coordinator/pausing_test.cc
     coordinator/recalling_test.cc
     coordinator/takeover_test.cc
@@ -161,7 +161,7 @@ ergocast_test(NAME status_tests LABELS unit
     cli/team_history_test.cc
     cli/team_text_test.cc
     cli/team_view_test.cc
-  LIBS ergocast_registry ergocast_watch nlohmann_json::nlohmann_json)
+  LIBS ergocast_registry ergocast_team_page nlohmann_json::nlohmann_json)
 
 ergocast_test(NAME logger_tests LABELS unit
   SOURCES
@@ -231,7 +231,7 @@ ergocast_test(NAME doctor_tests LABELS unit
     cli/doctor/ports_test.cc
     cli/doctor/print_test.cc
     cli/doctor/probe_test.cc
-    cli/doctor/programs_test.cc
+    cli/doctor/host_conditions_test.cc
     cli/doctor/routing_test.cc
     cli/doctor/socket_table_test.cc
   LIBS ergocast_doctor nlohmann_json::nlohmann_json)

@@ -16,7 +16,7 @@
 #include "core/motion/filter_rules.h"
 #include "logger/run_record.h"
 #include "modes/table_file.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/shipped_scenarios.h"
 #include "scenario/parse/override_options.h"
 #include "text/input_file.h"

@@ -13,7 +13,7 @@
 #include "cli/doctor/examination.h"
 #include "cli/doctor/peer_exchange.h"
 #include "cli/doctor/print.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 namespace {

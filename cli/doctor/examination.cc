@@ -9,13 +9,13 @@
 
 #include "cli/doctor/bus_listener.h"
 #include "cli/doctor/fragment_rule.h"
+#include "cli/doctor/host_conditions.h"
 #include "cli/doctor/interfaces.h"
 #include "cli/doctor/kernel_limits.h"
 #include "cli/doctor/ports.h"
-#include "cli/doctor/programs.h"
 #include "cli/doctor/routing.h"
 #include "runtime/bus/random_identity.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/shipped_folder.h"
 
 namespace ergocast::doctor {

@@ -13,7 +13,7 @@
 #include "cli/doctor/group_listener.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/random_identity.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::doctor {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::doctor {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/motion/separation.h"
 #include "core/motion/vehicle.h"
 #include "plan/plan.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "scenario/parse/override_options.h"
 #include "text/shortest.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "runtime/process/key_file.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 

@@ -7,7 +7,7 @@
 #include "cli/launch/key_pair.h"
 #include "cli/report_error.h"
 #include "runtime/process/key_file.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 namespace {

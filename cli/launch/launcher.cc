@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "cli/watch/progress.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "text/printable.h"
 
 namespace ergocast::cli {

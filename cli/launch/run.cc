@@ -29,7 +29,7 @@
 #include "runtime/bus/random_identity.h"
 #include "runtime/bus/transport.h"
 #include "runtime/process/key_file.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/sealed_file.h"
 #include "runtime/process/signals.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runtime/bus/random_identity.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 namespace {

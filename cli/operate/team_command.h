@@ -13,7 +13,7 @@
 #include "cli/team/team_monitor.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/transport.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/signals.h"
 
 namespace ergocast::cli {

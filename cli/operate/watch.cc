@@ -19,7 +19,7 @@
 #include "cli/watch/serve_page.h"
 #include "report/web_page.h"
 #include "runtime/bus/clock.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/signals.h"
 
 namespace ergocast::cli {

@@ -18,7 +18,7 @@
 #include "plan/plan.h"
 #include "report/report.h"
 #include "report/target_density.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "text/input_file.h"
 
 namespace ergocast::cli {

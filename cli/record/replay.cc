@@ -18,7 +18,7 @@
 #include "runtime/bus/bus_writer.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/random_identity.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/signals.h"
 
 namespace ergocast::cli {

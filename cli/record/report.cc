@@ -17,7 +17,7 @@
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
 #include "cli/team/recorded_team.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/shipped_folder.h"
 #include "text/printable.h"
 

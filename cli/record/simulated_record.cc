@@ -7,7 +7,7 @@
 
 #include "logger/summary.h"
 #include "plan/plan.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 namespace {

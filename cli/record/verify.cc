@@ -19,7 +19,7 @@
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "plan/plan.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "cli/report_error.h"
 #include "cli/watch/find_run.h"
 #include "runtime/bus/lcm_url.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/shipped_folder.h"
 #include "text/shell_word.h"
 

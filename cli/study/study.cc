@@ -19,7 +19,7 @@
 #include "cli/study/study_results.h"
 #include "cli/study/workers.h"
 #include "plan/plan.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/signals.h"
 #include "studies/study_run.h"
 #include "text/shell_word.h"

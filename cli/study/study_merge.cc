@@ -8,7 +8,7 @@
 #include "cli/study/study_directory.h"
 #include "cli/study/study_options.h"
 #include "cli/study/study_results.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "cli/command_text.h"
 #include "plan/plan.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "text/shell_word.h"
 
 namespace ergocast::cli {

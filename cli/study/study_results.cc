@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "logger/run_record.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "studies/study_page.h"
 #include "text/printable.h"
 #include "text/shell_word.h"

@@ -19,7 +19,7 @@
 #include "lab/trial.h"
 #include "logger/null_buffer.h"
 #include "plan/plan.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "text/shell_word.h"
 
 namespace ergocast::cli {

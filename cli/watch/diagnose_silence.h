@@ -5,7 +5,7 @@
 #include <string>
 
 #include "runtime/bus/transport.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/watch/run_registry.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 

@@ -12,7 +12,7 @@
 #include "core/base/result.h"
 #include "core/mission/mission.h"
 #include "report/target_density.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 

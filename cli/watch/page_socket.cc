@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 namespace {

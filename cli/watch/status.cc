@@ -17,7 +17,7 @@
 #include "cli/watch/team_screen.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/transport.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/signals.h"
 #include "scenario/scenario.h"
 

@@ -34,10 +34,10 @@
 #include "core/law/block_layout.h"
 #include "core/law/coverage_table.h"
 #include "core/law/look_ahead.h"
+#include "core/law/row_track.h"
 #include "core/law/sampling.h"
 #include "core/law/team_sum.h"
 #include "core/law/term.h"
-#include "core/law/track.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 

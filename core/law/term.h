@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
-#include "core/law/track.h"
+#include "core/law/row_track.h"
 
 namespace ergocast {
 

@@ -9,7 +9,7 @@
 #include "runtime/bus/random_identity.h"
 #include "runtime/process/event_loop.h"
 #include "runtime/process/logging.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::example {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "examples/mujoco/mujoco_physics.h"
 #include "runtime/process/logging.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "sim/world_process.h"
 
 int main(int argc, char** argv) {

@@ -15,7 +15,7 @@
 #include "runtime/bus/clock.h"
 #include "runtime/bus/transport.h"
 #include "runtime/process/loop_lag.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "runtime/process/signals.h"
 #include "team/messages.h"
 

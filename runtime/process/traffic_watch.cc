@@ -8,7 +8,7 @@
 #include <chrono>
 #include <string>
 
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast {
 

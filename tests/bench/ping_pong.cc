@@ -12,7 +12,7 @@
 #include "core/law/coverage_table.h"
 #include "lcmtypes/codec.h"
 #include "runtime/bus/random_identity.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "sim/world.h"
 #include "tests/bench/forked.h"
 

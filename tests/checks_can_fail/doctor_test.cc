@@ -15,7 +15,7 @@
 #include "cli/doctor/socket_table.h"
 #include "runtime/bus/socket.h"
 #include "runtime/process/key_file.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "tests/checks_can_fail/expect_said.h"
 #include "tests/checks_can_fail/pretended_peer.h"
 #include "tests/hosts/team_on_hosts.h"

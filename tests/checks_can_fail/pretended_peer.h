@@ -16,7 +16,7 @@
 
 #include "cli/doctor/probe.h"
 #include "runtime/bus/socket.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::test {
 

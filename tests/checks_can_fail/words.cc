@@ -346,10 +346,6 @@ std::vector<Saying> sayings_of(const std::vector<std::string>& files) {
   return sayings_of(readers);
 }
 
-std::vector<Saying> sayings_in(const std::string& path, const std::string& text) {
-  return sayings_of(std::vector<Reader>{Reader(path, text)});
-}
-
 std::vector<std::string> never_said(const std::vector<Saying>& sayings,
                                     std::vector<std::string> said) {
   for (std::string& text : said) text = on_one_line(text);

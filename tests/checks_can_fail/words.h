@@ -38,7 +38,4 @@ std::vector<std::string> never_said(const std::vector<Saying>& sayings,
 /// output cannot distinguish.
 std::vector<std::string> said_twice(const std::vector<Saying>& sayings);
 
-/// For the test of the reader itself.
-std::vector<Saying> sayings_in(const std::string& path, const std::string& text);
-
 }  // namespace ergocast::test

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

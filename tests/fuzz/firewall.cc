@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The output of nft and iptables.
-#include "cli/doctor/programs.h"
+#include "cli/doctor/host_conditions.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "lcmtypes/codec.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "tests/process/support/mission.h"
 #include "tests/process/support/stranger.h"
 

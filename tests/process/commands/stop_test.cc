@@ -4,7 +4,7 @@
 #include <set>
 
 #include "runtime/bus/clock.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "tests/process/support/mission.h"
 #include "tests/process/support/record.h"
 #include "tests/process/support/stranger.h"

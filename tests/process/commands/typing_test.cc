@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "tests/process/support/programs.h"
 
 namespace ergocast::test {

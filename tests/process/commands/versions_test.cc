@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hosts with different versions of Ergocast: no process takes part in a mission that it may
 // misunderstand, and both sides report it.
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 #include "tests/process/support/bus_observer.h"
 #include "tests/process/support/mission.h"
 #include "tests/process/support/stranger.h"

@@ -9,13 +9,13 @@
 
 namespace ergocast {
 
-class MissionPages {
+class PartSchedule {
  public:
   /// The most parts that are sent at once. A process that misses any part of P receives it within
   /// ceil(P / kMostAtOnce) repetitions.
   static constexpr std::size_t kMostAtOnce = 32;
   /// How often a changed part is sent before the others.
-  static constexpr int kTimesSaid = 3;
+  static constexpr int kTimesSent = 3;
 
   /// The numbers of the parts to send now, ascending.
   /// @param hashes  of all parts as they are now
@@ -25,11 +25,11 @@ class MissionPages {
   bool behind() const;
 
  private:
-  struct Page {
+  struct Part {
     std::uint64_t hash = 0;
     int owed = 0;  // how often it is still to be sent before others
   };
-  std::vector<Page> pages_;
+  std::vector<Part> parts_;
   std::size_t turn_ = 0;
 };
 

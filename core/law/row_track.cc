@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Adds one place after the other to each block that does not contain it.
-#include "core/law/track.h"
+#include "core/law/row_track.h"
 
 #include <algorithm>
 #include <iterator>

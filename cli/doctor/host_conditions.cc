@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Looks for files and on the path, asks the kernel about the clock, and reads the firewall's
 // default policy.
-#include "cli/doctor/programs.h"
+#include "cli/doctor/host_conditions.h"
 
 #include <sys/timex.h>
 #include <unistd.h>

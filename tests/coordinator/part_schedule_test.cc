@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // MISSION of large teams: changed parts are sent first, and all parts in turn.
-#include "coordinator/mission_pages.h"
+#include "coordinator/part_schedule.h"
 
 #include <gtest/gtest.h>
 
@@ -20,37 +20,37 @@ std::vector<std::uint64_t> hashes_of(std::size_t parts) {
   return hashes;
 }
 
-TEST(MissionPages, ASmallMissionIsSentAsAWhole) {
-  for (const std::size_t parts : {std::size_t{1}, MissionPages::kMostAtOnce}) {
-    MissionPages pages;
-    for (int turn = 0; turn < 5; ++turn) EXPECT_EQ(pages.next(hashes_of(parts)).size(), parts);
+TEST(PartSchedule, ASmallMissionIsSentAsAWhole) {
+  for (const std::size_t parts : {std::size_t{1}, PartSchedule::kMostAtOnce}) {
+    PartSchedule schedule;
+    for (int turn = 0; turn < 5; ++turn) EXPECT_EQ(schedule.next(hashes_of(parts)).size(), parts);
   }
 }
 
-TEST(MissionPages, AllPartsOfALargeOneComeInTurn) {
-  constexpr std::size_t kParts = 512, kTurns = kParts / MissionPages::kMostAtOnce;
-  MissionPages pages;
+TEST(PartSchedule, AllPartsOfALargeOneComeInTurn) {
+  constexpr std::size_t kParts = 512, kTurns = kParts / PartSchedule::kMostAtOnce;
+  PartSchedule schedule;
   std::set<std::size_t> sent;
   for (std::size_t turn = 0; turn < kTurns; ++turn) {
-    const auto now = pages.next(hashes_of(kParts));
-    EXPECT_LE(now.size(), MissionPages::kMostAtOnce);
+    const auto now = schedule.next(hashes_of(kParts));
+    EXPECT_LE(now.size(), PartSchedule::kMostAtOnce);
     sent.insert(now.begin(), now.end());
-    EXPECT_EQ(pages.behind(), turn + 1 < kTurns);
+    EXPECT_EQ(schedule.behind(), turn + 1 < kTurns);
   }
   EXPECT_EQ(sent.size(), kParts);
 }
 
-TEST(MissionPages, WhatHasChangedIsSentThreeTimesAndTheOthersMeanwhile) {
+TEST(PartSchedule, WhatHasChangedIsSentThreeTimesAndTheOthersMeanwhile) {
   auto hashes = hashes_of(200);
-  MissionPages pages;
-  for (int turn = 0; turn < 50; ++turn) pages.next(hashes);
+  PartSchedule schedule;
+  for (int turn = 0; turn < 50; ++turn) schedule.next(hashes);
   hashes[150] = 4711;
   std::set<std::size_t> others;
   for (int turn = 0; turn < 7; ++turn) {
-    const auto now = pages.next(hashes);
+    const auto now = schedule.next(hashes);
     const bool sent = std::find(now.begin(), now.end(), 150U) != now.end();
-    EXPECT_TRUE(sent || turn >= MissionPages::kTimesSaid) << turn;
-    EXPECT_FALSE(pages.behind());
+    EXPECT_TRUE(sent || turn >= PartSchedule::kTimesSent) << turn;
+    EXPECT_FALSE(schedule.behind());
     others.insert(now.begin(), now.end());
   }
   EXPECT_EQ(others.size(), 200u);
@@ -72,7 +72,7 @@ TEST(LargeTeam, IsAdmittedAndFollowedFromWhatChanges) {
       follower.receive(part);
       parts.insert(part.part);
     }
-    EXPECT_LE(parts.size(), MissionPages::kMostAtOnce);
+    EXPECT_LE(parts.size(), PartSchedule::kMostAtOnce);
     return parts.size();
   };
   admit_all(coordinator, kMaxAgents, at(0s));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The missing parts of lcm-spy are found in an artificial file system, and a firewall's policy in
 // its rules.
-#include "cli/doctor/programs.h"
+#include "cli/doctor/host_conditions.h"
 
 #include "tests/cli/doctor/fixture.h"
 

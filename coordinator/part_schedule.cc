@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares the hashes with those sent last, and remembers which part is next in turn.
-#include "coordinator/mission_pages.h"
+#include "coordinator/part_schedule.h"
 
 #include <algorithm>
 
 namespace ergocast {
 
-std::vector<std::size_t> MissionPages::next(const std::vector<std::uint64_t>& hashes) {
-  pages_.resize(hashes.size());
+std::vector<std::size_t> PartSchedule::next(const std::vector<std::uint64_t>& hashes) {
+  parts_.resize(hashes.size());
   std::vector<std::size_t> chosen;
   std::vector<bool> is_chosen(hashes.size());
   const std::size_t most = std::min(hashes.size(), kMostAtOnce);
@@ -15,14 +15,14 @@ std::vector<std::size_t> MissionPages::next(const std::vector<std::uint64_t>& ha
     if (is_chosen[p] || chosen.size() >= most) return;
     is_chosen[p] = true;
     chosen.push_back(p);
-    pages_[p].owed = std::max(0, pages_[p].owed - 1);
+    parts_[p].owed = std::max(0, parts_[p].owed - 1);
   };
   for (std::size_t p = 0; p < hashes.size(); ++p) {
-    if (pages_[p].hash != hashes[p]) pages_[p] = {hashes[p], kTimesSaid};
+    if (parts_[p].hash != hashes[p]) parts_[p] = {hashes[p], kTimesSent};
   }
-  for (int owed = kTimesSaid; owed > 0; --owed) {  // those never sent come first
+  for (int owed = kTimesSent; owed > 0; --owed) {  // those never sent come first
     for (std::size_t p = 0; p < hashes.size(); ++p) {
-      if (pages_[p].owed == owed) choose(p);
+      if (parts_[p].owed == owed) choose(p);
     }
   }
   while (chosen.size() < most) choose(turn_++ % hashes.size());
@@ -30,9 +30,9 @@ std::vector<std::size_t> MissionPages::next(const std::vector<std::uint64_t>& ha
   return chosen;
 }
 
-bool MissionPages::behind() const {
-  return std::any_of(pages_.begin(), pages_.end(),
-                     [](const Page& page) { return page.owed == kTimesSaid; });
+bool PartSchedule::behind() const {
+  return std::any_of(parts_.begin(), parts_.end(),
+                     [](const Part& part) { return part.owed == kTimesSent; });
 }
 
 }  // namespace ergocast

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Declares the options that all programs share, and suggests the nearest name for a mistyped
 // argument.
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 #include <lcm/lcm.h>
 #include <unistd.h>
