@@ -251,8 +251,8 @@ void add_stop(CLI::App& app, Action& action) {
   command->footer(
       "Without --now the coordinator ends the mission for all. With --now all live runs of this\n"
       "user on this host stop, or with --lcm-url all runs on that URL; --run-id chooses one. A\n"
-      "team obeys after this host has received its messages, because the command names the\n"
-      "mission's tick.\n"
+      "team with a key obeys after this host has received its messages, because the command then\n"
+      "names the mission's tick.\n"
       "Exit codes: 0 the teams were seen to end, or to stand still; 2 several runs are found; 3 "
       "LCM\n"
       "cannot be used; 4 no team is found, a team goes on, or the state of the vehicles is "

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "lcmtypes/wire.h"
 #include "runtime/bus/random_identity.h"
 #include "runtime/process/node.h"
 
@@ -12,6 +13,10 @@ namespace ergocast::cli {
 namespace {
 
 constexpr auto kPeriod = std::chrono::milliseconds(100);
+
+/// A tick that never passes. Without a key anybody can forge a STOP, so refusing old ones protects
+/// nothing. A host that receives nothing of the team can then still stop it.
+constexpr Tick kNeverLate = kMostEver;
 
 }  // namespace
 
@@ -26,7 +31,7 @@ void StopRequest::repeat(Transport& transport, Instant now, bool at_once, Tick n
   const bool knows_now = stop_.header.tick == 0 && newest > 0;
   if (now < next_ && stop_.now == at_once && !knows_now) return;
   next_ = now + kPeriod;
-  stop_.header.tick = newest;
+  stop_.header.tick = transport.keyed() ? newest : kNeverLate;
   stop_.now = at_once;
   for (const Bus bus : {Bus::kCommand, Bus::kSwarm}) {  // the vehicles first
     ++stop_.header.sequence;
