@@ -3,11 +3,13 @@
 // obeyed.
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cli/commands.h"
@@ -22,6 +24,7 @@ using namespace std::chrono_literals;
 
 /// How long the team may take to exit.
 constexpr auto kLongest = 15s;
+constexpr auto kLookPeriod = 50ms;
 /// After this time the result so far is reported.
 constexpr auto kReportAfter = 250ms;
 /// Without a roster an emergency stop is repeated at least this long, because an unknown process
@@ -227,15 +230,36 @@ int stop_at_once(const std::vector<StopOptions>& teams, int code) {
   return code;
 }
 
+/// Asks a run to end that still reads its scenario. It has no team, only a process of this user.
+void end_preparing(const LiveRun& run) {
+  std::printf("run %s: ending it while it reads its scenario\n", to_hex(run.run).c_str());
+  std::fflush(stdout);
+  kill(run.pid, SIGTERM);
+}
+
+/// The exit code, once that run is no longer live or does not end.
+int await_end(const LiveRun& run) {
+  const auto is_it = [&run](const LiveRun& one) { return one.run == run.run; };
+  for (const Instant until = now() + kLongest; now() < until;
+       std::this_thread::sleep_for(kLookPeriod)) {
+    if (std::ranges::none_of(live_runs().runs, is_it)) return kExitDone;
+  }
+  return report_error(kExitFailed, "run " + to_hex(run.run) + ": process " +
+                                       std::to_string(run.pid) + " does not end: kill it");
+}
+
 int stop_found(const CLI::App& command, StopOptions options) {
   if (!options.at_once) {
     if (const auto code = find_run(command, options)) return *code;
     return Stopping(options).carry_out();
   }
   const FoundRuns found = find_runs(command, options);
+  for (const LiveRun& run : found.preparing) end_preparing(run);
   std::vector<StopOptions> teams;
   for (const BusOptions& team : found.runs) teams.push_back({team, true});
-  return stop_at_once(teams, found.code);
+  int code = stop_at_once(teams, found.code);
+  for (const LiveRun& run : found.preparing) code = std::max(code, await_end(run));
+  return code;
 }
 
 }  // namespace
