@@ -156,7 +156,9 @@ struct TeamStatus {
 /// Ends a run for good. Without `now` only the coordinator obeys, and ends the mission in order;
 /// with `now` every receiver obeys. A STOP with an old tick is refused.
 struct Stop {
-  Header header;        ///< header.tick: the newest that the operator knows; 0 if none
+  /// header.tick: the newest that the operator knows; 0 if none. Without a key it names a tick that
+  /// never passes, because anybody can forge it anyway.
+  Header header;
   bool failed = false;  ///< whether the mission failed, or was only ended
   std::string reason;
   bool now = false;  ///< emergency: all vehicles stand still at once

@@ -130,7 +130,7 @@ void MissionWatch::repeat(Transport& transport, Instant now, bool led) {
   // A coordinator that has exited or hangs does not end the mission.
   const bool heard = stage_ == Stage::kOver || now - *stopping_since_ < kCoordinatorPatience;
   Outbox out;
-  stop_->repeat(now, !led || !heard, tick_, out);
+  stop_->repeat(now, !led || !heard, tick_, transport.keyed(), out);
   transport.publish(out);
 }
 

@@ -24,6 +24,7 @@
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "modes/table_file.h"
+#include "plan/mission_limits.h"
 #include "plan/plan.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/random_identity.h"
@@ -224,8 +225,9 @@ std::optional<std::string> seal_files(const RunOptions& options, const Mission& 
 }
 
 /// Runs the mission. LCM works and the run directory is ready.
+/// @param entry  of the registry, from before there was a mission; may be null
 int run_mission(const RunOptions& options, const Scenario& scenario, const Launcher::Setup& setup,
-                StopSignals& signals) {
+                std::unique_ptr<RunEntry> entry, StopSignals& signals) {
   const MessageAuthenticator& authenticator = options.authenticator;
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display,
@@ -240,9 +242,10 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
   const auto watching = begin_page(options, setup, display);
   if (!watching) return report_error(kExitUnavailable, watching.error());
   ControlledPage* const page = watching->get();
-  auto entry = RunEntry::write(live_run(setup, scenario));
-  if (!entry) {
-    display.print("warning: " + entry.error() + "; give the other commands --lcm-url");
+  entry.reset();
+  auto registered = RunEntry::write(live_run(setup, scenario));
+  if (!registered) {
+    display.print("warning: " + registered.error() + "; give the other commands --lcm-url");
   }
   Launcher launcher(setup, display);
   if (const auto problem = launcher.start()) {
@@ -250,7 +253,7 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
     return report_error(kExitFailed, *problem);
   }
   supervise(launcher, mission, **transport, page, signals, display);
-  if (entry) entry->reset();
+  if (registered) registered->reset();
   display.end();
 
   const auto summary = amended_summary(scenario, setup, launcher, mission);
@@ -260,6 +263,22 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
   if (unwritten) return report_error(kExitFailed, *unwritten);
   return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed
                                                                              : kExitDone;
+}
+
+/// Registers this run before its scenario is read, so that other commands can show and end it. Null
+/// if that is not possible, which is reported when the mission begins.
+std::unique_ptr<RunEntry> register_early(const RunOptions& options, RunId run) {
+  const std::string name = options.scenario.stem();
+  LiveRun preparing;
+  preparing.run = run;
+  preparing.scenario = is_name(name) ? name : "scenario";
+  preparing.version = version();
+  preparing.started = wall_clock_text();
+  preparing.pid = getpid();
+  preparing.preparing = true;
+  auto entry = RunEntry::write(preparing);
+  auto* const made = std::get_if<0>(&entry);
+  return made != nullptr ? std::move(*made) : nullptr;
 }
 
 /// Reads the scenario; if that takes long, a line says why nothing happens.
@@ -273,12 +292,14 @@ std::optional<Scenario> load_with_a_note(const RunOptions& options) {
 }
 
 int run(const RunOptions& options) {
+  Launcher::Setup setup;
+  setup.run = random_identity();
+  auto entry = register_early(options, setup.run);
   const auto scenario = load_with_a_note(options);
   if (!scenario) return kExitBadInput;
   if (!options.authenticator.can_sign())
     return report_error(kExitBadInput, cannot_sign(options.key_file));
   StopSignals signals;
-  Launcher::Setup setup;
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
   const auto world = world_program(options.world, setup.programs);
   if (!world) return report_error(kExitBadInput, world.error());
@@ -287,7 +308,6 @@ int run(const RunOptions& options) {
   setup.agents = static_cast<int>(scenario->mission().starts_m.size());
   for (const AgentKind& kind : scenario->mission().kinds)
     setup.kinds.insert(setup.kinds.end(), static_cast<std::size_t>(kind.count), kind.name);
-  setup.run = random_identity();
   if (!options.key_file.empty()) setup.key_file = fs::absolute(options.key_file);
   setup.event_log_mib = options.event_log_mib;
   setup.event_log_zstd = options.event_log_zstd;
@@ -305,7 +325,7 @@ int run(const RunOptions& options) {
   setup.run_dir = *prepared;
   if (const auto problem = seal_files(options, scenario->mission(), setup))
     return report_error(kExitFailed, *problem);
-  return run_mission(options, *scenario, setup, signals);
+  return run_mission(options, *scenario, setup, std::move(entry), signals);
 }
 
 void add_run_url_option(CLI::App& command, RunOptions& options) {

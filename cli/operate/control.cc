@@ -24,7 +24,7 @@ Result<std::unique_ptr<Control>> Control::open(const BusOptions& team,
                                                std::function<void(const std::string&)> print) {
   auto links = ControlLink::pair();
   if (!links) return failure("no page with control: the system has no descriptors left");
-  std::unique_ptr<Control> control(new Control(team.run, std::move(*links), std::move(print)));
+  std::unique_ptr<Control> control(new Control(team, std::move(*links), std::move(print)));
   auto opened = listen_to_teams(
       team,
       [monitored = &control->team_](const Message& message, Bus bus, AgentId transmitter) {
@@ -37,13 +37,13 @@ Result<std::unique_ptr<Control>> Control::open(const BusOptions& team,
   return control;
 }
 
-Control::Control(RunId run, std::pair<ControlLink, ControlLink> links,
+Control::Control(const BusOptions& team, std::pair<ControlLink, ControlLink> links,
                  std::function<void(const std::string&)> print)
     : links_(std::move(links)),
       print_(std::move(print)),
       token_(random_token()),
-      team_(run, now()),
-      desk_(host_name()) {}
+      team_(team.run, now()),
+      desk_(host_name(), team.authenticator.keyed()) {}
 
 void Control::attend(Instant now) {
   transport_->deliver_until(now, -1);

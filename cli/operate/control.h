@@ -39,7 +39,7 @@ class Control {
   const std::string& token() const { return token_; }
 
  private:
-  Control(RunId run, std::pair<ControlLink, ControlLink> links,
+  Control(const BusOptions& team, std::pair<ControlLink, ControlLink> links,
           std::function<void(const std::string&)> print);
 
   std::pair<ControlLink, ControlLink> links_;  // ours, and the page's

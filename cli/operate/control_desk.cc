@@ -154,7 +154,7 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
         team.run(), at_once,
         std::string(at_once ? "stopped at once by " : "stopped by ") + called(request) +
             " on the page of " + host_,
-        now);
+        keyed_, now);
   };
   switch (request.act) {
     case ControlAct::kPause:

@@ -39,8 +39,9 @@ class ControlDesk {
   /// log has all.
   static constexpr std::size_t kMostActs = 8;
 
-  /// @param host  named as the place of the operator in the record of a stop
-  explicit ControlDesk(std::string host) : host_(std::move(host)) {}
+  /// @param host   named as the place of the operator in the record of a stop
+  /// @param keyed  whether the team has a key
+  ControlDesk(std::string host, bool keyed) : host_(std::move(host)), keyed_(keyed) {}
 
   /// Takes a request in: it becomes an order, or is refused.
   void receive(const ControlRequest& request, const MonitoredRun& team, Instant now);
@@ -88,6 +89,7 @@ class ControlDesk {
   void note(const std::string& line) { lines_.push_back("control: " + line); }
 
   std::string host_;
+  bool keyed_;
   std::optional<Operator> operator_;
   Numbers numbers_;
   CommandWindow window_;

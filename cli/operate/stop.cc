@@ -3,11 +3,13 @@
 // obeyed.
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cli/commands.h"
@@ -74,7 +76,7 @@ class Stopping : public TeamCommand {
   void send_stop_to(RunId run, const MonitoredRun& team) {
     const char* how = options_.at_once ? kAtOnce : "stopped by `ergocast stop` on ";
     const auto [at, is_new] = requests_.try_emplace(
-        run, Request{StopOrder(run, options_.at_once, how + host_name(), now()), now()});
+        run, Request{StopOrder(run, options_.at_once, how + host_name(), transport_->keyed(), now()), now()});
     Request& request = at->second;
     if (is_new) {
       print(run, options_.at_once ? "stopping all vehicles at once"
@@ -91,7 +93,7 @@ class Stopping : public TeamCommand {
     if (!options_.at_once) return;
     Outbox out;
     for (const auto& [run, tick] : crowd_) {
-      StopRequest(run, false, kAtOnce + host_name()).repeat(now(), true, tick, out);
+      StopRequest(run, false, kAtOnce + host_name()).repeat(now(), true, tick, transport_->keyed(), out);
     }
     transport_->publish(out);
     crowded_ = crowded_ || !crowd_.empty();
@@ -170,15 +172,36 @@ int stop_at_once(const std::vector<StopOptions>& teams, int code) {
   return code;
 }
 
+/// Asks a run to end that still reads its scenario. It has no team, only a process of this user.
+void end_preparing(const LiveRun& run) {
+  std::printf("run %s: ending it while it reads its scenario\n", to_hex(run.run).c_str());
+  std::fflush(stdout);
+  kill(run.pid, SIGTERM);
+}
+
+/// The exit code, once that run is no longer live or does not end.
+int await_end(const LiveRun& run) {
+  const auto is_it = [&run](const LiveRun& one) { return one.run == run.run; };
+  for (const Instant until = now() + kLongest; now() < until;
+       std::this_thread::sleep_for(kLookPeriod)) {
+    if (std::ranges::none_of(live_runs().runs, is_it)) return kExitDone;
+  }
+  return report_error(kExitFailed, "run " + to_hex(run.run) + ": process " +
+                                       std::to_string(run.pid) + " does not end: kill it");
+}
+
 int stop_found(const CLI::App& command, StopOptions options) {
   if (!options.at_once) {
     if (const auto code = find_run(command, options)) return *code;
     return Stopping(options).carry_out();
   }
   const FoundRuns found = find_runs(command, options);
+  for (const LiveRun& run : found.preparing) end_preparing(run);
   std::vector<StopOptions> teams;
   for (const BusOptions& team : found.runs) teams.push_back({team, true});
-  return stop_at_once(teams, found.code);
+  int code = stop_at_once(teams, found.code);
+  for (const LiveRun& run : found.preparing) code = std::max(code, await_end(run));
+  return code;
 }
 
 }  // namespace
@@ -194,8 +217,8 @@ void add_stop(CLI::App& app, Action& action) {
   command->footer(
       "Without --now the coordinator ends the mission for all. With --now all live runs of this\n"
       "user on this host stop, or with --lcm-url all runs on that URL; --run-id chooses one. A\n"
-      "team obeys after this host has received its messages, because the command names the\n"
-      "mission's tick.\n"
+      "team with a key obeys after this host has received its messages, because the command then\n"
+      "names the mission's tick.\n"
       "Exit codes: 0 the teams were seen to end, or to stand still; 2 several runs are found; 3 "
       "LCM\n"
       "cannot be used; 4 no team is found, a team goes on, or the state of the vehicles is "

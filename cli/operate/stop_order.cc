@@ -19,12 +19,12 @@ constexpr auto kLeastInsistence = 1s;
 
 }  // namespace
 
-StopOrder::StopOrder(RunId run, bool at_once, std::string reason, Instant now)
-    : request_(run, false, std::move(reason)), at_once_(at_once), since_(now) {}
+StopOrder::StopOrder(RunId run, bool at_once, std::string reason, bool keyed, Instant now)
+    : request_(run, false, std::move(reason)), at_once_(at_once), keyed_(keyed), since_(now) {}
 
 void StopOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   const bool obeyed = !at_once_ && team.over();
-  if (!obeyed) request_.repeat(now, at_once_, team.tick(), out);
+  if (!obeyed) request_.repeat(now, at_once_, team.tick(), keyed_, out);
 }
 
 std::vector<std::string> StopOrder::awaited(const MonitoredRun& team, Instant now) const {

@@ -15,7 +15,8 @@ class StopOrder final : public Order {
  public:
   /// @param at_once  all processes stop at once, and the vehicles stand still
   /// @param reason   the mission's record says it
-  StopOrder(RunId run, bool at_once, std::string reason, Instant now);
+  /// @param keyed    whether the team has a key
+  StopOrder(RunId run, bool at_once, std::string reason, bool keyed, Instant now);
 
   void send(const MonitoredRun& team, Instant now, Outbox& out) override;
   OrderReport report(const MonitoredRun& team, Instant now) const override;
@@ -27,7 +28,7 @@ class StopOrder final : public Order {
   OrderReport concluded(const MonitoredRun& team, Instant now) const;
 
   StopRequest request_;
-  bool at_once_;
+  bool at_once_, keyed_;
   Instant since_;
 };
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "lcmtypes/wire.h"
 #include "runtime/bus/random_identity.h"
 #include "runtime/process/program_options.h"
 
@@ -12,6 +13,10 @@ namespace ergocast::cli {
 namespace {
 
 constexpr auto kRepeatPeriod = std::chrono::milliseconds(100);
+
+/// A tick that never passes. Without a key anybody can forge a STOP, so refusing old ones protects
+/// nothing. A host that receives nothing of the team can then still stop it.
+constexpr Tick kNeverLate = kMostEver;
 
 }  // namespace
 
@@ -21,12 +26,12 @@ StopRequest::StopRequest(RunId run, bool failed, std::string reason) {
   stop_.reason = std::move(reason);
 }
 
-void StopRequest::repeat(Instant now, bool at_once, Tick newest, Outbox& out) {
+void StopRequest::repeat(Instant now, bool at_once, Tick newest, bool keyed, Outbox& out) {
   // Sends at once when the tick becomes known, because a request without it may be ignored.
   const bool knows_now = stop_.header.tick == 0 && newest > 0;
   if (now < next_ && stop_.now == at_once && !knows_now) return;
   next_ = now + kRepeatPeriod;
-  stop_.header.tick = newest;
+  stop_.header.tick = keyed ? newest : kNeverLate;
   stop_.now = at_once;
   for (const Bus bus : {Bus::kCommand, Bus::kSwarm}) {  // the vehicles first
     ++stop_.header.sequence;

@@ -17,9 +17,10 @@ class StopRequest {
   /// Appends STOP for every bus with a receiver for it, if the last one was long enough ago.
   /// @param at_once  all processes stop at once and the vehicles stand still; otherwise only the
   ///                 coordinator obeys and ends the mission in order
-  /// @param newest   the newest known tick of the mission; 0 if none is known. Processes ignore a
-  /// request that names an old tick
-  void repeat(Instant now, bool at_once, Tick newest, Outbox& out);
+  /// @param newest   the newest known tick of the mission; 0 if none is known. A team with a key
+  ///                 ignores a request that names an old tick
+  /// @param keyed    whether the team has a key
+  void repeat(Instant now, bool at_once, Tick newest, bool keyed, Outbox& out);
 
  private:
   Stop stop_;

@@ -76,6 +76,7 @@ void LiveTeam::look(Instant now) {
   // The page's time continues in a pause, as in the record.
   status_["t_s"] = static_cast<double>(picture.tick) * picture.dt_s;
   history_.add(picture);
+  agents_.add(picture, now);
   ++statuses_;
   if (me_.follower().revision() != roster_revision_) {
     roster_revision_ = me_.follower().revision();
@@ -201,6 +202,7 @@ std::string LiveTeam::frame(Cursor& cursor, bool& more) const {
                               {"stride", grid_->stride()},
                               {"run_id", to_hex(run())},
                               {"past", history_.json()},
+                              {"team", agents_.json()},
                               {"authenticated", authenticated_},
                               {"replay", replay_}});
   }

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/team/agent_history.h"
 #include "cli/team/team_history.h"
 #include "cli/team/team_view.h"
 #include "core/mission/mission.h"
@@ -96,6 +97,7 @@ class LiveTeam {
   std::optional<TrackGrid> grid_;
   nlohmann::ordered_json mission_, status_;  // as the page gets them
   TeamHistory history_;
+  AgentHistory agents_;
   std::map<AgentId, LastLook> last_looks_;
   std::map<std::string, bool> trouble_;  // of the processes, by name
   std::deque<Incident> incidents_;

@@ -11,11 +11,7 @@
 namespace ergocast::cli {
 
 /// Reads the event log of a run directory as a listener would have received it. Returns null if
-/// there is no log, else {"t": [mission time, …], "metric": [median of the agents' φ², …],
-/// "agents": {"0": {"state": [index into "words", …], "phase": [index into "phases", …],
-/// "silent_s", "metric", "age_s", "lag_s", "lost", "drops", "waits_for"}, …}, "words", "phases",
-/// "incidents"}. Each list has an item for each t; null: not known. If an agent was blocked, each
-/// also has "blocked_s" and "blocked_by": the agent that blocks it; null: none, or an edge.
+/// there is no log, else what AgentHistory::json() returns, with "incidents".
 ///
 /// A time without any message is an absence of the logger, and is left out. Absences of the logger
 /// itself are not reported, because its log cannot show them.

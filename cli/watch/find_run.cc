@@ -63,6 +63,12 @@ int choose(const std::vector<LiveRun>& runs) {
   return report_error(kExitBadInput, text);
 }
 
+int report_preparing(const LiveRun& run) {
+  return report_error(kExitFailed, "run " + to_hex(run.run) + " of " + run.scenario +
+                                       " still reads its scenario and has no team yet: wait, or "
+                                       "end it with `ergocast stop --now`");
+}
+
 void describe_search(CLI::App& command) {
   CLI::Option* url = command.get_option("--lcm-url");
   const std::string by_hand = url->get_default_str();
@@ -76,8 +82,11 @@ void describe_search(CLI::App& command) {
 std::optional<int> find_run(const CLI::App& command, BusOptions& options,
                             std::filesystem::path* run_dir) {
   if (command.count("--lcm-url") > 0) return std::nullopt;
-  const std::vector<LiveRun> runs = live_runs_named(options.run);
+  std::vector<LiveRun> runs = live_runs_named(options.run);
   if (runs.empty()) return std::nullopt;
+  const LiveRun first = runs.front();
+  std::erase_if(runs, [](const LiveRun& run) { return run.preparing; });
+  if (runs.empty()) return report_preparing(first);
   if (runs.size() > 1) return choose(runs);
   if (run_dir != nullptr) *run_dir = runs.front().run_dir;
   return take(command, runs.front(), options);
@@ -89,6 +98,10 @@ FoundRuns find_runs(const CLI::App& command, const BusOptions& options) {
   if (live.empty()) return {{options}};
   FoundRuns found;
   for (const LiveRun& run : live) {
+    if (run.preparing) {
+      found.preparing.push_back(run);
+      continue;
+    }
     BusOptions one = options;
     const auto code = take(command, run, one);
     code ? void(found.code = std::max(found.code, *code)) : found.runs.push_back(one);

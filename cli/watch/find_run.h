@@ -20,14 +20,17 @@ std::vector<LiveRun> live_runs_named(RunId run);
 /// Asks the user to choose one of several live runs; returns the exit code.
 int choose(const std::vector<LiveRun>& runs);
 
+/// Explains why a run that is still being prepared has no team; returns the exit code.
+int report_preparing(const LiveRun& run);
+
 /// Explains in --help where find_run() looks. @pre the command has --lcm-url
 void describe_search(CLI::App& command);
 
 /// Does nothing if --lcm-url or $LCM_DEFAULT_URL names a URL. Otherwise takes the only live run of
 /// this user, or the one that --run-id names. Sets URL, run and key in `options`, and its folder in
 /// `run_dir`. Without a live run nothing changes: the team may have been started by hand, on LCM's
-/// own group. If several runs are live or the run cannot be used, prints an error and returns an
-/// exit code.
+/// own group. A run that still reads its scenario counts only if there is no other one. If several
+/// runs are live or the run cannot be used, prints an error and returns an exit code.
 /// @param command  that has the options
 std::optional<int> find_run(const CLI::App& command, BusOptions& options,
                             std::filesystem::path* run_dir = nullptr);
@@ -35,6 +38,7 @@ std::optional<int> find_run(const CLI::App& command, BusOptions& options,
 /// The teams that a command for several teams applies to.
 struct FoundRuns {
   std::vector<BusOptions> runs;
+  std::vector<LiveRun> preparing{};  ///< they have no team yet
   int code = kExitDone;  ///< the exit code of unusable live runs; an error was printed for each
 };
 

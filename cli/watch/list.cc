@@ -39,6 +39,12 @@ void print_processes(const LiveRun& run) {
 void print_table(const std::vector<LiveRun>& runs) {
   if (runs.empty()) std::printf("no run of this user is live on this host\n");
   for (const LiveRun& run : runs) {
+    if (run.preparing) {
+      std::printf("%s  %s, since %s, still reads its scenario\n  processes: run %d\n",
+                  to_hex(run.run).c_str(), run.scenario.c_str(), printable(run.started).c_str(),
+                  run.pid);
+      continue;
+    }
     std::printf("%s  %s, since %s, %s\n  %s\n  %s\n", to_hex(run.run).c_str(), run.scenario.c_str(),
                 printable(run.started).c_str(),
                 run.key_file.empty() ? "without a key" : "with a key", run.url.base().c_str(),

@@ -132,6 +132,7 @@ void look_at(int folder, const std::string& name, const std::string& path, LiveR
   // A run that ends normally removes its name before it releases the lock.
   if (fstat(file.get(), &status) != 0 || status.st_nlink == 0) return;
   unlinkat(folder, name.c_str(), 0);
+  if (run.preparing) return;  // it had started nothing
   found.warnings.push_back("run " + to_hex(run.run) + " of " + run.scenario + ", " +
                            run.run_dir.string() +
                            ": its `ergocast run` was killed; its entry is removed");
@@ -140,9 +141,16 @@ void look_at(int folder, const std::string& name, const std::string& path, LiveR
 }  // namespace
 
 std::string to_json_text(const LiveRun& run) {
-  Json json = {{"version", run.version},    {"run_id", to_hex(run.run)},
-               {"scenario", run.scenario},  {"started", run.started},
-               {"lcm_url", run.url.base()}, {"run_dir", run.run_dir.string()}};
+  Json json = {{"version", run.version},
+               {"run_id", to_hex(run.run)},
+               {"scenario", run.scenario},
+               {"started", run.started}};
+  if (run.preparing) {
+    json["preparing"] = true;
+  } else {
+    json["lcm_url"] = run.url.base();
+    json["run_dir"] = run.run_dir.string();
+  }
   if (!run.key_file.empty()) json["key_file"] = run.key_file.string();
   json["pid"] = run.pid;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
@@ -152,32 +160,40 @@ Result<LiveRun> live_run_from(std::string_view text) {
   if (text.size() > kMostEntryBytes) return failure("is larger than an entry can be");
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return failure("is no entry of a run");
+  LiveRun run;
+  const auto preparing = json.find("preparing");
+  if (preparing != json.end()) {
+    if (!preparing->is_boolean()) return failure("preparing is neither true nor false");
+    run.preparing = preparing->get<bool>();
+  }
+  std::vector<const char*> keys{"version", "run_id", "scenario", "started"};
+  if (!run.preparing) keys.insert(keys.end(), {"lcm_url", "run_dir"});
   std::map<std::string, std::string> texts;
-  for (const char* key : {"version", "run_id", "scenario", "started", "lcm_url", "run_dir"}) {
+  for (const char* key : keys) {
     const auto value = text_in(json, key);
     if (!value)
       return failure(std::string("is no entry of a run: ") + key + " is missing or no text");
     texts[key] = *value;
   }
-  LiveRun run;
   run.run = std::strtoull(texts["run_id"].c_str(), nullptr, 16);
   if (run.run == 0 || to_hex(run.run) != texts["run_id"])
     return failure("run_id is no number of a run");
   if (!is_name(texts["scenario"])) return failure("scenario is no name");
-  auto url = LcmUrl::parse(texts["lcm_url"]);
-  if (!url) return failure("lcm_url: " + url.error());
-  run.url = *url;
   run.scenario = texts["scenario"];
   run.version = texts["version"];
   run.started = texts["started"];
-  run.run_dir = texts["run_dir"];
   run.key_file = text_in(json, "key_file").value_or("");
-  if (!run.run_dir.is_absolute()) return failure("run_dir is no absolute path");
   if (!run.key_file.empty() && !run.key_file.is_absolute())
     return failure("key_file is no absolute path");
   const auto pid = json.find("pid");
-  if (pid == json.end() || !pid->is_number_integer()) return failure("pid is missing or no number");
-  run.pid = pid->get<int>();
+  run.pid = pid == json.end() || !pid->is_number_integer() ? 0 : pid->get<int>();
+  if (run.pid <= 0) return failure("pid is missing or no number of a process");
+  if (run.preparing) return run;
+  auto url = LcmUrl::parse(texts["lcm_url"]);
+  if (!url) return failure("lcm_url: " + url.error());
+  run.url = *url;
+  run.run_dir = texts["run_dir"];
+  if (!run.run_dir.is_absolute()) return failure("run_dir is no absolute path");
   return run;
 }
 

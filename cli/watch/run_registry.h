@@ -26,6 +26,9 @@ struct LiveRun {
   LcmUrl url;
   std::filesystem::path run_dir, key_file;  ///< absolute; no key file: empty
   int pid = 0;                              ///< of `ergocast run`
+  /// It still reads its scenario, and computes modes. It has no processes, and neither URL nor
+  /// folder.
+  bool preparing = false;
 };
 
 std::string to_json_text(const LiveRun& run);

@@ -20,6 +20,7 @@ std::optional<NetcdfLibrary> load() {
   }
   if (handle == nullptr) return std::nullopt;
   NetcdfLibrary library{};
+  library.handle = handle;
   bool complete = true;
   const auto find = [&](auto& function, const char* name) {
     void* const found = dlsym(handle, name);

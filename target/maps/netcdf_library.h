@@ -25,6 +25,7 @@ struct NetcdfLibrary {
                             double* values);
   int (*nc_inq_var_chunking)(int file, int variable, int* storage, size_t* lengths);
   const char* (*nc_strerror)(int error);
+  void* handle;  ///< of dlopen(), for functions of the libraries that it uses
 
   /// Null if the machine does not have it.
   static const NetcdfLibrary* find();

@@ -65,7 +65,7 @@ class Desk : public ::testing::Test {
 
   Instant now_ = at(1s);
   MonitoredRun team_{kRun, at(0s)};
-  ControlDesk desk_{"here"};
+  ControlDesk desk_{"here", true};
   Outbox sent_;
   std::vector<std::string> lines_;
   ControlRequest last_;

@@ -76,6 +76,13 @@ TEST_F(LiveTeamFrames, BeginWithWhatTheStatusesHaveReported) {
   const std::string text = live_team.frame(late, more);
   EXPECT_NE(text.find(R"("past":{"t":[0.0,0.1,0.2],"phi":[0.5,0.5,0.5],)"), std::string::npos)
       << text;
+  const auto begin = text.find("data: ") + 6;
+  const auto sent = nlohmann::json::parse(text.substr(begin, text.find('\n', begin) - begin));
+  EXPECT_EQ(sent["team"]["t"], nlohmann::json::parse("[0.0, 0.1, 0.2]"));
+  const auto& agent = sent["team"]["agents"]["0"];
+  EXPECT_EQ(agent["metric"], nlohmann::json::parse("[0.5, 0.5, 0.5]"));
+  EXPECT_EQ(sent["team"]["words"][agent["state"][2].get<std::size_t>()], "ok");
+  EXPECT_FALSE(agent.contains("blocked_s"));
 }
 
 // A tick is named some time before it comes.

@@ -96,6 +96,21 @@ TEST_F(RunRegistry, AStaleEntryIsReportedOnceAndRemoved) {
   EXPECT_TRUE(live_runs().warnings.empty());
 }
 
+TEST_F(RunRegistry, ARunThatIsPreparedHasNoUrlAndNoFolder) {
+  LiveRun run = example();
+  run.preparing = true;
+  auto entry = written(run);
+  const LiveRuns found = live_runs();
+  ASSERT_EQ(found.runs.size(), 1U);
+  EXPECT_EQ(to_json_text(found.runs[0]), to_json_text(run));
+  EXPECT_TRUE(found.runs[0].preparing);
+  EXPECT_TRUE(found.runs[0].run_dir.empty());
+  entry.reset();
+  write(file(), to_json_text(run));  // as a killed process leaves it: it had started nothing
+  EXPECT_TRUE(live_runs().warnings.empty());
+  EXPECT_FALSE(fs::exists(file()));
+}
+
 TEST_F(RunRegistry, AFileThatIsNoEntryIsReportedAndLeftAlone) {
   written(example()).reset();
   std::string text = to_json_text(example());
@@ -118,6 +133,8 @@ TEST_F(RunRegistry, AFileThatIsNoEntryIsReportedAndLeftAlone) {
            {with("\"/home/you/runs", "\"runs"), "run_dir is no absolute path"},
            {with("\"/home/you/mission", "\"mission"), "key_file is no absolute path"},
            {with("77", "\"x\""), "pid is missing or no number"},
+           {with("77", "-1"), "pid is missing or no number"},
+           {with("\"pid\"", "\"preparing\": 1, \"pid\""), "preparing is neither true nor false"},
            {text + std::string(1 << 16, ' '), "is larger than an entry can be"}}) {
     write(file(), content);
     const std::string printed = warning();

@@ -393,6 +393,43 @@ TEST_F(PageInABrowser, ALateBrowserGetsTheWholeCurveOfAFreeDomain) {
   EXPECT_EQ(wait_for(mission), 0);
 }
 
+TEST_F(PageInABrowser, ALateBrowserShowsHowTheAgentsWereBefore) {
+  Child mission =
+      launch_endless(scenario("pace: REALTIME realtime_factor: 10"), {"--watch", "--port", "8816"});
+  browser_->open("http://127.0.0.1:8816/");
+  const std::string knows_two =
+      "return Boolean(window.ergocast?.S.run) && ergocast.S.run.teamAt(ergocast.S.run.end)"
+      "?.byId.get(2)?.state === 'ok'";
+  EXPECT_TRUE(browser_->becomes(knows_two));
+  signal_to(agent(2), SIGSTOP);
+  EXPECT_TRUE(browser_->becomes(
+      "return ergocast.S.run.teamAt(ergocast.S.run.end).byId.get(2).state === 'silent'"));
+  const std::string times =
+      "return [ergocast.S.run.history.findIndex(({ team }) => "
+      "team.byId.get(2)?.state === 'ok'), ergocast.S.run.history.findIndex("
+      "({ team }) => team.byId.get(2)?.state === 'silent')].map(i => "
+      "ergocast.S.run.times[i])";
+  signal_to(agent(2), SIGCONT);
+  EXPECT_TRUE(browser_->becomes(knows_two));
+  const double seen_until = js("return ergocast.S.run.times.at(-1)");
+  browser_->open("about:blank");
+  browser_->open("http://127.0.0.1:8816/");
+  EXPECT_TRUE(browser_->becomes(knows_two));
+  const auto late = js(times);
+  ASSERT_TRUE(late[0].is_number() && late[1].is_number()) << late;
+  EXPECT_LT(late[0], late[1]);
+  EXPECT_LT(late[1], seen_until);
+  const std::string text_at =
+      "ergocast.draw(" + std::to_string(late[1].get<double>()) +
+      "); return document.querySelectorAll('#rows .condition.silent').length";
+  EXPECT_EQ(js(text_at), 1);
+  expect_no_errors();
+  mission.send(SIGINT);
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
+}
+
 TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {
   Child mission =
       launch_endless(scenario("pace: REALTIME realtime_factor: 10"), {"--watch", "--port", "8813"});

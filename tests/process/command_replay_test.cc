@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An attacker without the key recorded a signed command that no process obeyed, and sends it again
-// later.
+// later. Without a key such a command is obeyed.
 #include <lcm/lcm-cpp.hpp>
 
 #include "runtime/process/key_file.h"
@@ -71,22 +71,28 @@ class CommandReplay : public ByHand {
     EXPECT_EQ(write_key_file(team_key_, key_text(key, false)), std::nullopt);
   }
 
-  /// A keyed team that runs until the test ends it.
+  /// A team that runs until the test ends it.
   void start_mission() {
     std::filesystem::create_directory(out());
-    hand("ergocast-logger", {"--out", out(), "--key-file", team_key_});
-    world_ = &hand("ergocast-sim", {"--key-file", team_key_});
+    member("ergocast-logger", {"--out", out()}, team_key_);
+    world_ = &member("ergocast-sim", {}, team_key_);
     coordinator_ =
-        &hand("ergocast-coordinator", {scenario(std::string("duration_s: ") + kEndless), "--run-id",
-                                       to_hex(kRun), "--key-file", coordinator_key_});
-    for (const char* id : {"0", "1", "2", "3"})
-      hand("ergocast-agent", {"--id", id, "--key-file", team_key_});
+        &member("ergocast-coordinator",
+                {scenario(std::string("duration_s: ") + kEndless), "--run-id", to_hex(kRun)},
+                coordinator_key_);
+    for (const char* id : {"0", "1", "2", "3"}) member("ergocast-agent", {"--id", id}, team_key_);
     ASSERT_TRUE(recorded(30000)) << coordinator_->printed();
+  }
+  Program& member(const std::string& program, std::vector<std::string> arguments,
+                  const std::filesystem::path& key) {
+    if (keyed_) arguments.insert(arguments.end(), {"--key-file", key});
+    return hand(program, std::move(arguments));
   }
   /// Runs the operator's command as a person would.
   int send_command(const std::string& command, std::vector<std::string> more = {},
                    const char* url = kUrl) {
-    more.insert(more.begin(), {command, "--lcm-url", url, "--key-file", coordinator_key_});
+    more.insert(more.begin(), {command, "--lcm-url", url});
+    if (keyed_) more.insert(more.end(), {"--key-file", coordinator_key_});
     return ergocast(more);
   }
   void stop_coordinator() const {
@@ -118,7 +124,9 @@ class CommandReplay : public ByHand {
   /// processes that started later. The world leaves a stop in order to the coordinator, which does
   /// not receive it.
   void pass_the_first_tick() const {
-    Stranger operator_(kUrl, MessageAuthenticator(read_key_file(coordinator_key_).value()));
+    MessageAuthenticator key;
+    if (keyed_) key = MessageAuthenticator(read_key_file(coordinator_key_).value());
+    Stranger operator_(kUrl, key);
     ASSERT_TRUE(eventually([&] {
       operator_.send(Bus::kCommand, Stop{{kRun, kOperator, 1, 0, 0}, false, "of the first tick"});
       return ignores(*world_);
@@ -137,6 +145,9 @@ class CommandReplay : public ByHand {
     EXPECT_TRUE(summary()["reason"].get<std::string>().starts_with("stopped by `ergocast stop`"));
   }
 
+  static constexpr const char* kElsewhere = "udpm://239.255.76.67:24800?ttl=0";
+
+  bool keyed_ = true;
   const std::filesystem::path coordinator_key_ = folder_ / "c.key", team_key_ = folder_ / "t.key";
   Program* world_ = nullptr;
   Program* coordinator_ = nullptr;
@@ -173,7 +184,6 @@ TEST_F(CommandReplay, AStopThatNoCoordinatorObeyedDoesNotEndTheMissionLater) {
 }
 
 TEST_F(CommandReplay, AStopAtOnceThatTheTeamDidNotReceiveDoesNotStopItLater) {
-  constexpr const char* kElsewhere = "udpm://239.255.76.67:24800?ttl=0";
   start_mission();
   Tape tape(kElsewhere);
   EXPECT_EQ(send_command("stop", {"--now", "--run-id", to_hex(kRun)}, kElsewhere), 4) << output();
@@ -184,6 +194,23 @@ TEST_F(CommandReplay, AStopAtOnceThatTheTeamDidNotReceiveDoesNotStopItLater) {
   ASSERT_TRUE(moves_on()) << coordinator_->printed();
   EXPECT_EQ(send_command("stop", {"--now", "--run-id", to_hex(kRun)}), 0) << output();
   EXPECT_EQ(wait_for(world_->child), 0) << world_->printed();
+  EXPECT_TRUE(world_->prints("stopped at once by `ergocast stop --now`")) << world_->printed();
+}
+
+// The operator's host can send and receives nothing: another URL, whose commands arrive at the
+// team.
+TEST_F(CommandReplay, WithoutAKeyAHostThatReceivesNothingStopsTheTeam) {
+  keyed_ = false;
+  start_mission();
+  Tape tape(kElsewhere);
+  EXPECT_EQ(send_command("stop", {"--now", "--run-id", to_hex(kRun)}, kElsewhere), 4) << output();
+  ASSERT_GT(tape.size(), 0U);
+  pass_the_first_tick();
+  EXPECT_TRUE(eventually([&] {
+    tape.play(kUrl);
+    return !world_->child.running() || ignores(*coordinator_);
+  })) << world_->printed();
+  EXPECT_FALSE(ignores(*coordinator_)) << coordinator_->printed();
   EXPECT_TRUE(world_->prints("stopped at once by `ergocast stop --now`")) << world_->printed();
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A run is found without its URL: list, status, watch, spy and stop take the only live one.
+#include "tests/process/support/free_rooms.h"
 #include "tests/process/support/programs.h"
 
 namespace ergocast::test {
@@ -178,6 +179,32 @@ TEST_F(Found, ARunThatWasKilledIsReportedAndNotTaken) {
   EXPECT_TRUE(printed("warning: run ") && printed("was killed") &&
               printed("no run of this user is live"))
       << output();
+  EXPECT_TRUE(entries().empty());
+}
+
+// Modes of a free domain take seconds; meanwhile the run is stopped, so that it cannot finish them.
+TEST_F(Found, ARunThatStillComputesItsModesIsListedAndCanBeEnded) {
+  Child run = start("ergocast", {"run", free_rooms(folder_), "--set", "basis.modes_x=20", "--set",
+                                 "basis.modes_y=20", "--out", folder_ / "one"});
+  ASSERT_TRUE(eventually([] { return entries().size() == 1; }, run.pid()));
+  run.send(SIGSTOP);
+  EXPECT_EQ(ergocast({"list"}), 0);
+  EXPECT_TRUE(printed("  rooms, since ") && printed("still reads its scenario")) << output();
+  const auto runs = listed();
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_EQ(runs[0]["preparing"], true);
+  EXPECT_EQ(runs[0]["pid"], run.pid());
+  EXPECT_EQ(ergocast({"status"}), 4);
+  EXPECT_TRUE(printed("still reads its scenario")) << output();
+  Child stop = start("ergocast", {"stop", "--now"});
+  EXPECT_TRUE(eventually([&] { return printed("ending it"); }, stop.pid())) << output();
+  EXPECT_TRUE(run.running());
+  run.send(SIGCONT);
+  EXPECT_EQ(wait_for(stop), 0) << output();
+  wait_for(run);
+  EXPECT_EQ(run.fate(), "was killed by SIGTERM");
+  EXPECT_EQ(ergocast({"list"}), 0);
+  EXPECT_EQ(output(), "no run of this user is live on this host\n");
   EXPECT_TRUE(entries().empty());
 }
 

@@ -5,6 +5,8 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include <type_traits>
+
 #include "target/target.h"
 #include "tests/scenario/scenarios.h"
 #include "tests/support/temp_folder.h"
@@ -279,6 +281,99 @@ TEST_F(WaterColumnTest, WhoseCoordinatesUnpackToMoreThanAChunkMayHaveIsRefused) 
   EXPECT_EQ(said_with(1000), "nothing");
   const std::string printed = said_with(9'000'000);
   EXPECT_NE(printed.find("x is stored in parts of more than 64 MiB"), std::string::npos) << printed;
+}
+
+/// Changes a file of Hdf5Column as an attacker would, with the HDF5 library that libnetcdf uses.
+class Hdf5Attack {
+ public:
+  explicit Hdf5Attack(const std::filesystem::path& file)
+      : library_(dlopen("libnetcdf.so.19", RTLD_NOW)) {
+    expect(function<int()>("H5open")());
+    constexpr unsigned kReadAndWrite = 1;
+    file_ = function<Id(const char*, unsigned, Id)>("H5Fopen")(file.c_str(), kReadAndWrite, 0);
+    expect(file_);
+    expect(function<int(Id, const char*, Id)>("H5Ldelete")(file_, "chl", 0));
+  }
+  ~Hdf5Attack() {
+    expect(function<int(Id)>("H5Fclose")(file_));
+    dlclose(library_);
+  }
+  /// The numbers of chl are the bytes of another file.
+  void store_in(const std::filesystem::path& other) {
+    make_dataset([&](Id properties) {
+      return function<int(Id, const char*, off_t, std::uint64_t)>("H5Pset_external")(
+          properties, other.c_str(), 0, 64);
+    });
+  }
+  /// The numbers of chl are those of a dataset of another file.
+  void map_to(const std::filesystem::path& other) {
+    make_dataset([&](Id properties) {
+      const Id space = make_space();
+      return function<int(Id, Id, const char*, const char*, Id)>("H5Pset_virtual")(
+          properties, space, other.c_str(), "chl", space);
+    });
+  }
+  void link_to(const std::filesystem::path& other) {
+    expect(function<int(const char*, const char*, Id, const char*, Id, Id)>("H5Lcreate_external")(
+        other.c_str(), "/chl", file_, "chl", 0, 0));
+  }
+
+ private:
+  using Id = std::int64_t;
+  template <class Type>
+  Type* function(const char* name) const {
+    return reinterpret_cast<Type*>(dlsym(library_, name));
+  }
+  Id constant(const char* name) const { return *static_cast<Id*>(dlsym(library_, name)); }
+  static void expect(Id result) { ASSERT_GE(result, 0); }
+  Id make_space() const {
+    const std::uint64_t lengths[] = {2, 2, 2};
+    return function<Id(int, const std::uint64_t*, const std::uint64_t*)>("H5Screate_simple")(
+        3, lengths, nullptr);
+  }
+  template <class F>
+  void make_dataset(const F& lay_out) {
+    const Id properties = function<Id(Id)>("H5Pcreate")(constant("H5P_CLS_DATASET_CREATE_ID_g"));
+    expect(lay_out(properties));
+    const Id dataset = function<Id(Id, const char*, Id, Id, Id, Id, Id)>("H5Dcreate2")(
+        file_, "chl", constant("H5T_NATIVE_DOUBLE_g"), make_space(), 0, properties, 0);
+    expect(dataset);
+    unsigned i = 0;
+    for (const char* name : {"depth", "y", "x"}) {
+      const Id scale = function<Id(Id, const char*, Id)>("H5Oopen")(file_, name, 0);
+      expect(function<int(Id, Id, unsigned)>("H5DSattach_scale")(dataset, scale, i++));
+      expect(function<int(Id)>("H5Oclose")(scale));
+    }
+    expect(function<int(Id)>("H5Oclose")(dataset));
+  }
+
+  void* library_;
+  Id file_ = -1;
+};
+
+TEST_F(WaterColumnTest, ThatNamesAnotherFileOfTheHostIsRefused) {
+  const auto file = folder_.path() / "column.nc", other = folder_.path() / "other.nc",
+             bytes = folder_.path() / "secret";
+  const std::vector<double> secret(8, 3);
+  std::ofstream(bytes, std::ios::binary)
+      .write(reinterpret_cast<const char*>(secret.data()), 8 * sizeof(double));
+  const auto said_with = [&](const auto& attack) {
+    Hdf5Column(file, 1000);
+    Hdf5Column(other, 1000);
+    if constexpr (!std::is_null_pointer_v<std::decay_t<decltype(attack)>>) {
+      Hdf5Attack change(file);
+      attack(change);
+    }
+    const Loaded result =
+        Scenario::parse(water_column_scenario(""), (folder_.path() / "column.textproto").string());
+    return std::holds_alternative<Scenario>(result) ? "nothing" : to_string(std::get<1>(result)[0]);
+  };
+  EXPECT_EQ(said_with(nullptr), "nothing");
+  const std::string wanted = "the numbers of chl are in another file, which is not read";
+  for (const std::string& printed : {said_with([&](Hdf5Attack& one) { one.store_in(bytes); }),
+                                     said_with([&](Hdf5Attack& one) { one.map_to(other); }),
+                                     said_with([&](Hdf5Attack& one) { one.link_to(other); })})
+    EXPECT_NE(printed.find(wanted), std::string::npos) << printed;
 }
 
 TEST_F(WaterColumnTest, OfNoNetcdfFileIsRefused) {

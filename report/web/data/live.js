@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes rows, statuses, incidents and log lines of the frames that the server sends about a running team.
-import { Run, indexAt, recordedRun, withMore } from './run.js';
+import { Run, indexAt, recordHistory, recordedRun, withMore } from './run.js';
 import { $, element } from '../text.js';
 
 const MOST_LINES = 400,
@@ -130,7 +130,7 @@ export function watchLive(page) {
     if (before && facts.run === message.run_id) {
       run.history = before.history;
       run.times = before.times;
-    }
+    } else if (message.team) recordHistory(run, message.team);
     run.told = toldBefore(message.past);
     facts = {
       run: message.run_id,

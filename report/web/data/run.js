@@ -219,8 +219,8 @@ export function withMore(heard, roster) {
   return [...heard, ...roster.filter(incident => !known.has(incident.agent))].sort((a, b) => a.t - b.t);
 }
 
-// How the agents were, as cli/team/recorded_team.h writes it, in the shape of live statuses.
-function recordHistory(run, { t, metric, agents, words, phases }) {
+// How the agents were, as cli/team/agent_history.h writes it, in the shape of live statuses.
+export function recordHistory(run, { t, metric, agents, words, phases }) {
   run.times = t;
   run.history = t.map((at, i) => {
     const list = Object.entries(agents)
