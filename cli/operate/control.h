@@ -14,7 +14,7 @@
 #include "core/base/ids.h"
 #include "core/base/result.h"
 #include "runtime/bus/transport.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 

@@ -11,7 +11,7 @@
 #include "cli/watch/progress.h"
 #include "core/base/ids.h"
 #include "core/base/result.h"
-#include "runtime/process/node.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 

@@ -76,7 +76,9 @@ class Stopping : public TeamCommand {
   void send_stop_to(RunId run, const MonitoredRun& team) {
     const char* how = options_.at_once ? kAtOnce : "stopped by `ergocast stop` on ";
     const auto [at, is_new] = requests_.try_emplace(
-        run, Request{StopOrder(run, options_.at_once, how + host_name(), transport_->keyed(), now()), now()});
+        run,
+        Request{StopOrder(run, options_.at_once, how + host_name(), transport_->keyed(), now()),
+                now()});
     Request& request = at->second;
     if (is_new) {
       print(run, options_.at_once ? "stopping all vehicles at once"
@@ -93,7 +95,8 @@ class Stopping : public TeamCommand {
     if (!options_.at_once) return;
     Outbox out;
     for (const auto& [run, tick] : crowd_) {
-      StopRequest(run, false, kAtOnce + host_name()).repeat(now(), true, tick, transport_->keyed(), out);
+      StopRequest(run, false, kAtOnce + host_name())
+          .repeat(now(), true, tick, transport_->keyed(), out);
     }
     transport_->publish(out);
     crowded_ = crowded_ || !crowd_.empty();
