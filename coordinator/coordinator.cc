@@ -18,10 +18,6 @@ using namespace std::chrono_literals;
 
 constexpr auto kTeamStatusPeriod = 250ms;
 
-bool is_over(MissionState state) {
-  return state == MissionState::kEnded || state == MissionState::kFailed;
-}
-
 }  // namespace
 
 const char* to_string(MemberState member_state) {

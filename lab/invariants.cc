@@ -46,7 +46,7 @@ Invariants::Invariants(const Mission& mission)
       weights_(sobolev_weights(mission.basis, mission.domain)),
       block_count_(block_count_of(mission)),
       wire_modes_(modes_on_wire(mission)) {
-  const bool alone = mission.separation.distance_m == 0;
+  const bool alone = !keeps_distance(mission);
   for (AgentId id = 0; id < std::ssize(mission.starts_m); ++id) {
     const Tick until = covers_until(mission, id);
     if (until <= mission.timing.tick_count)
@@ -86,7 +86,7 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
 void Invariants::check(double t_s, const WorldState& world) {
   if (mission_.radio_range_m > 0 && world.header.tick >= last_tick_) note_positions(t_s, world);
   last_tick_ = std::max(last_tick_, world.header.tick);
-  if (mission_.separation.distance_m > 0) check_distances(t_s, world);
+  if (keeps_distance(mission_)) check_distances(t_s, world);
   check_paused(t_s, world);
   check_home(t_s, world);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {

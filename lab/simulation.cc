@@ -180,7 +180,7 @@ void Simulation::note(NodeId from, const Outgoing& sent) {
     counted_ = std::max(counted_, world->header.tick - world->uncounted_ticks);
   }
   if (const auto* part = std::get_if<MissionPart>(&sent.message)) {
-    end_announced_ |= part->state == MissionState::kEnded || part->state == MissionState::kFailed;
+    end_announced_ |= is_over(part->state);
   }
   const auto* command = std::get_if<Command>(&sent.message);
   at(from).answered |= command != nullptr && command->header.tick >= 0;

@@ -8,6 +8,7 @@
 
 #include "core/base/require.h"
 #include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
 #include "core/motion/starts.h"
 
 namespace ergocast {
@@ -194,7 +195,7 @@ void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vect
     observer_.see(mission, entry->kind, x_m);
     if (in_cosines_) cosines_.see(*in_cosines_, entry->kind, x_m);
   }
-  if (mission.separation.distance_m > 0) row_places_m_.push_back(x_m);
+  if (keeps_distance(mission)) row_places_m_.push_back(x_m);
 }
 
 void RecordTables::end_row(const Context& context) {

@@ -10,6 +10,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
 #include "core/motion/home.h"
 #include "core/motion/vehicle.h"
 #include "logger/run_record.h"
@@ -62,7 +63,7 @@ Json agents(const Recorder& recorder) {
       agent["contributions_lost"] = status.contributions_lost;
       agent["contributions_relayed"] = status.contributions_relayed;
       agent["missed_ticks"] = status.missed_ticks;
-      if (mission->separation.distance_m > 0) {
+      if (keeps_distance(*mission)) {
         agent["blocked_ticks"] = status.blocked_ticks;
         agent["longest_block_ticks"] = status.longest_block_ticks;
       }
@@ -238,7 +239,7 @@ void add_losses(const RunFacts& facts, const RunContext& context, Json& summary)
 void add_motion(const Recorder& recorder, const Mission& mission, Json& summary) {
   if (fastest_mps(mission) > 0)
     summary["speed_limit"] = speed_limit(mission, recorder.facts().clamped_commands);
-  if (mission.separation.distance_m > 0) summary["separation"] = separation(recorder, mission);
+  if (keeps_distance(mission)) summary["separation"] = separation(recorder, mission);
   if (any_station(mission)) summary["stations"] = stations(recorder, mission);
 }
 

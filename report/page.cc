@@ -10,6 +10,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
 #include "core/motion/vehicle.h"
 #include "core/motion/way_home.h"
 #include "report/base64.h"
@@ -118,7 +119,7 @@ Json conventions(const Mission& mission, bool free_domain) {
   const bool all_have_own = std::ranges::all_of(
       mission.kinds, [](const AgentKind& kind) { return kind.vehicle.has_value(); });
   if (mission.kinds.empty() || !all_have_own) add("vehicles", vehicle_text(mission.vehicle));
-  if (mission.separation.distance_m > 0) {
+  if (keeps_distance(mission)) {
     add("distance", readable(mission.separation.distance_m) + " m between any two bodies");
   }
   add("time step", readable(mission.timing.dt_s) + " s");
@@ -315,7 +316,7 @@ Json page_mission(const Mission& flown, const Field& density) {
   if (const Sensors sensors(mission); !sensors.uniform()) page["seen"] = seen(mission, sensors);
   if (any_but_points(mission)) page["vehicles"] = vehicles_of(mission);
   if (!mission.walls.empty()) page["walls"] = rings_of(mission);
-  if (mission.separation.distance_m > 0) page["body_radius_m"] = mission.separation.distance_m / 2;
+  if (keeps_distance(mission)) page["body_radius_m"] = mission.separation.distance_m / 2;
   if (any_station(mission)) page["stations"] = stations_of(mission);
   return page;
 }

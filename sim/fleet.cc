@@ -13,8 +13,7 @@ namespace ergocast {
 
 // ---- members ----
 
-void Fleet::take_roster(const Mission& mission, const std::vector<RosterEntry>& roster,
-                        Surroundings surroundings) {
+void Fleet::take_roster(const std::vector<RosterEntry>& roster, Surroundings surroundings) {
   for (const RosterEntry& entry : roster) {
     const auto known = vehicles_.find(entry.author.agent);
     if (entry.active_until < 0 || known == vehicles_.end()) continue;
@@ -26,7 +25,7 @@ void Fleet::take_roster(const Mission& mission, const std::vector<RosterEntry>& 
     const auto [at, is_new] = vehicles_.try_emplace(id);
     Slot& slot = at->second;
     if (is_new) {
-      place(mission, id, slot, place_for(mission, id, surroundings));
+      place(id, slot, place_for(id, surroundings));
       if (physics_ && surroundings != Surroundings::kPlanned)
         physics_->place(id, slot.x_m, slot.applied_mps);
     }
@@ -83,50 +82,50 @@ AgentId Fleet::first_unheard() const {
 
 // ---- moving ----
 
-void Fleet::step(const Mission& mission, Tick tick) {
+void Fleet::step(Tick tick) {
   for (auto& [id, slot] : vehicles_) {
-    drive(mission, id, slot, tick);
-    if (slot.driven(tick, mission.timing) && slot.next_mps != slot.commands.last()->velocity_mps)
+    drive(id, slot, tick);
+    if (slot.driven(tick, mission_->timing) && slot.next_mps != slot.commands.last()->velocity_mps)
       ++clamped_commands_;
   }
-  if (filter_) filter_commands(mission, tick);
-  if (physics_) return move_bodies(mission);
-  for (auto& [id, slot] : vehicles_) move(mission, id, slot, tick);
+  if (filter_) filter_commands(tick);
+  if (physics_) return move_bodies();
+  for (auto& [id, slot] : vehicles_) move(id, slot, tick);
 }
 
-void Fleet::stop(const Mission& mission) {
+void Fleet::stop() {
   for (auto& [id, slot] : vehicles_) slot.applied_mps = slot.next_mps = {0, 0, 0};
-  if (physics_) move_bodies(mission);
+  if (physics_) move_bodies();
 }
 
-void Fleet::drive(const Mission& mission, AgentId id, Slot& slot, Tick tick) {
+void Fleet::drive(AgentId id, Slot& slot, Tick tick) const {
   const Eigen::Vector3d wanted_mps = slot.has_driver()
-                                         ? slot.commands.velocity_mps(tick, mission.timing)
+                                         ? slot.commands.velocity_mps(tick, mission_->timing)
                                          : Eigen::Vector3d(0, 0, 0);
-  slot.next_mps = executed(motion_of(mission, id), slot.applied_mps, wanted_mps);
+  slot.next_mps = executed(motion_of(*mission_, id), slot.applied_mps, wanted_mps);
 }
 
-void Fleet::move(const Mission& mission, AgentId id, Slot& slot, Tick tick) {
+void Fleet::move(AgentId id, Slot& slot, Tick tick) const {
   const Eigen::Vector3d mean_mps =
-      mean_velocity(motion_of(mission, id), slot.applied_mps, slot.next_mps);
-  slot.x_m = reflect(moved(mission, id, tick, slot.x_m, mean_mps), mission.domain);
+      mean_velocity(motion_of(*mission_, id), slot.applied_mps, slot.next_mps);
+  slot.x_m = reflect(moved(*mission_, id, tick, slot.x_m, mean_mps), mission_->domain);
   slot.applied_mps = slot.next_mps;
 }
 
 /// Filters all commands by the positions at the beginning of the step, so that the vehicles' order
 /// does not matter. In lockstep agents know the other bodies, so only edges and the vehicles' own
 /// limits count; points need neither. A vehicle without a command stands, or brakes.
-void Fleet::filter_commands(const Mission& mission, Tick tick) {
-  const bool guards = world_guards(mission);
+void Fleet::filter_commands(Tick tick) {
+  const bool guards = world_guards(*mission_);
   bodies_.clear();
   for (const auto& [id, slot] : vehicles_) {
-    const double limit_mps = motion_of(mission, id).speed_limit_mps;
+    const double limit_mps = motion_of(*mission_, id).speed_limit_mps;
     if (guards) bodies_.push_back({id, slot.x_m, limit_mps, 0, true, slot.applied_mps});
   }
   for (auto& [id, slot] : vehicles_) {
-    const Motion motion = motion_of(mission, id);
-    const bool as_wanted = motion.is_point() && !filters_again(mission);
-    if (!slot.driven(tick, mission.timing) || as_wanted) continue;
+    const Motion motion = motion_of(*mission_, id);
+    const bool as_wanted = motion.is_point() && !filters_again(*mission_);
+    if (!slot.driven(tick, mission_->timing) || as_wanted) continue;
     const Mover self{id, tick, slot.x_m, motion.speed_limit_mps, slot.applied_mps};
     slot.next_mps = filter_->safe(self, slot.next_mps, bodies_).velocity_mps;
   }
@@ -134,13 +133,14 @@ void Fleet::filter_commands(const Mission& mission, Tick tick) {
 
 /// Moves the bodies by the physics. Agents refuse a position outside of the domain. Those that keep
 /// a distance accept it, because they need the true position.
-void Fleet::move_bodies(const Mission& mission) {
+void Fleet::move_bodies() {
   moved_.clear();
   for (const auto& [id, slot] : vehicles_) moved_.push_back({id, slot.next_mps});
   physics_->pass_tick(moved_);
   for (const PhysicalBody& body : moved_) {
     Slot& slot = vehicles_.at(body.id);
-    slot.x_m = keeps_distance(mission) ? body.position_m : mission.domain.nearest(body.position_m);
+    slot.x_m =
+        keeps_distance(*mission_) ? body.position_m : mission_->domain.nearest(body.position_m);
     slot.applied_mps = body.velocity_mps;
   }
 }
@@ -164,7 +164,8 @@ std::vector<WorldState> Fleet::snapshot() const {
   return states;
 }
 
-std::optional<std::string> Fleet::make_physics(const Mission& mission) {
+std::optional<std::string> Fleet::learn(const Mission& mission) {
+  if (!mission_) mission_ = mission;
   if (!physics_maker_ || physics_) return {};
   auto made = physics_maker_(mission);
   if (!made) return made.error();

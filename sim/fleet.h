@@ -8,8 +8,7 @@
 //   and the walls stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
 //   result.
 //
-// Each method gets the mission, which is the same one at every call. fleet.cc has members, commands
-// and steps, placing.cc has where vehicles begin.
+// fleet.cc has members, commands and steps, placing.cc has where vehicles begin.
 #pragma once
 
 #include <map>
@@ -19,7 +18,9 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/mission/mission.h"
 #include "core/mission/roster.h"
+#include "core/motion/filter_rules.h"
 #include "core/motion/separation.h"
 #include "sim/command_history.h"
 #include "sim/physics.h"
@@ -28,8 +29,6 @@
 
 namespace ergocast {
 
-/// Whether bodies keep a distance.
-inline bool keeps_distance(const Mission& mission) { return mission.separation.distance_m > 0; }
 /// Whether a restarted world begins from a state of all bodies, because their commands alone do not
 /// determine their motion.
 inline bool begins_by_state(const Mission& mission) {
@@ -48,12 +47,15 @@ class Fleet {
   /// @param physics  what moves the bodies; without it core/motion/vehicle.h does
   explicit Fleet(PhysicsMaker physics) : physics_maker_(std::move(physics)) {}
 
-  // ---- members ----
+  /// Takes in the mission, once it is known, and makes the physics. Otherwise returns why that
+  /// fails. Later calls do nothing.
+  std::optional<std::string> learn(const Mission& mission);
+
+  // ---- members, of a known mission ----
 
   /// Takes in which incarnations drive. A vehicle whose agent has left keeps its place, and a new
   /// member's vehicle gets one.
-  void take_roster(const Mission& mission, const std::vector<RosterEntry>& roster,
-                   Surroundings surroundings);
+  void take_roster(const std::vector<RosterEntry>& roster, Surroundings surroundings);
   /// The commands of the incarnation that drives a vehicle; null if `sender` drives none.
   CommandHistory* commands_of(const Header& sender);
   /// The tick that the newest command for this vehicle answers; −1: none. @pre it exists
@@ -71,20 +73,17 @@ class Fleet {
 
   // ---- beginning ----
 
-  /// Makes the physics once a mission is known. Otherwise returns why that fails.
-  std::optional<std::string> make_physics(const Mission& mission);
   /// Puts every vehicle where it is at `tick`, by `before` if begins_by_state(), else by its
   /// agent's last two commands.
   /// @param before  a state with all bodies, from a world before this one
-  void begin(const Mission& mission, Tick tick, const StateAssembler& before,
-             Surroundings surroundings);
+  void begin(Tick tick, const StateAssembler& before, Surroundings surroundings);
 
   // ---- moving ----
 
   /// Moves all vehicles from `tick` to the next tick.
-  void step(const Mission& mission, Tick tick);
+  void step(Tick tick);
   /// Lets a tick pass in which no vehicle moves, but for bodies with mass, which roll on.
-  void stop(const Mission& mission);
+  void stop();
 
   /// The parts of a state with all vehicles. Only part numbers and vehicles are filled in.
   std::vector<WorldState> snapshot() const;
@@ -108,17 +107,17 @@ class Fleet {
     }
   };
 
-  Eigen::Vector3d place_for(const Mission& mission, AgentId id, Surroundings surroundings) const;
-  void settle(const Mission& mission, Tick tick, const StateAssembler& before,
-              Surroundings surroundings);
-  static void recall(const Mission& mission, AgentId id, Slot& slot, Tick now);
-  void keep_from_walls(const Mission& mission, AgentId id, Slot& slot, Tick tick);
-  void filter_commands(const Mission& mission, Tick tick);
-  void move_bodies(const Mission& mission);
-  static void place(const Mission& mission, AgentId id, Slot& slot, const Eigen::Vector3d& x_m);
-  static void drive(const Mission& mission, AgentId id, Slot& slot, Tick tick);
-  static void move(const Mission& mission, AgentId id, Slot& slot, Tick tick);
+  Eigen::Vector3d place_for(AgentId id, Surroundings surroundings) const;
+  void settle(Tick tick, const StateAssembler& before, Surroundings surroundings);
+  void recall(AgentId id, Slot& slot, Tick now) const;
+  void keep_from_walls(AgentId id, Slot& slot, Tick tick);
+  void filter_commands(Tick tick);
+  void move_bodies();
+  void place(AgentId id, Slot& slot, const Eigen::Vector3d& x_m) const;
+  void drive(AgentId id, Slot& slot, Tick tick) const;
+  void move(AgentId id, Slot& slot, Tick tick) const;
 
+  std::optional<Mission> mission_;
   std::map<AgentId, Slot> vehicles_;
   std::optional<SeparationFilter> filter_;  // if it guards, has walls, or a body is no point
   std::vector<Neighbour> bodies_;           // of the tick, for the guard

@@ -9,13 +9,12 @@
 
 namespace ergocast {
 
-void Fleet::begin(const Mission& mission, Tick tick, const StateAssembler& before,
-                  Surroundings surroundings) {
-  if (filters_again(mission) || any_but_points(mission)) filter_.emplace(mission, 0);
-  if (begins_by_state(mission)) {
-    settle(mission, tick, before, surroundings);
+void Fleet::begin(Tick tick, const StateAssembler& before, Surroundings surroundings) {
+  if (filters_again(*mission_) || any_but_points(*mission_)) filter_.emplace(*mission_, 0);
+  if (begins_by_state(*mission_)) {
+    settle(tick, before, surroundings);
   } else {
-    for (auto& [id, slot] : vehicles_) recall(mission, id, slot, tick);
+    for (auto& [id, slot] : vehicles_) recall(id, slot, tick);
   }
   if (!physics_) return;
   for (const auto& [id, slot] : vehicles_) physics_->place(id, slot.x_m, slot.applied_mps);
@@ -25,9 +24,8 @@ void Fleet::begin(const Mission& mission, Tick tick, const StateAssembler& befor
 /// and from walls. Vehicles whose agents have left are in no other message. In lockstep the
 /// vehicles continue with the answers to that tick. In real time all stand: old commands were for
 /// other positions.
-void Fleet::settle(const Mission& mission, Tick tick, const StateAssembler& before,
-                   Surroundings surroundings) {
-  const bool realtime = mission.timing.pace == Pace::kRealtime;
+void Fleet::settle(Tick tick, const StateAssembler& before, Surroundings surroundings) {
+  const bool realtime = mission_->timing.pace == Pace::kRealtime;
   for (auto& [id, slot] : vehicles_) {
     slot.placed = false;
     if (realtime) slot.commands.stand();
@@ -42,61 +40,61 @@ void Fleet::settle(const Mission& mission, Tick tick, const StateAssembler& befo
   }
   for (Tick past = before.newest(); past >= 0 && past < tick && !realtime; ++past) {
     for (auto& [id, slot] : vehicles_) {
-      drive(mission, id, slot, past);
-      if (!mission.walls.empty() && slot.driven(past, mission.timing))
-        keep_from_walls(mission, id, slot, past);
-      move(mission, id, slot, past);
+      drive(id, slot, past);
+      if (!mission_->walls.empty() && slot.driven(past, mission_->timing))
+        keep_from_walls(id, slot, past);
+      move(id, slot, past);
     }
   }
   for (auto& [id, slot] : vehicles_) {
     if (slot.placed) continue;
-    place(mission, id, slot, place_for(mission, id, surroundings));
+    place(id, slot, place_for(id, surroundings));
     slot.placed = true;
   }
 }
 
 /// Computes where a slot is at tick `now` from its agent's last two commands.
-void Fleet::recall(const Mission& mission, AgentId id, Slot& slot, Tick now) {
+void Fleet::recall(AgentId id, Slot& slot, Tick now) const {
   const Tick answered = slot.commands.answered();
   if (answered < 0) return;
   slot.x_m = slot.commands.last()->position_m;
   const Command* const before = slot.commands.before();
   if (before != nullptr && before->header.tick + 1 == answered)
-    slot.applied_mps = within_speed_limit(motion_of(mission, id), before->velocity_mps);
+    slot.applied_mps = within_speed_limit(motion_of(*mission_, id), before->velocity_mps);
   for (Tick tick = answered; tick < now; ++tick) {
-    drive(mission, id, slot, tick);
-    move(mission, id, slot, tick);
+    drive(id, slot, tick);
+    move(id, slot, tick);
   }
 }
 
 /// The position of a new vehicle: its start if that is far enough from all others, else one with
 /// room that the seed chooses.
-Eigen::Vector3d Fleet::place_for(const Mission& mission, AgentId id,
-                                 Surroundings surroundings) const {
-  if (surroundings == Surroundings::kPlanned || !keeps_distance(mission))
-    return start_of(mission, id);
+Eigen::Vector3d Fleet::place_for(AgentId id, Surroundings surroundings) const {
+  if (surroundings == Surroundings::kPlanned || !keeps_distance(*mission_))
+    return start_of(*mission_, id);
   const auto distance_m =
       surroundings == Surroundings::kStanding ? start_distance_m : join_distance_m;
   std::vector<Placed> others;
   for (const auto& [other, slot] : vehicles_) {
     if (other != id && slot.placed) others.push_back({other, slot.x_m});
   }
-  const bool planned = static_cast<std::size_t>(id) < mission.starts_m.size();
+  const bool planned = static_cast<std::size_t>(id) < mission_->starts_m.size();
   const bool free = std::ranges::all_of(others, [&](const Placed& other) {
-    const double apart_m = (other.position_m - start_of(mission, id)).norm();
-    return apart_m >= distance_m(mission, id, other.id);
+    const double apart_m = (other.position_m - start_of(*mission_, id)).norm();
+    return apart_m >= distance_m(*mission_, id, other.id);
   });
-  return planned && free ? start_of(mission, id) : start_beside(mission, id, others, distance_m);
+  return planned && free ? start_of(*mission_, id)
+                         : start_beside(*mission_, id, others, distance_m);
 }
 
-void Fleet::place(const Mission& mission, AgentId id, Slot& slot, const Eigen::Vector3d& x_m) {
+void Fleet::place(AgentId id, Slot& slot, const Eigen::Vector3d& x_m) const {
   slot.x_m = x_m;
-  slot.applied_mps = first_velocity(motion_of(mission, id), x_m);
+  slot.applied_mps = first_velocity(motion_of(*mission_, id), x_m);
 }
 
 /// Filters one command by walls and own limits, as filter_commands() does in lockstep.
-void Fleet::keep_from_walls(const Mission& mission, AgentId id, Slot& slot, Tick tick) {
-  const double limit_mps = motion_of(mission, id).speed_limit_mps;
+void Fleet::keep_from_walls(AgentId id, Slot& slot, Tick tick) {
+  const double limit_mps = motion_of(*mission_, id).speed_limit_mps;
   const Mover self{id, tick, slot.x_m, limit_mps, slot.applied_mps};
   slot.next_mps = filter_->safe(self, slot.next_mps, {}).velocity_mps;
 }

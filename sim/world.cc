@@ -6,6 +6,8 @@
 #include <chrono>
 #include <utility>
 
+#include "core/motion/filter_rules.h"
+
 namespace ergocast {
 namespace {
 
@@ -37,7 +39,7 @@ void World::receive(const Message& message, Bus bus, AgentId transmitter, Instan
 void World::on(const MissionPart&, const Arrival& arrival) {
   if (emergency_stopped_ || !arrival.mission_changed) return;
   if (follower().plan_problem()) return finish(*follower().plan_problem());
-  if (auto problem = fleet_.make_physics(mission())) return fail(std::move(*problem));
+  if (auto problem = fleet_.learn(mission())) return fail(std::move(*problem));
   // At the mission's last tick the world waits until the record has the last states, too.
   if (follower().over() && (!over_since_ || record_.complete(tick_)))
     return finish(follower().reason());
@@ -117,7 +119,7 @@ void World::begin(Instant now) {
   if (begins_by_state(mission())) tick_ = std::max(tick_, question_.before.newest());
   tick_ = std::min(tick_, me_.end_tick());  // even if the roster names a later one
   begun_at_ = tick_;
-  fleet_.begin(mission(), tick_, question_.before, surroundings());
+  fleet_.begin(tick_, question_.before, surroundings());
 }
 
 /// No vehicle moves before the first tick is published.
@@ -126,7 +128,7 @@ Surroundings World::surroundings() const {
   return tick_ == 0 && !schedule_.published() ? Surroundings::kStanding : Surroundings::kMoving;
 }
 
-void World::take_roster() { fleet_.take_roster(mission(), follower().roster(), surroundings()); }
+void World::take_roster() { fleet_.take_roster(follower().roster(), surroundings()); }
 
 void World::on(const WorldState& before, const Arrival&) {
   if (!question_.since || !begins_by_state(mission())) return;
@@ -242,7 +244,7 @@ void World::advance_realtime(Instant now, Outbox& out) {
 /// One more tick, in which no vehicle moves.
 void World::send_zero_velocity(Instant now, Outbox& out) {
   if (!schedule_.published()) remember_and_publish(now, out);  // where the last step led
-  fleet_.stop(mission());
+  fleet_.stop();
   ++tick_;
   over_since_ = now;
   remember_and_publish(now, out);
@@ -254,7 +256,7 @@ std::string World::why_over() const {
 }
 
 void World::step() {
-  fleet_.step(mission(), tick_);
+  fleet_.step(tick_);
   ++tick_;
 }
 

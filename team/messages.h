@@ -74,6 +74,10 @@ struct Hello {
 };
 
 enum class MissionState { kWaiting, kRunning, kEnded, kFailed };
+/// Whether the mission has ended, in order or not.
+constexpr bool is_over(MissionState state) {
+  return state == MissionState::kEnded || state == MissionState::kFailed;
+}
 const char* to_string(MissionState state);
 
 /// One numbered part of the mission. All parts of one revision together are the whole. Parts of

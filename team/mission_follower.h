@@ -49,7 +49,7 @@ class MissionFollower {
     return collected_.empty() ? revision_ : std::max(revision_, collected_.rbegin()->first);
   }
   MissionState state() const { return state_; }
-  bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
+  bool over() const { return is_over(state_); }
   const std::string& reason() const { return reason_; }
   /// Ticks that do not count. are_holds() is true for them.
   std::span<const Hold> holds() const { return holds_; }

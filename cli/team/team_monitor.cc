@@ -43,7 +43,7 @@ void MonitoredRun::receive(const Message& message, Bus bus, AgentId transmitter,
 
 /// An agent may repeat a part long after the coordinator exited; a repetition changes nothing.
 void MonitoredRun::on(const MissionPart& part, const Arrival&) {
-  over_ = over_ || part.state == MissionState::kEnded || part.state == MissionState::kFailed;
+  over_ = over_ || is_over(part.state);
   if (over_ && !part.reason.empty()) reason_ = part.reason;
   for (const RosterEntry& entry : part.roster) {
     if (agents_.size() < kMaxIncarnations) agents_.try_emplace(entry.author);

@@ -129,8 +129,7 @@ class End {
     if (!view.over()) return false;
     if (!since_) since_ = now;
     const auto state = view.picture(now).state;
-    const bool over = state == MissionState::kEnded || state == MissionState::kFailed;
-    return over || now - *since_ >= kLastWord;
+    return (state && is_over(*state)) || now - *since_ >= kLastWord;
   }
 
  private:

@@ -14,7 +14,7 @@ Tick command_hold_ticks(const Timing& timing) {
 }
 
 bool world_guards(const Mission& mission) {
-  return mission.separation.distance_m > 0 && mission.separation.guard &&
+  return keeps_distance(mission) && mission.separation.guard &&
          mission.timing.pace == Pace::kRealtime;
 }
 
@@ -30,7 +30,7 @@ Tick unguarded_hold_ticks(const Mission& mission) {
 }
 
 bool uses_beacons(const Mission& mission) {
-  return mission.separation.distance_m > 0 && mission.separation.lease_s > 0 &&
+  return keeps_distance(mission) && mission.separation.lease_s > 0 &&
          mission.timing.pace == Pace::kRealtime;
 }
 
@@ -43,12 +43,11 @@ bool filters_again(const Mission& mission) {
 }
 
 bool any_filtered(const Mission& mission) {
-  return mission.separation.distance_m > 0 || !mission.walls.empty() || any_but_points(mission);
+  return keeps_distance(mission) || !mission.walls.empty() || any_but_points(mission);
 }
 
 bool filters_commands(const Mission& mission, AgentId id) {
-  return mission.separation.distance_m > 0 || !mission.walls.empty() ||
-         !motion_of(mission, id).is_point();
+  return keeps_distance(mission) || !mission.walls.empty() || !motion_of(mission, id).is_point();
 }
 
 double late_edge_margin_m(const Mission& mission, AgentId id) {

@@ -15,6 +15,9 @@ Tick command_hold_ticks(const Timing& timing);
 /// command_hold_ticks(), and one more where bodies have no common ticks.
 Tick unguarded_hold_ticks(const Mission& mission);
 
+/// Whether bodies keep a distance from each other.
+inline bool keeps_distance(const Mission& mission) { return mission.separation.distance_m > 0; }
+
 /// Whether the world filters commands again, with true positions.
 bool world_guards(const Mission& mission);
 

@@ -8,6 +8,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
 #include "core/motion/starts.h"
 #include "core/motion/vehicle.h"
 #include "core/motion/walls.h"
@@ -47,7 +48,7 @@ double home_m(const Mission& mission, AgentId id) {
 }
 
 std::optional<std::pair<AgentId, AgentId>> too_near_at_home(const Mission& mission, AgentId team) {
-  if (mission.separation.distance_m == 0) return std::nullopt;
+  if (!keeps_distance(mission)) return std::nullopt;
   for (AgentId one = 0; one < team; ++one) {
     const auto home_m = station_of(mission, one);
     for (AgentId other = 0; home_m && other < one; ++other) {

@@ -6,6 +6,7 @@
 
 #include "core/base/geometry.h"
 #include "core/base/noise.h"
+#include "core/motion/filter_rules.h"
 #include "core/motion/walls.h"
 
 namespace ergocast {
@@ -22,7 +23,7 @@ Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen
                   static_cast<std::uint32_t>(id), static_cast<std::uint64_t>(tick));
     next_m += stopped_by_walls(
         mission, id, next_m,
-        separation.distance_m > 0 ? within_speed(pushed_m, separation.disturbance_m) : pushed_m);
+        keeps_distance(mission) ? within_speed(pushed_m, separation.disturbance_m) : pushed_m);
   }
   return next_m;
 }

@@ -146,7 +146,7 @@ double SeparationFilter::side(const Mover& self) const {
 SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wanted_mps,
                                     std::span<const Neighbour> others) {
   ERGOCAST_REQUIRE(self.max_speed_mps > 0);
-  if (mission_.separation.distance_m == 0) others = {};
+  if (!keeps_distance(mission_)) others = {};
   for (const Neighbour& other : others) {
     if (other.id != self.id && !other.known) return stopped(self, other);
   }

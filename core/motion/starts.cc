@@ -55,7 +55,7 @@ Box room_to_begin(const Mission& mission, AgentId id) {
 }
 
 double start_distance_m(const Mission& mission, AgentId one, AgentId other) {
-  if (mission.separation.distance_m == 0) return 0;
+  if (!keeps_distance(mission)) return 0;
   return mission.separation.distance_m +
          (start_margin_m(mission, one) + start_margin_m(mission, other));
 }

@@ -99,7 +99,7 @@ double kept_from_walls_m(const Mission& mission, const Motion& motion) {
 
 double least_wall_clearance_m(const Mission& mission) {
   const Separation& rule = mission.separation;
-  if (rule.distance_m == 0) return 0;
+  if (!keeps_distance(mission)) return 0;
   const auto hold_ticks = static_cast<double>(unguarded_hold_ticks(mission));
   const double step_m = fastest_mps(mission) * mission.timing.dt_s + rule.disturbance_m;
   return 2 * rule.position_error_m + hold_ticks * step_m;

@@ -65,7 +65,7 @@ std::optional<std::string> Driver::why_not() const {
   if (!has_vehicles_for(mission))
     return "the mission is for other vehicles: give it vehicle { kind: POINT }, or UNICYCLE and at "
            "most the robots' 2 rad/s";
-  if (only_ && mission.separation.distance_m > 0 && !uses_beacons(mission))
+  if (only_ && keeps_distance(mission) && !uses_beacons(mission))
     return "a driver of one robot does not know where the others are: give the mission separation "
            "{ lease_s }, so that agents send each other their positions, or drive all robots "
            "without --id";
@@ -142,7 +142,7 @@ void Driver::on(const Command& command, const Arrival&) {
   if (allowed_mps != command.velocity_mps) ++clamped_commands_;
   drive.commanded_mps = allowed_mps;
   // If distances are kept, only the commanded direction is safe.
-  if (!guard_) drive.robot.drive(allowed_mps, me_.mission().separation.distance_m > 0);
+  if (!guard_) drive.robot.drive(allowed_mps, keeps_distance(me_.mission()));
 }
 
 /// Runs once a tick with all positions, because the motion of one robot may depend on the others.
@@ -200,7 +200,7 @@ void Driver::pass_tick() {
 
 void Driver::publish_position(Outbox& out) {
   const Box& domain = me_.mission().domain;
-  const bool apart = me_.mission().separation.distance_m > 0;
+  const bool apart = keeps_distance(me_.mission());
   const auto parts = (drives_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;
   // Each robot's driver sends one part of the state.
   auto robots = static_cast<std::int32_t>(me_.mission().starts_m.size());

@@ -8,6 +8,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
 #include "core/motion/home.h"
 #include "core/motion/starts.h"
 #include "core/motion/walls.h"
@@ -118,7 +119,7 @@ class StationRules {
   }
 
   void apart(const Mission& mission) {
-    if (mission.separation.distance_m == 0) return;
+    if (!keeps_distance(mission)) return;
     const auto pair = too_near_at_home(mission, planned());
     if (!pair || !checks_.sound(station_path(mission, pair->first)) ||
         !checks_.sound(station_path(mission, pair->second)))

@@ -130,7 +130,7 @@ void warn_of_flat_weights(const Mission& mission, Findings& findings) {
 
 /// Agents find ways around each other only if there is room.
 void warn_of_packing(const Mission& mission, Findings& findings) {
-  if (mission.separation.distance_m == 0) return;
+  if (!keeps_distance(mission)) return;
   const double share = packing(mission, mission.starts_m.size());
   if (share <= kTightPacking) return;
   findings.add("separation.distance_m",
@@ -144,7 +144,7 @@ void warn_of_packing(const Mission& mission, Findings& findings) {
 
 /// The computed way home has no detours around other agents.
 void warn_of_crowded_ways_home(const Mission& mission, Findings& findings) {
-  if (mission.separation.distance_m == 0 || mission.starts_m.size() < 2) return;
+  if (!keeps_distance(mission) || mission.starts_m.size() < 2) return;
   AgentId first = 0;
   for (int kind = 0; kind < std::ssize(mission.kinds); ++kind) {
     const AgentKind& its = mission.kinds[static_cast<std::size_t>(kind)];
@@ -165,7 +165,7 @@ void warn_of_crowded_ways_home(const Mission& mission, Findings& findings) {
 /// An agent at home stands in the way of agents that are not home yet.
 void warn_of_tight_stations(const Mission& mission, Findings& findings) {
   const auto team = static_cast<AgentId>(mission.starts_m.size());
-  for (AgentId one = 0; one < team && mission.separation.distance_m > 0; ++one) {
+  for (AgentId one = 0; one < team && keeps_distance(mission); ++one) {
     const auto home_m = station_of(mission, one);
     const double passage_m = 2 * start_distance_m(mission, one, one);
     for (AgentId other = 0; home_m && other < one; ++other) {
@@ -183,7 +183,7 @@ void warn_of_tight_stations(const Mission& mission, Findings& findings) {
 
 /// A vehicle that follows late needs room to stop.
 void warn_of_late_vehicles(const Mission& mission, Findings& findings) {
-  if (mission.separation.distance_m == 0 || mission.separation.response_s == 0) return;
+  if (!keeps_distance(mission) || mission.separation.response_s == 0) return;
   const double side_m = mission.domain.shortest_side_m();
   for (AgentId id = 0; id < std::ssize(mission.starts_m); ++id) {
     const double margin_m = late_edge_margin_m(mission, id);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Times the cost of a mission key per message: protecting and verifying datagrams with and without
-// a key. The lower bound is only the hash over as many bytes.
+// a key. The lower bounds are only the hash, and only the signature, over as many bytes.
 #include <benchmark/benchmark.h>
 #include <sodium.h>
 
@@ -89,12 +89,36 @@ void KeyedHashAlone(benchmark::State& state) {
   }
 }
 
+/// The lower bound of a signed message: only libsodium's signature of these bytes, made or checked.
+void SignatureAlone(benchmark::State& state) {
+  std::vector<std::byte> bytes;
+  encode(message_of(kMissionMessage), bytes);
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  std::array<unsigned char, crypto_sign_PUBLICKEYBYTES> open_key;
+  std::array<unsigned char, crypto_sign_SECRETKEYBYTES> secret_key;
+  std::array<unsigned char, crypto_sign_BYTES> signature;
+  crypto_sign_keypair(open_key.data(), secret_key.data());
+  const auto sign = [&] {
+    crypto_sign_detached(signature.data(), nullptr, data, bytes.size(), secret_key.data());
+  };
+  sign();
+  const bool checks = state.range(0) != 0;
+  for (auto _ : state) {
+    if (!checks) sign();
+    if (checks &&
+        crypto_sign_verify_detached(signature.data(), data, bytes.size(), open_key.data()) != 0)
+      state.SkipWithError("refused");
+    benchmark::DoNotOptimize(signature);
+  }
+}
+
 const std::vector<std::int64_t> kKinds = {kCommandMessage, kContributionMessage, kMissionMessage};
 
 BENCHMARK(Close)->ArgNames({"kind", "key"})->ArgsProduct({kKinds, {0, 1}});
 BENCHMARK(Open)->ArgNames({"kind", "key"})->ArgsProduct({kKinds, {0, 1}});
 BENCHMARK(Refuse)->ArgName("kind")->ArgsProduct({kKinds});
 BENCHMARK(KeyedHashAlone)->ArgName("kind")->ArgsProduct({kKinds});
+BENCHMARK(SignatureAlone)->ArgName("checks")->Arg(0)->Arg(1);
 
 }  // namespace
 }  // namespace ergocast::bench

@@ -115,19 +115,49 @@ void FreeDomainStep(benchmark::State& state, Sight sight) {
   state.counters["step/cosines"] = table_s / cosines_s;
 }
 
+/// The sums of all teammates in one array, and what they gained last.
+class MergeFloor {
+ public:
+  void take(const std::vector<Contribution>& news) {
+    sums_.resize(news.size() * kBlockSize);
+    gains_.resize(sums_.size());
+    std::size_t at = 0;
+    for (const Contribution& block : news) {
+      for (const double sum : block.sums) {
+        gains_[at] = sum - sums_[at];
+        sums_[at++] = sum;
+      }
+    }
+    benchmark::DoNotOptimize(gains_.data());
+    benchmark::ClobberMemory();
+  }
+
+ private:
+  std::vector<double> sums_, gains_;
+};
+
 /// All blocks of all teammates, each one new.
 void MergeNews(benchmark::State& state) {
   StepTeam team = team_of(state, Sight::kToldEachTick);
-  Timings merge, nothing;
+  MergeFloor floor;
+  Timings merge, floor_merge, nothing;
+  double floor_s = 0, merge_s = 0;
   for (auto _ : state) {
     for (int i = 0; i < kTicksPerRound; ++i) {
       team.teammates_step();
       merge.add([&] { team.merge_news(); });
+      floor_merge.add([&] { floor.take(team.news()); });
       nothing.add([] {});
     }
-    state.SetIterationTime(merge.take_median() - nothing.take_median());
+    const double clock_s = nothing.take_median();
+    const double round_s = merge.take_median() - clock_s;
+    state.SetIterationTime(round_s);
+    merge_s += round_s;
+    floor_s += floor_merge.take_median() - clock_s;
   }
   state.counters["blocks"] = static_cast<double>(team.news().size());
+  state.counters["floor_ns"] = 1e9 * floor_s / kRounds;
+  state.counters["merge/floor"] = merge_s / floor_s;
 }
 
 constexpr std::array kModesPerAxis = {10, 16, 20, 32};
