@@ -369,12 +369,11 @@ void bug_make_table(CoverageTable* self, const Basis& basis, double dt_s, Tick j
 namespace {
 
 /// The same roster, in which no agent was sent home. Those that were sent out still are.
-template <class HasRoster>
-HasRoster without_recalls(HasRoster one) {
-  for (RosterEntry& entry : one.roster) {
+std::vector<RosterEntry> without_recalls(std::vector<RosterEntry> roster) {
+  for (RosterEntry& entry : roster) {
     if (!entry.leaves) entry.recall_revision = -1;
   }
-  return one;
+  return roster;
 }
 
 }  // namespace
@@ -391,9 +390,12 @@ void bug_receive_at_agent(Agent* self, const Message& message, Bus bus, AgentId 
     if (taken.header.tick < self->tick()) taken.header.tick = self->tick() + 1;
     return real_receive_at_agent(self, taken, bus, transmitter, now);
   }
-  const auto* part = std::get_if<MissionPart>(&message);
-  if (part != nullptr && bug("recalls are ignored"))
-    return real_receive_at_agent(self, without_recalls(*part), bus, transmitter, now);
+  if (const auto* part = std::get_if<MissionPart>(&message);
+      part != nullptr && bug("recalls are ignored")) {
+    MissionPart taken = *part;
+    taken.roster = without_recalls(part->roster);
+    return real_receive_at_agent(self, taken, bus, transmitter, now);
+  }
   real_receive_at_agent(self, message, bus, transmitter, now);
 }
 
@@ -493,8 +495,7 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table,
                            bug("a late block becomes the one before") ||
                            bug("a relayed block becomes the one before");
   if (bug("the recalled are foreseen"))
-    return real_look_ahead(self, table, without_recalls(MissionPart{.roster = roster}).roster, tick,
-                           coverage);
+    return real_look_ahead(self, table, without_recalls(roster), tick, coverage);
   if (!mistakes_it) return real_look_ahead(self, table, roster, tick, coverage);
   real_look_ahead(self, mistaken(table, tick), roster, tick, coverage);
 }
