@@ -32,12 +32,11 @@ inline const Agent* listener;
 inline bool is_relayed;
 
 /// The same roster, in which no agent was sent home. Those that were sent out still are.
-template <class HasRoster>
-HasRoster without_recalls(HasRoster one) {
-  for (RosterEntry& entry : one.roster) {
+inline std::vector<RosterEntry> without_recalls(std::vector<RosterEntry> roster) {
+  for (RosterEntry& entry : roster) {
     if (!entry.leaves) entry.recall_revision = -1;
   }
-  return one;
+  return roster;
 }
 
 }  // namespace ergocast

@@ -175,8 +175,7 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table,
                            bug("a late block becomes the one before") ||
                            bug("a relayed block becomes the one before");
   if (bug("the recalled are foreseen"))
-    return real_look_ahead(self, table, without_recalls(MissionPart{.roster = roster}).roster, tick,
-                           coverage);
+    return real_look_ahead(self, table, without_recalls(roster), tick, coverage);
   if (!mistakes_it) return real_look_ahead(self, table, roster, tick, coverage);
   real_look_ahead(self, mistaken(table, tick), roster, tick, coverage);
 }

@@ -83,9 +83,12 @@ void bug_receive_at_agent(Agent* self, const Message& message, Bus bus, AgentId 
     if (taken.header.tick < self->tick()) taken.header.tick = self->tick() + 1;
     return real_receive_at_agent(self, taken, bus, transmitter, now);
   }
-  const auto* part = std::get_if<MissionPart>(&message);
-  if (part != nullptr && bug("recalls are ignored"))
-    return real_receive_at_agent(self, without_recalls(*part), bus, transmitter, now);
+  if (const auto* part = std::get_if<MissionPart>(&message);
+      part != nullptr && bug("recalls are ignored")) {
+    MissionPart taken = *part;
+    taken.roster = without_recalls(part->roster);
+    return real_receive_at_agent(self, taken, bus, transmitter, now);
+  }
   real_receive_at_agent(self, message, bus, transmitter, now);
 }
 
