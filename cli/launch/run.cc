@@ -276,9 +276,7 @@ std::unique_ptr<RunEntry> register_early(const RunOptions& options, RunId run) {
   preparing.started = wall_clock_text();
   preparing.pid = getpid();
   preparing.preparing = true;
-  auto entry = RunEntry::write(preparing);
-  auto* const made = std::get_if<0>(&entry);
-  return made != nullptr ? std::move(*made) : nullptr;
+  return RunEntry::write(preparing).value_or(nullptr);
 }
 
 /// Reads the scenario; if that takes long, a line says why nothing happens.

@@ -23,6 +23,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// How long a run that reads its scenario may take to exit.
+constexpr auto kLongestEnd = 15s;
+constexpr auto kLookPeriod = 50ms;
 /// After this time the result so far is reported.
 constexpr auto kReportAfter = 250ms;
 constexpr const char* kAtOnce = "stopped at once by `ergocast stop --now` on ";
@@ -185,7 +188,7 @@ void end_preparing(const LiveRun& run) {
 /// The exit code, once that run is no longer live or does not end.
 int await_end(const LiveRun& run) {
   const auto is_it = [&run](const LiveRun& one) { return one.run == run.run; };
-  for (const Instant until = now() + kLongest; now() < until;
+  for (const Instant until = now() + kLongestEnd; now() < until;
        std::this_thread::sleep_for(kLookPeriod)) {
     if (std::ranges::none_of(live_runs().runs, is_it)) return kExitDone;
   }
