@@ -49,8 +49,10 @@ MissionRun::MissionRun(const Participant& me, const RosterEntry& self)
 
 std::optional<MissionOver> MissionRun::evicted(const Participant& me, Tick tick) {
   const RosterEntry* own = me.follower().entry_of(me.incarnation());
-  if (own == nullptr || own->active_until < 0 || own->active_until > tick) return std::nullopt;
+  if (own == nullptr || own->active_until < 0) return std::nullopt;
+  // A restarted world has no vehicle for it, and so no tick.
   if (own->leaves) return MissionOver{false, kSentOut, true};
+  if (own->active_until > tick) return std::nullopt;
   return MissionOver{true, "evicted from the roster at tick " + std::to_string(own->active_until)};
 }
 

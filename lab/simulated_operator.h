@@ -29,11 +29,8 @@ class SimulatedOperator {
   }
   /// Wants an agent to go home, or out of the mission if it `leaves`.
   void want_recall(AgentId id, bool leaves) { recalls_.push_back({{}, id, leaves, {}}); }
-  /// Wants nothing but that the mission goes on.
-  void want_nothing() {
-    paused_until_.reset();
-    recalls_.clear();
-  }
+  /// Wants the mission to go on.
+  void want_no_pause() { paused_until_.reset(); }
   /// Whether it has sent an agent out of the mission.
   bool sent_out(AgentId id) const { return sent_out_.contains(id); }
   /// When its pause ends; Instant::max(): it wants none.
@@ -52,24 +49,39 @@ class SimulatedOperator {
     next_message_ = now + kPeriod;
     return Pause{{run, kOperator, 1, ++messages_, coordinator.tick()}, named_changes(holds), {}};
   }
-  /// The recalls that it sends now. The coordinator receives each of them at once.
-  std::vector<Recall> take_recalls(RunId run, const Coordinator& coordinator) {
-    if (coordinator.state() != MissionState::kRunning) return {};
+  /// The recalls that it sends now: those that the coordinator does not know. The coordinator
+  /// receives each of them at once. It may be lost with this coordinator; then it is sent again.
+  std::vector<Recall> recalls(RunId run, const Coordinator& coordinator) {
+    std::vector<Recall> sent;
+    if (coordinator.state() != MissionState::kRunning) return sent;
     for (Recall& recall : recalls_) {
+      if (is_obeyed(recall, coordinator)) continue;
       recall.header = {run, kOperator, 1, ++messages_, coordinator.tick()};
       if (recall.leaves) sent_out_.insert(recall.agent);
+      sent.push_back(recall);
     }
-    return std::exchange(recalls_, {});
+    return sent;
+  }
+  /// Forgets the recalls that the coordinator has received and refused.
+  void forget_refused(const Coordinator& coordinator) {
+    std::erase_if(recalls_, [&](const Recall& recall) { return !is_obeyed(recall, coordinator); });
   }
 
  private:
+  static bool is_obeyed(const Recall& recall, const Coordinator& coordinator) {
+    return std::ranges::any_of(coordinator.roster(), [&](const RosterEntry& entry) {
+      return entry.author.agent == recall.agent && entry.recalled() &&
+             (entry.leaves || !recall.leaves);
+    });
+  }
+
   /// As `ergocast pause` repeats it.
   static constexpr auto kPeriod = std::chrono::milliseconds(100);
 
   std::optional<Instant> paused_until_;
   Instant next_message_;  // until its wish is obeyed
   std::int64_t messages_ = 0;
-  std::vector<Recall> recalls_;  // to be sent
+  std::vector<Recall> recalls_;  // that it wants
   std::set<AgentId> sent_out_;
 };
 

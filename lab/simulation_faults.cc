@@ -99,10 +99,12 @@ void Simulation::send_to_coordinator() {
   const Delivery by_operator{Bus::kSwarm, kOperator, {}, nullptr};
   if (pause) deliver(node, *pause, by_operator);
   // The operator repeats it; only the first one has an effect.
-  for (const Recall& recall : operator_.take_recalls(run_, coordinator())) {
+  const std::vector<Recall> recalls = operator_.recalls(run_, coordinator());
+  for (const Recall& recall : recalls) {
     deliver(node, recall, by_operator);
     deliver(node, recall, by_operator);
   }
+  if (!recalls.empty()) operator_.forget_refused(coordinator());
 }
 
 /// An evicted agent has ended, and sends nothing any more.
@@ -150,7 +152,7 @@ void Simulation::supervise_coordinator() {
 
 void Simulation::heal() {
   faults_.heal();
-  operator_.want_nothing();
+  operator_.want_no_pause();
   network_.heal(now_);
   for (Node& node : nodes_) {
     if (!node.up) node.restart = now_;

@@ -74,10 +74,10 @@ void add_recall(CLI::App& app, Action& action) {
   };
   auto* command = app.add_subcommand("recall", "Send agents home, or out of the mission");
   auto options = std::make_shared<Options>();
-  command->add_option("agents", options->agents, "Numbers of the agents")
+  command->add_option("AGENT", options->agents, "Numbers of the agents")
       ->required()
       ->check(CLI::Range(0, kMaxAgents - 1).description(""))
-      ->type_name("AGENT");
+      ->type_name("N");
   command->add_flag(
       "--leave", options->leaves,
       "Send them out of the mission: each stops where it is, its process ends, and no "

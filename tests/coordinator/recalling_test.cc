@@ -14,11 +14,12 @@ Recall recall_of(AgentId agent, bool leaves = false, Tick tick = 0) {
   return {{kRun, kOperator, 1, next_sequence(), tick}, agent, leaves};
 }
 
-/// The newest entry of a number.
+/// The entry of a number's present member, or of its last one.
 RosterEntry newest(const Coordinator& coordinator, AgentId id) {
   RosterEntry found;
   for (const RosterEntry& entry : coordinator.roster()) {
-    if (entry.author.agent == id && entry.active_from >= found.active_from) found = entry;
+    if (entry.author.agent == id && (found.author.agent != id || entry.active_until < 0))
+      found = entry;
   }
   EXPECT_EQ(found.author.agent, id);
   return found;
@@ -47,13 +48,13 @@ TEST(Recalling, HasAnEffectOnlyOnce) {
   Coordinator coordinator = running_coordinator(small_mission(3));
   give(coordinator, recall_of(1), at(1s));
   const std::int64_t revision = revision_of(coordinator, at(1s));
-  give(coordinator, recall_of(1), at(2s));
-  EXPECT_EQ(revision_of(coordinator, at(3s)), revision);
+  give(coordinator, recall_of(1), at(1100ms));
+  EXPECT_EQ(revision_of(coordinator, at(2100ms)), revision);
   EXPECT_EQ(newest(coordinator, 1).recall_revision, revision);
-  give(coordinator, recall_of(1, true), at(4s));
+  give(coordinator, recall_of(1, true), at(2200ms));
   EXPECT_EQ(newest(coordinator, 1).recall_revision, revision) << "it rests since then";
   EXPECT_TRUE(newest(coordinator, 1).leaves);
-  give(coordinator, recall_of(1), at(5s));
+  give(coordinator, recall_of(1), at(2300ms));
   EXPECT_TRUE(newest(coordinator, 1).leaves) << "nobody comes back";
 }
 
