@@ -133,7 +133,8 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     page/words_test.cc
     support/browser.cc
     support/http.cc
-  LIBS ergocast::core)
+    support/tls.cc
+  LIBS ergocast::core OpenSSL::SSL)
 
 # A register of the findings of each check, as the programs report them.
 ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS

@@ -31,16 +31,14 @@ void add_page_options(CLI::App& app, PageOptions& options) {
                  "Address on which other hosts reach the page; it then needs the token that is "
                  "printed (default: this host only)")
       ->type_name("ADDRESS");
-  auto* certificate = app.add_option("--tls-cert", options.tls_files.certificate,
-                                     "Serve the page by https only, with this certificate in PEM "
-                                     "format; those that lead to its root may follow in the file")
-                          ->type_name("FILE");
-  auto* key = app.add_option("--tls-key", options.tls_files.key,
-                             "The certificate's private key in PEM format, without a password; "
-                             "only you may read the file")
-                  ->type_name("FILE");
-  certificate->needs(key);
-  key->needs(certificate);
+  app.add_option("--tls-cert", options.tls_files.certificate,
+                 "With --tls-key: serve the page by https only, with this certificate in PEM "
+                 "format; those that lead to its root may follow in the file")
+      ->type_name("FILE");
+  app.add_option("--tls-key", options.tls_files.key,
+                 "The certificate's private key in PEM format, without a password; only you may "
+                 "read the file")
+      ->type_name("FILE");
 }
 
 void add_control_option(CLI::App& app, bool& control) {
@@ -51,8 +49,11 @@ void add_control_option(CLI::App& app, bool& control) {
 }
 
 std::optional<std::string> read_certificate(PageOptions& options, bool control) {
-  if (!options.tls_files.certificate.empty()) {
-    auto tls = TlsServer::read(options.tls_files);
+  const TlsFiles& files = options.tls_files;
+  if (files.certificate.empty() != files.key.empty())
+    return "--tls-cert and --tls-key belong together: name both";
+  if (!files.certificate.empty()) {
+    auto tls = TlsServer::read(files);
     if (!tls) return tls.error();
     if (auto problem = (*tls)->why_not_valid(std::chrono::system_clock::now())) return problem;
     options.tls = *std::move(tls);

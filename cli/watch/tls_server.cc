@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <new>
 #include <utility>
 
 #include "runtime/process/key_file.h"
@@ -66,6 +67,7 @@ class TlsStream final : public ByteStream {
       : ByteStream(std::move(socket)), session_(SSL_new(context)) {
     in_ = BIO_new(BIO_s_mem());
     out_ = BIO_new(BIO_s_mem());
+    if (!session_ || in_ == nullptr || out_ == nullptr) throw std::bad_alloc();
     SSL_set_bio(session_.get(), in_, out_);  // which owns them from now on
     SSL_set_accept_state(session_.get());
   }

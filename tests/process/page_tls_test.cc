@@ -186,6 +186,8 @@ TEST_F(EncryptedPage, ABadCertificateOrKeyIsNamedWithItsRemedy) {
       EXPECT_EQ(std::count(output().begin(), output().end(), '\n'), 1) << output();
     }
   }
+  EXPECT_EQ(ergocast({"watch", out(), "--tls-cert", pem}), 2);
+  EXPECT_NE(output().find("--tls-cert and --tls-key belong together"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(out()));
 }
 
