@@ -145,7 +145,9 @@ ergocast_test(NAME cli_tests LABELS unit
 ergocast_test(NAME page_server_tests LABELS unit
   SOURCES
     cli/connections_test.cc
-  LIBS ergocast_page_server)
+    cli/tls_server_test.cc
+    support/tls.cc
+  LIBS ergocast_page_server OpenSSL::SSL)
 
 ergocast_test(NAME deploy_tests LABELS unit
   SOURCES

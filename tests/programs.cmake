@@ -89,6 +89,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/modes_test.cc
     process/page_attack_test.cc
     process/page_control_test.cc
+    process/page_tls_test.cc
     process/commands/logs_test.cc
     process/no_metric_test.cc
     process/commands/replay_test.cc
@@ -112,7 +113,8 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/commands/watch_test.cc
     process/world_safety_test.cc
     support/http.cc
-  LIBS ergocast_doctor ergocast::event_log)
+    support/tls.cc
+  LIBS ergocast_doctor ergocast::event_log OpenSSL::SSL)
 if(TARGET ergocast-example-mujoco)
   target_sources(process_tests PRIVATE process/mujoco_test.cc)
   add_dependencies(process_tests ergocast-example-mujoco)
@@ -135,7 +137,8 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     page/words_test.cc
     support/browser.cc
     support/http.cc
-  LIBS ergocast::core)
+    support/tls.cc
+  LIBS ergocast::core OpenSSL::SSL)
 
 # A register of the findings of each check, as the programs report them.
 ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS

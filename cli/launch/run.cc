@@ -365,9 +365,15 @@ void add_run(CLI::App& app, Action& action) {
                     "Show the mission in a browser, and afterwards its record, until Ctrl-C");
   add_page_options(*command, options->page);
   add_control_option(*command, options->control);
-  for (const char* option : {"--port", "--listen", "--control"})
+  for (const char* option : {"--port", "--listen", "--tls-cert", "--tls-key", "--control"})
     command->get_option(option)->needs("--watch");
-  command->callback([&action, options] { action = [options] { return run(*options); }; });
+  command->callback([&action, options] {
+    action = [options]() -> int {
+      if (const auto problem = read_certificate(options->page, options->control))
+        return report_error(kExitBadInput, *problem);
+      return run(*options);
+    };
+  });
 }
 
 }  // namespace ergocast::cli

@@ -11,10 +11,13 @@
 namespace ergocast::cli {
 namespace {
 
+Result<SealedFile> sealed(const std::string& name, const std::string& text) {
+  return SealedFile::make(name, std::as_bytes(std::span(text)));
+}
+
 /// The page's process checks what it receives, and cannot sign.
 Result<SealedFile> key_of_page(const MissionKey& key) {
-  const std::string text = key_text(key, false);
-  return SealedFile::make("page-key", std::as_bytes(std::span(text)));
+  return sealed("page-key", key_text(key, false));
 }
 
 }  // namespace
@@ -32,9 +35,16 @@ Result<std::unique_ptr<ControlledPage>> ControlledPage::start(const BusOptions& 
   setup.run = team.run;
   setup.page = page;
   if (const MissionKey* key = team.authenticator.key()) {
-    auto sealed = key_of_page(*key);
-    if (!sealed) return failure(std::move(sealed).error());
-    setup.key = *std::move(sealed);
+    auto kept = key_of_page(*key);
+    if (!kept) return failure(std::move(kept).error());
+    setup.key = *std::move(kept);
+  }
+  if (page.tls) {
+    auto certificate = sealed("page-certificate", page.tls->certificate());
+    auto tls_key = sealed("page-tls-key", page.tls->key());
+    if (!certificate || !tls_key) return failure((!certificate ? certificate : tls_key).error());
+    setup.certificate = *std::move(certificate);
+    setup.tls_key = *std::move(tls_key);
   }
   if (with_control) {
     auto opened = Control::open(team, [&display](const std::string& line) { display.print(line); });

@@ -125,14 +125,14 @@ void add_watch(CLI::App& app, Action& action) {
   add_control_option(*command, options->control);
   command->get_option("--control")->excludes("RUN_DIR");
   command->footer(
-      "Serves the page until Ctrl-C. Sends nothing, unless --control is given. Exit codes: 0 "
-      "done;\n"
-      "2 no record, or it is damaged, or several runs are found; 3 LCM or the address cannot be "
-      "used;\n"
-      "4 --control finds no team.");
+      "Serves the page until Ctrl-C. Sends nothing, unless --control is given. Exit codes:\n"
+      "0 done; 2 no record, or it is damaged, or several runs are found, or a bad certificate;\n"
+      "3 LCM or the address cannot be used; 4 --control finds no team.");
   command->callback([&action, options, command] {
-    action = [options, command] {
+    action = [options, command]() -> int {
       StopSignals signals;
+      if (const auto problem = read_certificate(options->page, options->control))
+        return report_error(kExitBadInput, *problem);
       if (command->count("RUN_DIR") > 0) return watch_record(*options, signals);
       fs::path run_dir;
       if (const auto code = find_run(*command, *options, &run_dir)) return *code;

@@ -49,9 +49,6 @@ std::array<unsigned char, 16> address_in(const sockaddr_storage& from) {
   return address;
 }
 
-/// Whether the last call failed because it would have blocked.
-bool nothing_yet() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
-
 }  // namespace
 
 std::string_view Connections::Connection::unsent() const {
@@ -59,8 +56,11 @@ std::string_view Connections::Connection::unsent() const {
   return body ? std::string_view(*body).substr(sent - out.size()) : std::string_view();
 }
 
-Connections::Connections(int listener, Handler handler)
-    : listener_(listener), handler_(std::move(handler)), epoll_(epoll_create1(EPOLL_CLOEXEC)) {
+Connections::Connections(int listener, Handler handler, Opener opener)
+    : listener_(listener),
+      handler_(std::move(handler)),
+      opener_(std::move(opener)),
+      epoll_(epoll_create1(EPOLL_CLOEXEC)) {
   epoll_event wanted{};
   wanted.events = EPOLLIN;
   wanted.data.fd = listener_;
@@ -95,7 +95,7 @@ void Connections::accept_some(Instant now) {
     const int yes = 1;
     setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     make_room(Phase::kHead);
-    Connection& one = open_.try_emplace(fd, Socket(fd), address_in(from)).first->second;
+    Connection& one = open_.try_emplace(fd, opener_(Socket(fd)), address_in(from)).first->second;
     one.since = one.moved = now;
     epoll_event none{};
     none.data.fd = fd;
@@ -106,9 +106,9 @@ void Connections::accept_some(Instant now) {
 }
 
 void Connections::react(Connection& one, std::uint32_t events, Instant now) {
-  const int fd = one.socket.fd();
+  const int fd = one.fd();
   if ((events & EPOLLERR) != 0 || (one.deaf && (events & EPOLLHUP) != 0)) return drop(one);
-  if ((events & (EPOLLIN | EPOLLHUP)) != 0) {
+  if ((events & (EPOLLIN | EPOLLHUP)) != 0 || one.bytes->owes()) {
     one.phase == Phase::kHead ? read_head(one, now) : discard(one);
   }
   Connection* still = find(fd);
@@ -118,11 +118,11 @@ void Connections::react(Connection& one, std::uint32_t events, Instant now) {
 void Connections::read_head(Connection& one, Instant now) {
   std::array<char, 4096> bytes;
   for (;;) {
-    const ssize_t count = recv(one.socket.fd(), bytes.data(), bytes.size(), 0);
-    if (count < 0 && nothing_yet()) return;
-    if (count <= 0) return drop(one);
+    const auto count = one.bytes->read(bytes);
+    if (!count) return drop(one);
+    if (*count == 0) return watch(one);
     const std::size_t known = one.head.size();
-    one.head.append(bytes.data(), static_cast<std::size_t>(count));
+    one.head.append(bytes.data(), *count);
     const std::size_t end = one.head.find("\r\n\r\n", known < 3 ? 0 : known - 3);
     if (end != one.head.npos && end + 4 <= kLongestHead) {
       one.head.resize(end + 4);
@@ -137,9 +137,9 @@ void Connections::read_head(Connection& one, Instant now) {
 /// Reads and discards everything after the request.
 void Connections::discard(Connection& one) {
   std::array<char, 16384> bytes;
-  const ssize_t count = recv(one.socket.fd(), bytes.data(), bytes.size(), 0);
-  if (count > 0 || (count < 0 && nothing_yet())) return;
-  if (count < 0 || one.phase != Phase::kAnswer) return drop(one);
+  const auto count = one.bytes->read(bytes);
+  if (count) return watch(one);
+  if (count.error() == ByteStream::Over::kBroken || one.phase != Phase::kAnswer) return drop(one);
   one.deaf = true;  // it may still take its answer
   watch(one);
 }
@@ -158,19 +158,18 @@ void Connections::answer(Connection& one, Answer answer, Instant now) {
 /// Sends as much as the socket takes.
 void Connections::push(Connection& one, Instant now) {
   while (!one.unsent().empty()) {
-    const std::string_view rest = one.unsent();
-    const ssize_t count = send(one.socket.fd(), rest.data(), rest.size(), MSG_NOSIGNAL);
-    if (count < 0 && !nothing_yet()) return drop(one);
-    if (count < 0) return watch(one);
-    one.sent += static_cast<std::size_t>(count);
+    const auto count = one.bytes->write(one.unsent());
+    if (!count) return drop(one);
+    if (*count == 0) return watch(one);
+    one.sent += *count;
     one.moved = now;
   }
   one.out.clear();
   one.body.reset();
   one.sent = 0;
   if (one.phase == Phase::kAnswer) {
+    one.bytes->finish();
     if (one.deaf) return drop(one);
-    shutdown(one.socket.fd(), SHUT_WR);
     enter(one, Phase::kLeaving, now);
   }
   watch(one);
@@ -204,8 +203,9 @@ void Connections::take_text(Connection& one, Instant now) {
   one.next_text = now + kTextPeriod;
   if (!text) {
     one.stream = nullptr;
-    shutdown(one.socket.fd(), SHUT_WR);
-    return enter(one, Phase::kLeaving, now);
+    one.bytes->finish();
+    enter(one, Phase::kLeaving, now);
+    return watch(one);
   }
   if (text->empty() && now >= one.next_sign) *text = ":\n\n";
   if (text->empty()) return;
@@ -247,21 +247,23 @@ void Connections::make_room(Phase phase) {
 void Connections::let_go(Connection& one) {
   if (one.phase == Phase::kHead && !one.head.empty()) {
     const Answer busy = refusal("503 Service Unavailable", "too many requests at once");
-    send(one.socket.fd(), busy.head.data(), busy.head.size(), MSG_NOSIGNAL);
+    (void)one.bytes->write(busy.head);
   }
   drop(one);
 }
 
-void Connections::drop(Connection& one) { open_.erase(one.socket.fd()); }
+void Connections::drop(Connection& one) { open_.erase(one.fd()); }
 
 void Connections::watch(Connection& one) {
-  const std::uint32_t events = (one.deaf ? 0U : std::uint32_t{EPOLLIN}) |
-                               (one.unsent().empty() ? 0U : std::uint32_t{EPOLLOUT});
+  const std::uint32_t events = one.bytes->owes()
+                                   ? std::uint32_t{EPOLLOUT}
+                                   : (one.deaf ? 0U : std::uint32_t{EPOLLIN}) |
+                                         (one.unsent().empty() ? 0U : std::uint32_t{EPOLLOUT});
   if (events == one.watched) return;
   epoll_event wanted{};
   wanted.events = one.watched = events;
-  wanted.data.fd = one.socket.fd();
-  epoll_ctl(epoll_.fd(), EPOLL_CTL_MOD, one.socket.fd(), &wanted);
+  wanted.data.fd = one.fd();
+  epoll_ctl(epoll_.fd(), EPOLL_CTL_MOD, one.fd(), &wanted);
 }
 
 Connections::Connection* Connections::find(int fd) {

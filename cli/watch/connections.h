@@ -2,8 +2,6 @@
 // The connections of browsers to a page: sockets in, whole request heads out, answers back.
 #pragma once
 
-#include <sys/types.h>
-
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -16,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/watch/byte_stream.h"
 #include "core/base/ids.h"
 #include "runtime/bus/socket.h"
 
@@ -29,6 +28,8 @@ namespace ergocast::cli {
 /// old one is chosen at the address with the most places: its connection that has been stuck or
 /// open for longest. (If new connections were refused instead, 16 idle streams would close the page
 /// to everybody.)
+///
+/// A handshake of TLS is a part of the request's head: it has the same places and the same time.
 class Connections {
  public:
   /// Limit (Page): unfinished requests to a page. Beyond it: the next gets the place of the oldest,
@@ -61,9 +62,11 @@ class Connections {
   };
   /// Answers the head of a request, which ends with the empty line.
   using Handler = std::function<Answer(const std::string& head)>;
+  /// Makes the stream of a new connection, whose socket is non-blocking.
+  using Opener = std::function<std::unique_ptr<ByteStream>(Socket)>;
 
   /// @param listener  a non-blocking listening socket, which the caller owns
-  Connections(int listener, Handler handler);
+  Connections(int listener, Handler handler, Opener opener = plain_stream);
   Connections(const Connections&) = delete;
   Connections& operator=(const Connections&) = delete;
 
@@ -79,11 +82,13 @@ class Connections {
   using Address = std::array<unsigned char, 16>;
 
   struct Connection {
-    Connection(Socket owned, const Address& from) : socket(std::move(owned)), address(from) {}
+    Connection(std::unique_ptr<ByteStream> owned, const Address& from)
+        : bytes(std::move(owned)), address(from) {}
+    int fd() const { return bytes->fd(); }
     /// The bytes that wait to be sent.
     std::string_view unsent() const;
 
-    Socket socket;
+    std::unique_ptr<ByteStream> bytes;
     Address address;
     Phase phase = Phase::kHead;
     Instant since{};   ///< in this phase
@@ -115,6 +120,7 @@ class Connections {
 
   int listener_;
   Handler handler_;
+  Opener opener_;
   Socket epoll_;
   std::map<int, Connection> open_;  // by descriptor
 };

@@ -52,7 +52,12 @@ Result<std::unique_ptr<PageProcess>> PageProcess::start(const Setup& setup,
 }
 
 PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay& display)
-    : socket_(std::move(socket)), control_token_(setup.control_token), display_(display) {
+    : socket_(std::move(socket)),
+      control_token_(setup.control_token),
+      display_(display),
+      key_(setup.key),
+      certificate_(setup.certificate),
+      tls_key_(setup.tls_key) {
   if (!setup.run_dir.empty()) log_ = open_log(setup.run_dir / "log/run.log");
   int ends[2] = {-1, -1};
   if (pipe2(ends, O_CLOEXEC) == 0) {
@@ -68,9 +73,12 @@ PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay&
   command = {setup.program.string(), "run-page", "--lcm-url",
              setup.url.base(),       "--run-id", to_hex(setup.run)};
   if (!setup.run_dir.empty()) command.push_back(setup.run_dir.string());
-  if (setup.key) {
-    command.insert(command.end(), {"--key-file", program_.hand(setup.key->descriptor())});
-  }
+  const auto hand = [this, &command](const char* option, const std::optional<SealedFile>& file) {
+    if (file) command.insert(command.end(), {option, program_.hand(file->descriptor())});
+  };
+  hand("--key-file", key_);
+  hand("--tls-cert", certificate_);
+  hand("--tls-key", tls_key_);
   if (!setup.page.listen.empty()) {
     command.insert(command.end(), {"--listen", setup.page.listen});
   }

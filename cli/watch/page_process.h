@@ -42,7 +42,8 @@ class PageProcess {
     RunId run = 0;
     std::optional<SealedFile> key;  ///< a key that cannot sign; nothing: no key
     PageOptions page;
-    const ControlLink* control = nullptr;  ///< the page's end; null: the page only shows
+    std::optional<SealedFile> certificate, tls_key;  ///< of page.tls, if there is one
+    const ControlLink* control = nullptr;            ///< the page's end; null: the page only shows
     std::string control_token = {};
   };
 
@@ -72,9 +73,10 @@ class PageProcess {
   PageSocket socket_;
   std::string control_token_;
   ProgressDisplay& display_;
-  std::shared_ptr<spdlog::logger> log_;  // null: it cannot be opened
-  std::optional<Socket> until_;          // the process's end of the pipe
-  std::optional<Socket> running_;        // ours, as long as the mission runs
+  std::shared_ptr<spdlog::logger> log_;                    // null: it cannot be opened
+  std::optional<Socket> until_;                            // the process's end of the pipe
+  std::optional<Socket> running_;                          // ours, as long as the mission runs
+  std::optional<SealedFile> key_, certificate_, tls_key_;  // each new process inherits them
   Child::Program program_;
   std::optional<Child> child_;
   int ends_ = 0;

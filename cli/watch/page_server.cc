@@ -91,7 +91,9 @@ class Server final : public PageServer {
   Server(PageSocket socket, Content content)
       : socket_(std::move(socket)),
         content_(std::move(content)),
-        connections_(socket_.fd(), [this](const std::string& head) { return answer(head); }) {
+        connections_(
+            socket_.fd(), [this](const std::string& head) { return answer(head); },
+            [this](Socket accepted) { return socket_.stream(std::move(accepted)); }) {
     protocol_.set_pre_routing_handler([this](const Request& request, Response& response) {
       set_headers(response);
       return admit(request, response) ? httplib::Server::HandlerResponse::Unhandled
@@ -113,6 +115,8 @@ class Server final : public PageServer {
     return std::move(answer_);
   }
 
+  /// Strict-Transport-Security is not set. It would hold for all ports of this host's name, and for
+  /// longer than the mission: a browser would no longer open other servers of the host by http.
   void set_headers(Response& response) const {
     response.set_header("Content-Security-Policy", content_.policy + "; frame-ancestors 'none'");
     response.set_header("X-Content-Type-Options", "nosniff");
@@ -138,7 +142,8 @@ class Server final : public PageServer {
     if (!site.empty() && site != "same-origin" && site != "none" && !navigates) {
       return refuse(response, 403, "not for other sites");
     }
-    if (request.has_header("Origin") && request.get_header_value("Origin") != "http://" + host) {
+    if (request.has_header("Origin") &&
+        request.get_header_value("Origin") != socket_.origin(host)) {
       return refuse(response, 403, "not for other sites");
     }
     if (orders && !may_order(request, response)) return false;
@@ -157,7 +162,8 @@ class Server final : public PageServer {
     const std::string name = "ergocast-" + std::to_string(socket_.port());
     const std::string& token = socket_.token();
     if (request.path == "/" && same(request.get_param_value("token"), token)) {
-      response.set_header("Set-Cookie", name + '=' + token + "; HttpOnly; SameSite=Strict; Path=/");
+      response.set_header("Set-Cookie", name + '=' + token + "; HttpOnly; SameSite=Strict; Path=/" +
+                                            (socket_.encrypted() ? "; Secure" : ""));
       response.set_redirect("/", 303);  // removes the token from the address bar
       return false;
     }

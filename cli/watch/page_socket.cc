@@ -82,19 +82,19 @@ std::string random_token() {
   return text;
 }
 
-PageSocket::PageSocket(Socket socket, const std::string& listen, std::string token)
+PageSocket::PageSocket(Socket socket, const PageOptions& options, std::string token)
     : socket_(std::move(socket)),
-      address_(address_in({listen, 0})),
+      address_(address_in(options)),
       token_(std::move(token)),
-      port_(port_of(socket_.fd())) {}
+      port_(port_of(socket_.fd())),
+      tls_(options.tls) {}
 
 Result<PageSocket> PageSocket::open(const PageOptions& options) {
   const std::string address = address_in(options);
   auto opened = listening(address, options.port > 0 ? options.port : kUsualPort);
   if (options.port == 0 && !opened) opened = listening(address, 0);
   if (opened) {
-    return PageSocket(*std::move(opened), options.listen,
-                      options.listen.empty() ? "" : random_token());
+    return PageSocket(*std::move(opened), options, options.listen.empty() ? "" : random_token());
   }
   if (options.port > 0 && opened.error() != EADDRNOTAVAIL) {
     return failure("port " + std::to_string(options.port) + " of " + address +
@@ -103,26 +103,37 @@ Result<PageSocket> PageSocket::open(const PageOptions& options) {
   return failure("cannot listen on " + address + ": is it an address of this host?");
 }
 
-Result<PageSocket> PageSocket::inherited(int fd, const std::string& listen, std::string token) {
+Result<PageSocket> PageSocket::inherited(int fd, const PageOptions& options, std::string token) {
   int listens = 0;
   socklen_t length = sizeof listens;
   const bool there = getsockopt(fd, SOL_SOCKET, SO_ACCEPTCONN, &listens, &length) == 0;
   if (!there || listens == 0) return failure("no page's socket was handed over");
-  if (!listen.empty() && token.empty()) return failure("no page's token was handed over");
-  return PageSocket(Socket(fd), listen, std::move(token));
+  if (!options.listen.empty() && token.empty()) {
+    return failure("no page's token was handed over");
+  }
+  return PageSocket(Socket(fd), options, std::move(token));
 }
 
 std::string PageSocket::url() const {
   const bool anywhere = address_ == "0.0.0.0" || address_ == "::";
   std::string host = anywhere ? host_name() : address_;
   if (host.find(':') != host.npos) host = '[' + host + ']';
-  const std::string base = "http://" + host + ':' + std::to_string(port_) + '/';
+  const std::string base = origin(host + ':' + std::to_string(port_)) + '/';
   return token_.empty() ? base : base + "?token=" + token_;
+}
+
+std::string PageSocket::origin(const std::string& host) const {
+  return (encrypted() ? "https://" : "http://") + host;
+}
+
+std::unique_ptr<ByteStream> PageSocket::stream(Socket accepted) const {
+  return encrypted() ? tls_->open(std::move(accepted)) : plain_stream(std::move(accepted));
 }
 
 bool PageSocket::is_called(const std::string& host) const {
   const std::string name = name_in(host), port = host.substr(name.size());
-  if (port != ':' + std::to_string(port_) && !(port.empty() && port_ == 80)) return false;
+  const int usual = encrypted() ? 443 : 80;
+  if (port != ':' + std::to_string(port_) && !(port.empty() && port_ == usual)) return false;
   if (token_.empty()) return name == "127.0.0.1" || name == "localhost";
   return name == "localhost" || name == address_ || name == host_name() || is_address(name);
 }

@@ -27,7 +27,7 @@ namespace {
 
 struct RunPageOptions : BusOptions {
   std::filesystem::path run_dir;
-  std::string listen;
+  PageOptions page;
 };
 
 /// The memory limit of this process while the mission runs. Above it the process ends, and a new
@@ -69,10 +69,20 @@ std::optional<PageControl> page_control() {
   return PageControl(std::move(*link), token);
 }
 
+/// The socket that this process was handed.
+Result<PageSocket> page_socket(PageOptions page) {
+  if (!page.tls_files.certificate.empty()) {
+    auto tls = TlsServer::read(page.tls_files);
+    if (!tls) return failure(std::move(tls).error());
+    page.tls = *std::move(tls);  // also if it has expired since the mission began
+  }
+  const char* token = std::getenv(kPageToken);
+  return PageSocket::inherited(kPageSocket, page, token != nullptr ? token : "");
+}
+
 int run_page(const RunPageOptions& options) {
   StopSignals signals;
-  const char* token = std::getenv(kPageToken);
-  auto socket = PageSocket::inherited(kPageSocket, options.listen, token != nullptr ? token : "");
+  auto socket = page_socket(options.page);
   if (!socket) {
     return report_error(kExitBadInput,
                         socket.error() + "; `ergocast run --watch` starts this command");
@@ -110,7 +120,9 @@ void add_run_page(CLI::App& app, Action& action) {
   command->add_option("RUN_DIR", options->run_dir, "Run directory, if this host has it")
       ->type_name("DIR");
   add_bus_options(*command, *options);
-  command->add_option("--listen", options->listen, "Address that the socket is bound to");
+  command->add_option("--listen", options->page.listen, "Address that the socket is bound to");
+  command->add_option("--tls-cert", options->page.tls_files.certificate, "The page's certificate");
+  command->add_option("--tls-key", options->page.tls_files.key, "Its key");
   command->callback([&action, options] { action = [options] { return run_page(*options); }; });
 }
 

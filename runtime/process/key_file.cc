@@ -138,20 +138,28 @@ std::string key_text(const MissionKey& key, bool for_coordinator) {
 }
 
 Result<MissionKey> read_key_file(const std::filesystem::path& file) {
+  const auto text = read_private_file(file, kLongestFile, "; `ergocast keygen` makes keys");
+  if (!text) return failure(text.error());
+  return parse(*text, file.string());
+}
+
+Result<std::string> read_private_file(const std::filesystem::path& file, std::size_t most_bytes,
+                                      const std::string& remedy) {
   const std::string name = file.string();
   // The checks and the reading use one open file, even if the name changes meanwhile. A pipe must
   // not block us.
   const File opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat info {};
   if (opened.fd() < 0 || fstat(opened.fd(), &info) != 0) {
-    return failure(name + ": " + std::strerror(errno) + "; `ergocast keygen` makes keys");
+    return failure(name + ": " + std::strerror(errno) + remedy);
   }
   if (const auto problem = why_not_private(info, file)) return failure(*problem);
-  std::string text(kLongestFile, '\0');
+  std::string text(most_bytes + 1, '\0');
   const ssize_t size = ::read(opened.fd(), text.data(), text.size());
   if (size < 0) return failure(name + ": " + std::strerror(errno));
+  if (size > static_cast<ssize_t>(most_bytes)) return failure(name + ": too long for a key");
   text.resize(static_cast<std::size_t>(size));
-  return parse(text, name);
+  return text;
 }
 
 std::optional<std::string> write_key_file(const std::filesystem::path& file,

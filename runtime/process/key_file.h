@@ -7,6 +7,7 @@
 //   signing <128 hex digits>      only in the coordinator's file
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,6 +27,11 @@ std::string key_text(const MissionKey& key, bool for_coordinator);
 /// read or write, and files of other users, are refused. A file in $CREDENTIALS_DIRECTORY, where
 /// systemd puts the credentials of a service, may be readable by its group.
 Result<MissionKey> read_key_file(const std::filesystem::path& file);
+
+/// All bytes of another file with a secret, under the same conditions. A longer file is refused.
+/// @param remedy  for a file that cannot be opened, such as "; name another"
+Result<std::string> read_private_file(const std::filesystem::path& file, std::size_t most_bytes,
+                                      const std::string& remedy = "");
 
 /// Writes a file that only its owner may read; never replaces one. An error names the remedy.
 std::optional<std::string> write_key_file(const std::filesystem::path& file,

@@ -21,6 +21,7 @@ enum class Outside {
   kJson,         // nlohmann
   kHash,         // xxHash
   kCrypto,       // libsodium
+  kTls,          // OpenSSL
   kGenerator,    // Random123
   kExpected,     // tl::expected, for Result
   kSpectra,      // Spectra, and the sparse part of Eigen
@@ -141,6 +142,7 @@ inline const std::vector<Rule> kRules = {
      {"text", "core", "plan", "team", "lcmtypes", "scenario", "runtime/bus", "runtime/record",
       "runtime/process", "logger", "report", "cli", "cli/team", "cli/record"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
+    {"cli/watch/tls_server.cc", {"text", "runtime/process", "cli/watch"}, {kTls, kSystem}},
     {"cli/watch/page_server.cc", {"runtime/bus", "runtime/process", "cli/watch"}, {kHttp, kSystem}},
     {"cli/operate",
      {"text", "core", "team", "runtime/bus", "runtime/process", "report", "cli", "cli/team",
@@ -208,6 +210,7 @@ inline const std::vector<Kind> kKinds = {
     {kJson, {"nlohmann/*"}},
     {kHash, {"xxhash.h"}},
     {kCrypto, {"sodium.h"}},
+    {kTls, {"openssl/*"}},
     {kGenerator, {"Random123/*"}},
     {kExpected, {"tl/expected.hpp"}},
     {kSpectra, {"Spectra/*", "Eigen/Sparse*"}},

@@ -2,6 +2,7 @@
 // An operator gives orders on the page of a real-time team, from a window as large as a phone's.
 #include "tests/page/page_in_a_browser.h"
 #include "tests/support/http.h"
+#include "tests/support/tls.h"
 
 namespace ergocast::test {
 namespace {
@@ -18,10 +19,11 @@ class ControlledPage : public PageInABrowser {
     ASSERT_TRUE(browser_->becomes("return !document.getElementById('control')?.hidden"));
   }
   std::string address() const {
-    const std::string text = printed(), begin = "http://127.0.0.1:8820/#control=";
-    const auto at = text.find(begin);
+    const std::string text = printed(), end = "#control=";
+    const auto at = text.find(end);
     EXPECT_NE(at, text.npos) << text;
-    return text.substr(at, begin.size() + 32);
+    const auto begin = text.rfind("http", at);
+    return text.substr(begin, at + end.size() + 32 - begin);
   }
   void take_control(const std::string& name = "anna") {
     js("document.getElementById('operatorName').value = '" + name + "'");
@@ -124,6 +126,20 @@ TEST_F(ControlledPage, StopsAtOnceWithOnePressThatIsAlwaysInSight) {
   EXPECT_TRUE(summary()["reason"].get<std::string>().starts_with("stopped at once by "))
       << summary()["reason"];
   EXPECT_TRUE(printed(": all stand still")) << printed();
+}
+
+// The address has two tokens: one becomes a cookie and the other stays in the browser.
+TEST_F(ControlledPage, GivesOrdersByHttpsWhereOtherHostsReachIt) {
+  const auto [certificate, key] = make_certificate(folder_, "page");
+  control({"--listen", "127.0.0.2", "--tls-cert", certificate, "--tls-key", key});
+  EXPECT_TRUE(address().starts_with("https://127.0.0.2:8820/?token=")) << address();
+  EXPECT_EQ(js("return location.href"), "https://127.0.0.2:8820/");
+  take_control();
+  order("pause");
+  EXPECT_TRUE(becomes("controlText", "paused at tick .*: 4 of 4 stand"));
+  browser_->click("#stopNow");
+  end_with_the_mission();
+  expect_no_errors();
 }
 
 TEST_F(ControlledPage, OnePressAloneGivesNoOrder) {

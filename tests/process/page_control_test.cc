@@ -176,11 +176,13 @@ TEST_F(AttackedControl, APageWithoutControlOrdersNothing) {
   end(mission);
 }
 
-TEST_F(AttackedControl, BeyondThisHostThereIsNoControl) {
+TEST_F(AttackedControl, BeyondThisHostThereIsNoControlWithoutTls) {
   EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--watch", "--control",
                       "--listen", "127.0.0.2", "--out", out()}),
             2);
-  EXPECT_NE(output().find("--listen"), std::string::npos) << output();
+  for (const char* part : {"--listen needs --tls-cert", "ssh -L 8765:127.0.0.1:8765 HOST"}) {
+    EXPECT_NE(output().find(part), std::string::npos) << output();
+  }
   EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--control", "--out", out()}),
             2);
 }

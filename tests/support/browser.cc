@@ -61,6 +61,7 @@ Browser::Browser(const std::filesystem::path& folder, bool webgl) {
                      "--no-sandbox",
                      "--disable-dev-shm-usage",
                      "--hide-scrollbars",
+                     "--ignore-certificate-errors",
                      "--host-resolver-rules=MAP evil.example 127.0.0.1",
                      "--user-data-dir=" + (folder / "profile").string()};
   if (webgl) {

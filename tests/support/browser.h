@@ -11,8 +11,8 @@
 
 namespace ergocast::test {
 
-/// One browser with one window, which takes evil.example for a name of this host. Each call waits
-/// for its answer; a failure throws the driver's message.
+/// One browser with one window, which takes evil.example for a name of this host, and trusts every
+/// certificate. Each call waits for its answer; a failure throws the driver's message.
 class Browser {
  public:
   /// @param folder  for its profile and its driver's log
