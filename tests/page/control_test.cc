@@ -98,10 +98,10 @@ TEST_F(ControlledPage, SendsOneAgentHomeAndAnotherOneOut) {
   js("ergocast.pin(2)");
   EXPECT_TRUE(browser_->becomes("return document.getElementById('orderedAgent').value === '2'"));
   order("home");
-  EXPECT_TRUE(becomes("controlText", "agent 2 home: agent 2 (is on its way|rests at) home"));
+  EXPECT_TRUE(becomes("controlText", "^agent 2 (is on its way|rests at) home"));
   js("ergocast.pin(-1); document.getElementById('orderedAgent').value = 1");
   order("out");
-  EXPECT_TRUE(becomes("controlText", "agent 1 out of the mission: agent 1 has left the mission"));
+  EXPECT_TRUE(becomes("controlText", "^agent 1 has left the mission"));
   EXPECT_TRUE(
       browser_->becomes("return ergocast.S.facts.state.agents.some(a => a.id === 2 && "
                         "/home|rest/.test(a.phase))"))

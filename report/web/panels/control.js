@@ -125,7 +125,8 @@ function showAct(acts) {
   const act = acts[acts.length - 1];
   if (!act) return;
   const name = act.operator === me.id ? '' : ` by ${act.name}`,
-    text = `${act.what}${name}: ${act.text || 'sent'}`;
+    said = act.text || 'sent',
+    text = said.startsWith('agent ') ? said : `${act.what}${name}: ${said}`;
   if (act.state === 'failed') $('controlText').classList.add('bad');
   else $('controlText').classList.remove('bad');
   const key = [act.operator, act.number, act.state].join();
