@@ -200,9 +200,10 @@ class RunLogger {
       if (problem) return problem;
       holds_written_.assign(heard.holds().begin(), heard.holds().end());
     }
-    if (recorder_.facts().recalls.size() == recalls_written_) return std::nullopt;
-    auto problem = write_file(record_.folder() / kRecallsFile, to_text(recalls_json(recorder_)));
-    if (!problem) recalls_written_ = recorder_.facts().recalls.size();
+    const auto recalls = recalls_json(recorder_);
+    if (recalls.size() == recalls_written_) return std::nullopt;
+    auto problem = write_file(record_.folder() / kRecallsFile, to_text(recalls));
+    if (!problem) recalls_written_ = recalls.size();
     return problem;
   }
 

@@ -190,7 +190,7 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
 void add_ticks(const Recorder& recorder, Json& summary) {
   const RunFacts& facts = recorder.facts();
   summary["ticks"] = facts.ticks - facts.held_ticks;
-  if (!facts.recalls.empty()) summary["recalls"] = recalls_json(recorder);
+  if (Json recalls = recalls_json(recorder); !recalls.empty()) summary["recalls"] = recalls;
   const auto holds = recorder.follower().holds();
   if (holds.empty()) return;
   summary["held_ticks"] = facts.held_ticks;
@@ -330,14 +330,18 @@ std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir, const Jso
 }
 
 Json recalls_json(const Recorder& recorder) {
-  Json list = Json::array();
-  const auto& roster = recorder.follower().roster();
-  for (const auto& [id, from_tick] : recorder.facts().recalls) {
-    const bool sent_out = std::ranges::any_of(roster, [id = id](const RosterEntry& entry) {
-      return entry.author.agent == id && entry.leaves;
-    });
-    list.push_back({{"agent", id}, {"from_tick", from_tick}, {"sent_out", sent_out}});
+  std::map<AgentId, Tick> from_ticks = recorder.facts().recalls;
+  std::set<AgentId> sent_out;
+  for (const RosterEntry& entry : recorder.follower().roster()) {
+    if (!entry.leaves) continue;
+    sent_out.insert(entry.author.agent);
+    // An agent that left at once has no row in which it rests.
+    if (entry.active_until >= 0) from_ticks.try_emplace(entry.author.agent, entry.active_until);
   }
+  Json list = Json::array();
+  for (const auto& [id, from_tick] : from_ticks)
+    list.push_back(
+        {{"agent", id}, {"from_tick", from_tick}, {"sent_out", sent_out.contains(id)}});
   return list;
 }
 

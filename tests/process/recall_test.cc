@@ -24,7 +24,8 @@ class RecallCommand : public RunningMission {
     return answered(word);
   }
   nlohmann::json process(const std::string& name) const {
-    for (const auto& one : summary()["processes"]) {
+    const nlohmann::json all = summary();
+    for (const auto& one : all["processes"]) {
       if (one["name"] == name) return one;
     }
     return {};
