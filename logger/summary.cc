@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
