@@ -342,8 +342,7 @@ Json recalls_json(const Recorder& recorder) {
   }
   Json list = Json::array();
   for (const auto& [id, from_tick] : from_ticks)
-    list.push_back(
-        {{"agent", id}, {"from_tick", from_tick}, {"sent_out", sent_out.contains(id)}});
+    list.push_back({{"agent", id}, {"from_tick", from_tick}, {"sent_out", sent_out.contains(id)}});
   return list;
 }
 

@@ -34,9 +34,9 @@ Result<std::shared_ptr<NetcdfFile>, MapProblem> NetcdfFile::open(
                               "write the file again, or copy it anew"});
   }
   if (const auto dataset = stored_elsewhere(file, *library)) {
-    return failure(MapProblem{file.string() + ": the numbers of " + *dataset +
-                                  " are in another file, which is not read",
-                              "write all numbers into one file, as nccopy does"});
+    return failure(MapProblem{
+        file.string() + ": the numbers of " + *dataset + " are in another file, which is not read",
+        "write all numbers into one file, as nccopy does"});
   }
   int opened = 0;
   if (const int error = library->nc_open(file.c_str(), kReadOnly, &opened); error != 0) {
