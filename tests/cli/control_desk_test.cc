@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who may order what from a page, and what is said of it, for a team of two.
+// The rights to give orders from a page, and what becomes of an order, for a team of two.
 #include "cli/operate/control_desk.h"
 
 #include <gtest/gtest.h>

@@ -208,13 +208,13 @@ TEST_F(InvariantsTest, DigestsListWhatIsHeld) {
 }
 
 TEST_F(InvariantsTest, DamagedMessagesAreRefusedAndOthersAreNot) {
-  team_.decoded(1, Refusal::kTag, true);
+  team_.decoded(1, failure(Refusal::kTag), true);
   team_.decoded(1, RecordAck{}, false);
   EXPECT_EQ(violated(), "");
   Invariants other(mission_);
   other.decoded(1, RecordAck{}, true);
   EXPECT_EQ(violated_by(other), "no damaged message is accepted");
-  team_.decoded(1, Refusal::kRange, false);
+  team_.decoded(1, failure(Refusal::kRange), false);
   EXPECT_EQ(violated(), "no whole message is refused");
 }
 

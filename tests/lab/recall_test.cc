@@ -28,7 +28,7 @@ Scenario scenario_of(const Case& one) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   Overrides overrides;
   overrides.pace = one.pace;
-  return std::get<Scenario>(Scenario::parse(text, one.scenario, overrides));
+  return Scenario::parse(text, one.scenario, overrides).value();
 }
 
 class RecalledUnderFaults : public ::testing::TestWithParam<Case> {};

@@ -366,7 +366,7 @@ TEST_F(WaterColumnTest, ThatNamesAnotherFileOfTheHostIsRefused) {
     }
     const Loaded result =
         Scenario::parse(water_column_scenario(""), (folder_.path() / "column.textproto").string());
-    return std::holds_alternative<Scenario>(result) ? "nothing" : to_string(std::get<1>(result)[0]);
+    return result ? "nothing" : to_string(result.error()[0]);
   };
   EXPECT_EQ(said_with(nullptr), "nothing");
   const std::string wanted = "the numbers of chl are in another file, which is not read";

@@ -90,7 +90,7 @@ TEST(WorldWithPhysics, AfterAStopAtOnceThePhysicsStillMovesBodies) {
 TEST(WorldWithPhysics, EndsWhereThereIsNoneForTheMission) {
   const Mission mission = small_mission(2);
   announce(mission);
-  World world(kRun, kWorldLife, [](const Mission&) { return std::string("fly cars"); });
+  World world(kRun, kWorldLife, [](const Mission&) { return failure(std::string("fly cars")); });
   give(world, mission_part(0, MissionState::kRunning, roster_of(2)), at(0s));
   EXPECT_TRUE(world.finished());
   EXPECT_TRUE(world.failed());

@@ -195,9 +195,7 @@ export function recordedRun(record) {
       ? record.summary
       : null;
   run.setHolds(run.summary?.holds);
-  run.recalledFrom = new Map(
-    listOf(run.summary?.recalls).map(recall => [recall.agent, recall.from_tick]),
-  );
+  run.recalledFrom = new Map(listOf(run.summary?.recalls).map(recall => [recall.agent, recall.from_tick]));
   run.homeFrom = new Map(Object.entries(record.home_from ?? {}).map(([id, tick]) => [Number(id), tick]));
   run.slope = record.slope;
   run.ticks = record.ticks;

@@ -112,7 +112,7 @@ function showHolder(operator) {
   me.mine = mine;
   put(
     $('holder'),
-    mine ? 'You have control' : operator ? `${operator.name} has control` : 'Nobody has control',
+    mine ? 'You have control' : operator ? `${operator.name} has control` : 'No operator has control',
   );
   put($('take'), operator && !mine ? 'Take over' : 'Take control');
   $('take').hidden = $('operatorName').hidden = mine;
@@ -148,7 +148,7 @@ export function showControl({ operator, acts, refused }) {
   $('readOnly').hidden = token !== null;
   $('stopNow').hidden = $('take').parentElement.hidden = token === null;
   if (token === null) {
-    put($('holder'), operator ? `${operator.name} has control` : 'Nobody has control');
+    put($('holder'), operator ? `${operator.name} has control` : 'No operator has control');
     $('orders').hidden = true;
   } else {
     showHolder(operator);
