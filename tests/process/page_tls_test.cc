@@ -182,8 +182,9 @@ TEST_F(EncryptedPage, ABadCertificateOrKeyIsNamedWithItsRemedy) {
       auto arguments = command;
       arguments.insert(arguments.end(), {"--tls-cert", certificate, "--tls-key", own});
       EXPECT_EQ(ergocast(arguments), 2) << problem;
-      EXPECT_NE(output().find(problem), std::string::npos) << output();
-      EXPECT_EQ(std::count(output().begin(), output().end(), '\n'), 1) << output();
+      const std::string said = output();
+      EXPECT_NE(said.find(problem), std::string::npos) << said;
+      EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
     }
   }
   EXPECT_EQ(ergocast({"watch", out(), "--tls-cert", pem}), 2);
