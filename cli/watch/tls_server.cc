@@ -262,7 +262,8 @@ Result<std::shared_ptr<const TlsServer>> TlsServer::read(const TlsFiles& files) 
   const std::string name = files.certificate.string(), key_name = files.key.string();
   auto certificate = read_whole(files.certificate, kLongestPem);
   if (!certificate) return failure(certificate.error().sentence(files.certificate));
-  auto text = read_private_file(files.key, kLongestPem);
+  auto text = read_private_file(files.key, kLongestPem,
+                                "; name the key that was made with the certificate");
   if (!text) return failure(std::move(text).error());
 
   Context context = new_context();

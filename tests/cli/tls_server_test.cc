@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/watch/connections.h"
 #include "tests/support/temp_folder.h"
@@ -200,33 +201,64 @@ TEST_F(EncryptedConnections, AClientThatTakesNothingIsLetGo) {
   EXPECT_FALSE(slow.in_order());
 }
 
+/// A stream and its client after the handshake, without a network between them.
+class EncryptedStream : public EncryptedConnections {
+ protected:
+  EncryptedStream() {
+    int ends[2] = {-1, -1};
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
+    stream_ = tls_->open(Socket(ends[0]));
+    other_.emplace(ends[1]);
+    SSL_CTX_set_min_proto_version(context_, TLS1_3_VERSION);
+    client_.reset(SSL_new(context_));
+    SSL_set_fd(client_.get(), other_->fd());
+    SSL_set_connect_state(client_.get());
+    std::array<char, 100> bytes;
+    for (int i = 0; i < 20 && SSL_do_handshake(client_.get()) != 1; ++i) (void)stream_->read(bytes);
+    EXPECT_EQ(SSL_is_init_finished(client_.get()), 1);
+    EXPECT_EQ(stream_->read(bytes).value(), 0U);
+  }
+
+  std::unique_ptr<ByteStream> stream_;
+  std::optional<Socket> other_;
+  std::unique_ptr<SSL, void (*)(SSL*)> client_{nullptr, &SSL_free};
+};
+
 // OpenSSL handles messages that renew the keys for as long as they come, and none has content.
-TEST_F(EncryptedConnections, OneCallHandlesOnlyAPortionOfWhatAClientSends) {
+TEST_F(EncryptedStream, OneCallHandlesOnlyAPortionOfWhatAClientSends) {
   constexpr int kPortion = 4096;
-  SSL_CTX_set_min_proto_version(context_, TLS1_3_VERSION);
-  int ends[2] = {-1, -1};
-  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
-  const auto stream = tls_->open(Socket(ends[0]));
-  const Socket other(ends[1]);
-  const std::unique_ptr<SSL, void (*)(SSL*)> client(SSL_new(context_), &SSL_free);
-  SSL_set_fd(client.get(), other.fd());
-  SSL_set_connect_state(client.get());
-  std::array<char, 100> bytes;
-  for (int i = 0; i < 20 && SSL_do_handshake(client.get()) != 1; ++i) (void)stream->read(bytes);
-  ASSERT_EQ(SSL_is_init_finished(client.get()), 1);
-  EXPECT_EQ(stream->read(bytes).value(), 0U);
   do {
-    SSL_key_update(client.get(), SSL_KEY_UPDATE_NOT_REQUESTED);
-  } while (SSL_do_handshake(client.get()) == 1);
-  const auto unread = [&stream] {
+    SSL_key_update(client_.get(), SSL_KEY_UPDATE_NOT_REQUESTED);
+  } while (SSL_do_handshake(client_.get()) == 1);
+  const auto unread = [this] {
     int count = 0;
-    ioctl(stream->fd(), FIONREAD, &count);
+    ioctl(stream_->fd(), FIONREAD, &count);
     return count;
   };
   const int before = unread();
   ASSERT_GT(before, kPortion + 1000);
-  EXPECT_EQ(stream->read(bytes).value(), 0U);
+  std::array<char, 100> bytes;
+  EXPECT_EQ(stream_->read(bytes).value(), 0U);
   EXPECT_EQ(before - unread(), kPortion);
+}
+
+TEST_F(EncryptedStream, KeepsOneRecordForAClientThatTakesNothing) {
+  const std::string text(kLong, 'x');
+  std::size_t sent = 0;
+  for (std::size_t count = 1; count > 0 && sent < text.size();) {
+    count = stream_->write(std::string_view(text).substr(sent)).value();
+    sent += count;
+  }
+  ASSERT_LT(sent, text.size());  // what the kernel holds is less
+  EXPECT_TRUE(stream_->owes());
+  std::string received;
+  std::vector<char> bytes(100'000);
+  while (received.size() < text.size()) {
+    const int count = SSL_read(client_.get(), bytes.data(), static_cast<int>(bytes.size()));
+    if (count > 0) received.append(bytes.data(), static_cast<std::size_t>(count));
+    if (sent < text.size()) sent += stream_->write(std::string_view(text).substr(sent)).value();
+  }
+  EXPECT_EQ(received, text);
 }
 
 TEST_F(EncryptedConnections, NothingElseThanTlsIsAnswered) {

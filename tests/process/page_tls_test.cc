@@ -14,8 +14,8 @@
 namespace ergocast::test {
 namespace {
 
-constexpr int kPort = 8765;
-const std::string kHost = "Host: 127.0.0.1:8765";
+constexpr int kTlsPort = 8765;
+const std::string kTlsHost = "Host: 127.0.0.1:8765";
 
 class EncryptedPage : public RunningMission {
  protected:
@@ -46,7 +46,7 @@ bool shows_the_mission(HttpsConnection& stream) {
   const auto comes = [](const std::string& text) {
     return text.find("event: mission") != text.npos;
   };
-  stream.send("GET /events HTTP/1.1\r\n" + kHost + "\r\n\r\n");
+  stream.send("GET /events HTTP/1.1\r\n" + kTlsHost + "\r\n\r\n");
   return comes(stream.read_until(comes));
 }
 
@@ -57,31 +57,32 @@ TEST_F(EncryptedPage, IsServedByHttpsOnlyAlsoAfterItsProcessWasKilled) {
                                  with_tls({"--watch", "--key-file", key + ".coordinator.key"}));
   EXPECT_TRUE(printed("https://127.0.0.1:8765/")) << printed();
   for (const bool again : {false, true}) {
-    const HttpAnswer page = https(kPort, "GET", "/", {kHost, "Origin: https://127.0.0.1:8765"});
+    const HttpAnswer page =
+        https(kTlsPort, "GET", "/", {kTlsHost, "Origin: https://127.0.0.1:8765"});
     EXPECT_EQ(page.status, 200);
     EXPECT_NE(page.body.find("</html>"), std::string::npos);
     EXPECT_FALSE(page.contains("Strict-Transport-Security"));
-    EXPECT_EQ(https(kPort, "GET", "/", {kHost, "Origin: http://127.0.0.1:8765"}).status, 403);
-    HttpsConnection events(kPort);
+    EXPECT_EQ(https(kTlsPort, "GET", "/", {kTlsHost, "Origin: http://127.0.0.1:8765"}).status, 403);
+    HttpsConnection events(kTlsPort);
     EXPECT_TRUE(shows_the_mission(events));
     if (!again) kill_next({"ergocast run-page"});
   }
   end(mission);
-  EXPECT_NE(https(kPort, "GET", "/", {kHost}).status, 200);  // it has ended with the run
+  EXPECT_NE(https(kTlsPort, "GET", "/", {kTlsHost}).status, 200);  // it has ended with the run
 }
 
 TEST_F(EncryptedPage, PlainHttpAndOldVersionsGetNothing) {
   Child mission = launch_endless(scenario("pace: REALTIME"), with_tls({"--watch"}));
-  const HttpAnswer plain = get(kPort, "/");
+  const HttpAnswer plain = get(kTlsPort, "/");
   EXPECT_EQ(plain.status, 400);
   EXPECT_EQ(plain.body, "this page is encrypted: open it by https:\n");
-  HttpConnection noise(kPort);
+  HttpConnection noise(kTlsPort);
   noise.send(std::string(100'000, '\0'));
   EXPECT_EQ(noise.read_until([](const std::string&) { return false; }).find("HTTP"),
             std::string::npos);
-  EXPECT_FALSE(HttpsConnection(kPort, "127.0.0.1", 0x0302).open());  // TLS 1.1
-  EXPECT_TRUE(HttpsConnection(kPort, "127.0.0.1", 0x0303).open());
-  EXPECT_EQ(https(kPort, "GET", "/", {kHost}).status, 200);
+  EXPECT_FALSE(HttpsConnection(kTlsPort, "127.0.0.1", 0x0302).open());  // TLS 1.1
+  EXPECT_TRUE(HttpsConnection(kTlsPort, "127.0.0.1", 0x0303).open());
+  EXPECT_EQ(https(kTlsPort, "GET", "/", {kTlsHost}).status, 200);
   end(mission);
 }
 
@@ -94,7 +95,7 @@ TEST_F(EncryptedPage, AnOperatorOfAnotherHostIsObeyed) {
   const auto ask = [&](const std::string& method, const std::string& target,
                        std::vector<std::string> headers) {
     headers.push_back("Host: 127.0.0.2:8765");
-    return https(kPort, method, target, headers, "127.0.0.2");
+    return https(kTlsPort, method, target, headers, "127.0.0.2");
   };
   const HttpAnswer let_in = ask("GET", "/?token=" + token, {});
   EXPECT_EQ(let_in.status, 303);
@@ -124,10 +125,10 @@ TEST_F(EncryptedPage, AnOperatorOfAnotherHostIsObeyed) {
 
 TEST_F(EncryptedPage, HalfOpenHandshakesDoNotKeepItFromTheUser) {
   Child mission = launch_endless(scenario("pace: REALTIME"), with_tls({"--watch"}));
-  ASSERT_EQ(https(kPort, "GET", "/", {kHost}).status, 200);
+  ASSERT_EQ(https(kTlsPort, "GET", "/", {kTlsHost}).status, 200);
   std::vector<std::unique_ptr<HttpConnection>> half;
   for (int i = 0; i < 191; ++i) {
-    half.push_back(std::make_unique<HttpConnection>(kPort));
+    half.push_back(std::make_unique<HttpConnection>(kTlsPort));
     half.back()->send(std::string("\x16\x03\x01\x10\x00\x01\x00\x0f\xfc\x03\x03", 11));
   }
   std::atomic<bool> done = false;
@@ -136,8 +137,8 @@ TEST_F(EncryptedPage, HalfOpenHandshakesDoNotKeepItFromTheUser) {
       for (const auto& one : half) one->send("x");
     }
   });
-  EXPECT_EQ(https(kPort, "GET", "/", {kHost}).status, 200);
-  HttpsConnection users(kPort);
+  EXPECT_EQ(https(kTlsPort, "GET", "/", {kTlsHost}).status, 200);
+  HttpsConnection users(kTlsPort);
   EXPECT_TRUE(shows_the_mission(users));
   done = true;
   trickle.join();
@@ -182,8 +183,9 @@ TEST_F(EncryptedPage, ABadCertificateOrKeyIsNamedWithItsRemedy) {
       auto arguments = command;
       arguments.insert(arguments.end(), {"--tls-cert", certificate, "--tls-key", own});
       EXPECT_EQ(ergocast(arguments), 2) << problem;
-      EXPECT_NE(output().find(problem), std::string::npos) << output();
-      EXPECT_EQ(std::count(output().begin(), output().end(), '\n'), 1) << output();
+      const std::string said = output();
+      EXPECT_NE(said.find(problem), std::string::npos) << said;
+      EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
     }
   }
   EXPECT_EQ(ergocast({"watch", out(), "--tls-cert", pem}), 2);
@@ -207,8 +209,8 @@ TEST_F(EncryptedPage, ARecordIsServedWithACertificateOfTheDocumentedCommand) {
   ASSERT_TRUE(eventually([&] { return text_of(log_).find("Ctrl-C") != std::string::npos; }))
       << text_of(log_);
   EXPECT_NE(text_of(log_).find("https://127.0.0.1:8765/"), std::string::npos) << text_of(log_);
-  HttpsConnection user(kPort);
-  user.send("GET / HTTP/1.1\r\n" + kHost + "\r\n\r\n");
+  HttpsConnection user(kTlsPort);
+  user.send("GET / HTTP/1.1\r\n" + kTlsHost + "\r\n\r\n");
   const std::string& all = user.read_until([](const std::string&) { return false; });
   EXPECT_NE(all.find("quadrimodal_corners"), std::string::npos);
   EXPECT_TRUE(user.ended_in_order());
