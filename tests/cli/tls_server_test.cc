@@ -29,18 +29,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = std::chrono::seconds(60);
-constexpr int kBuffer = 64 << 10;
-constexpr std::size_t kLong = 2 << 20;
-constexpr const char* kPage = "GET / HTTP/1.1\r\n\r\n";
-constexpr const char* kEvents = "GET /events HTTP/1.1\r\n\r\n";
+constexpr auto kClientPatience = std::chrono::seconds(60);
+constexpr int kClientBuffer = 64 << 10;
+constexpr std::size_t kLongPage = 2 << 20;
+constexpr const char* kPageRequest = "GET / HTTP/1.1\r\n\r\n";
+constexpr const char* kEventsRequest = "GET /events HTTP/1.1\r\n\r\n";
 
 /// A client that never waits.
 class TlsClient {
  public:
   TlsClient(SSL_CTX* context, const sockaddr_in& server)
       : socket_(AF_INET, SOCK_STREAM), session_(SSL_new(context)) {
-    setsockopt(socket_.fd(), SOL_SOCKET, SO_RCVBUF, &kBuffer, sizeof kBuffer);
+    setsockopt(socket_.fd(), SOL_SOCKET, SO_RCVBUF, &kClientBuffer, sizeof kClientBuffer);
     connect(socket_.fd(), reinterpret_cast<const sockaddr*>(&server), sizeof server);
     const int flags = fcntl(socket_.fd(), F_GETFL);
     fcntl(socket_.fd(), F_SETFL, flags | O_NONBLOCK);
@@ -91,7 +91,7 @@ class EncryptedConnections : public ::testing::Test {
     place_.sin_family = AF_INET;
     place_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t length = sizeof place_;
-    setsockopt(listener_.fd(), SOL_SOCKET, SO_SNDBUF, &kBuffer, sizeof kBuffer);
+    setsockopt(listener_.fd(), SOL_SOCKET, SO_SNDBUF, &kClientBuffer, sizeof kClientBuffer);
     bind(listener_.fd(), reinterpret_cast<const sockaddr*>(&place_), sizeof place_);
     listen(listener_.fd(), 256);
     getsockname(listener_.fd(), reinterpret_cast<sockaddr*>(&place_), &length);
@@ -116,7 +116,7 @@ class EncryptedConnections : public ::testing::Test {
   TlsClient& client() { return clients_.emplace_back(context_, place_); }
   template <class Condition>
   bool comes(Condition condition, std::chrono::milliseconds step = 0ms) {
-    const auto patience = std::chrono::steady_clock::now() + kPatience;
+    const auto patience = std::chrono::steady_clock::now() + kClientPatience;
     while (!condition()) {
       if (std::chrono::steady_clock::now() > patience) return false;
       now_ += step;
@@ -156,16 +156,16 @@ class EncryptedConnections : public ::testing::Test {
 };
 
 TEST_F(EncryptedConnections, AnAnswerIsWholeAndEndsInOrder) {
-  page_ = std::make_shared<const std::string>(std::string(kLong, 'x') + "the page");
+  page_ = std::make_shared<const std::string>(std::string(kLongPage, 'x') + "the page");
   TlsClient& user = client();
-  EXPECT_TRUE(comes([&] { return user.look(kPage), user.ended(); }));
+  EXPECT_TRUE(comes([&] { return user.look(kPageRequest), user.ended(); }));
   EXPECT_TRUE(user.got("xthe page"));
   EXPECT_EQ(user.text().size(), std::string("HTTP/1.1 200 OK\r\n\r\n").size() + page_->size());
   EXPECT_TRUE(user.in_order());
   TlsClient& watching = client();
-  EXPECT_TRUE(gets(watching, kEvents, "news\n"));
+  EXPECT_TRUE(gets(watching, kEventsRequest, "news\n"));
   stream_ = {};
-  EXPECT_TRUE(comes([&] { return watching.look(kEvents), watching.ended(); }, 100ms));
+  EXPECT_TRUE(comes([&] { return watching.look(kEventsRequest), watching.ended(); }, 100ms));
   EXPECT_TRUE(watching.in_order());
 }
 
@@ -188,15 +188,15 @@ TEST_F(EncryptedConnections, HalfOpenHandshakesDoNotLockOutOthers) {
   EXPECT_TRUE(comes([this] {
     return std::count_if(raw_.begin(), raw_.end(), closed) == 191 - Connections::kMostHeads;
   }));
-  EXPECT_TRUE(gets(client(), kPage, "the page"));
+  EXPECT_TRUE(gets(client(), kPageRequest, "the page"));
 }
 
 TEST_F(EncryptedConnections, AClientThatTakesNothingIsLetGo) {
-  page_ = std::make_shared<const std::string>(kLong, 'x');
+  page_ = std::make_shared<const std::string>(kLongPage, 'x');
   TlsClient& slow = client();
-  EXPECT_TRUE(comes([&] { return slow.look(kPage), slow.ready(); }));
+  EXPECT_TRUE(comes([&] { return slow.look(kPageRequest), slow.ready(); }));
   EXPECT_TRUE(comes([&] { return now_ > Instant(1h) + 20s; }, 100ms));
-  EXPECT_TRUE(comes([&] { return slow.look(kPage), slow.ended(); }));
+  EXPECT_TRUE(comes([&] { return slow.look(kPageRequest), slow.ended(); }));
   EXPECT_LT(slow.text().size(), page_->size());
   EXPECT_FALSE(slow.in_order());
 }
@@ -243,7 +243,7 @@ TEST_F(EncryptedStream, OneCallHandlesOnlyAPortionOfWhatAClientSends) {
 }
 
 TEST_F(EncryptedStream, KeepsOneRecordForAClientThatTakesNothing) {
-  const std::string text(kLong, 'x');
+  const std::string text(kLongPage, 'x');
   std::size_t sent = 0;
   for (std::size_t count = 1; count > 0 && sent < text.size();) {
     count = stream_->write(std::string_view(text).substr(sent)).value();
@@ -262,7 +262,7 @@ TEST_F(EncryptedStream, KeepsOneRecordForAClientThatTakesNothing) {
 }
 
 TEST_F(EncryptedConnections, NothingElseThanTlsIsAnswered) {
-  Socket& plain = raw(kPage);
+  Socket& plain = raw(kPageRequest);
   EXPECT_TRUE(comes([&] { return closed(plain); }));
   char bytes[1000];
   const ssize_t count = recv(plain.fd(), bytes, sizeof bytes, 0);
@@ -272,7 +272,7 @@ TEST_F(EncryptedConnections, NothingElseThanTlsIsAnswered) {
   EXPECT_EQ(text.find("the page"), text.npos);
   Socket& noise = raw(std::string(100'000, '\0'));
   EXPECT_TRUE(comes([&] { return closed(noise); }));
-  EXPECT_TRUE(gets(client(), kPage, "the page"));
+  EXPECT_TRUE(gets(client(), kPageRequest, "the page"));
 }
 
 }  // namespace
