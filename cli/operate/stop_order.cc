@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Repeats STOP, and judges by the team's last messages whether it has ended.
+// Repeats STOP, and judges by the team's last messages whether the team has ended.
 #include "cli/operate/stop_order.h"
 
 #include <chrono>

@@ -57,7 +57,7 @@ class ControlledPage : public PageInABrowser {
 
 TEST_F(ControlledPage, PausesResumesAndStopsATeamFromAPhonesWindow) {
   control();
-  EXPECT_FALSE(visible(button("pause")));  // nobody has control yet
+  EXPECT_FALSE(visible(button("pause")));  // no operator has control yet
   take_control();
   screenshot("control_phone");
   EXPECT_EQ(js("return document.documentElement.scrollWidth <= innerWidth"), true);
@@ -190,11 +190,11 @@ TEST_F(ControlledPage, AnotherOperatorTakesOverVisibly) {
   EXPECT_TRUE(becomes("controlText", "bert has taken control from you"));
   EXPECT_FALSE(visible("#orders"));
   // His browser is silent, so he loses it, and the mission goes on.
-  EXPECT_TRUE(becomes("holder", "Nobody has control"));
+  EXPECT_TRUE(becomes("holder", "No operator has control"));
   EXPECT_TRUE(printed("bert loses control at tick")) << printed();
   take_control();
   browser_->click("#release");
-  EXPECT_TRUE(becomes("holder", "Nobody has control"));
+  EXPECT_TRUE(becomes("holder", "No operator has control"));
   EXPECT_EQ(js("return ergocast.S.live"), true);
   browser_->click("#stopNow");
   end_with_the_mission();

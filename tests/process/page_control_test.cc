@@ -121,7 +121,7 @@ TEST_F(AttackedControl, WhatIsNoRequestIsRefused) {
 TEST_F(AttackedControl, AReplayAnOldTickAndANonOperatorOrderNothing) {
   Child mission = control();
   EXPECT_EQ(post(asking("pause", shown_tick())), 202);
-  EXPECT_TRUE(says("anna asks for: pause: refused: nobody has control: take it first"));
+  EXPECT_TRUE(says("anna asks for: pause: refused: no operator has control: take it"));
   ASSERT_TRUE(take_control()) << printed();
   const auto pause = asking("pause", shown_tick());
   EXPECT_EQ(post(pause), 202);
