@@ -2,13 +2,14 @@
 // Every field of a mission, once: its number in the plan, its name, its limits, and when it has a
 // value of its own. A new field is one entry here.
 //
-// list_fields(io, mission) visits them in the order of scenario.proto. The visitors are the limits
-// (plan/mission_limits.cc), the plan's writer and reader (plan/plan.cc), the conversion of
-// scenarios and their rules (scenario/parse/convert.cc, scenario/parse/fields.cc) and the text
-// (logger/mission_text.cc).
+// list_fields(io, mission) visits them in the order of scenario.proto. The visitors:
+//   limits                                  plan/mission_limits.cc
+//   writer and reader of the plan           plan/plan.cc
+//   conversion of scenarios, their rules    scenario/parse/convert.cc, scenario/parse/fields.cc
+//   text of a scenario                      logger/mission_text.cc
 //
-// A number in the plan is that of plan/plan.proto, unique within its part. A name with a dot is
-// that of a field in a block, such as agents.quorum.
+// A field's number is that of plan/plan.proto, unique within its part. A dot in a name separates
+// block and field, as in agents.quorum.
 #pragma once
 
 #include <concepts>

@@ -13,8 +13,8 @@ using State = OrderReport::State;
 
 /// How long the team may take to exit.
 constexpr auto kLongest = 15s;
-/// Without a roster an emergency stop is repeated at least this long, because an unknown process
-/// may miss the first ones.
+/// Without a roster an emergency stop is repeated at least this long. An unknown process may miss
+/// the first ones.
 constexpr auto kLeastInsistence = 1s;
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The connection between the process that gives orders and the process that serves its page: a pair
-// of sockets without a name, so that no other process can connect.
+// The connection between the process that gives orders and the process that serves its page. It is
+// a pair of sockets without a name, so no other process can connect.
 //
 // Each text is one packet, so a killed process cannot leave half of a text.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shows a mission in a box along one axis, as a run in a plane that the map can draw.
+// Views a mission in a box along one axis: the result is a run in a plane, which the map can draw.
 import { averageOf, picture } from './cosine_sums.js';
 import { Places, axesOf } from './places.js';
 import { targetOfModes } from './run.js';
