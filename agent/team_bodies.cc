@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks the beacons where the mission uses them, else the world's states.
+// Takes positions from beacons if the mission uses beacons, otherwise from the world's states.
 #include "agent/team_bodies.h"
 
 #include "core/motion/filter_rules.h"

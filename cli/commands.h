@@ -23,29 +23,29 @@ void add_check(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 /// `verify`: simulates a recorded run again and compares every file of the record.
 void add_verify(CLI::App& app, Action& action);
-/// `keygen`: a mission key.
+/// `keygen`: makes a mission key.
 void add_keygen(CLI::App& app, Action& action);
 /// `deploy`: writes the files that start a mission on several hosts.
 void add_deploy(CLI::App& app, Action& action);
-/// `list`: the live runs of this user on this host.
+/// `list`: names the live runs of this user on this host.
 void add_list(CLI::App& app, Action& action);
 /// `status`: shows the state of a running team, from any host on its buses.
 void add_status(CLI::App& app, Action& action);
-/// `watch`: a record, or a running team, in a browser.
+/// `watch`: shows a record, or a running team, in a browser.
 void add_watch(CLI::App& app, Action& action);
-/// `run-page`: the page of `run --watch`, for that command alone.
+/// `run-page`: serves a page for `run --watch` or `watch --control`, which start it.
 void add_run_page(CLI::App& app, Action& action);
 /// `export`: writes a record in the formats of other tools.
 void add_export(CLI::App& app, Action& action);
 /// `replay`: sends a recorded run again, for displays.
 void add_replay(CLI::App& app, Action& action);
-/// `pause` and `resume`: a mission stands still for a while.
+/// `pause` and `resume`: stop the vehicles of a mission for a while, and continue.
 void add_pause(CLI::App& app, Action& action);
-/// `recall`: agents go home, or leave the mission.
+/// `recall`: sends agents home, or out of the mission.
 void add_recall(CLI::App& app, Action& action);
 /// `stop`: ends a mission that another command started, in order or at once.
 void add_stop(CLI::App& app, Action& action);
-/// `spy`: LCM's viewer on one bus of a mission.
+/// `spy`: opens LCM's viewer on one bus of a mission.
 void add_spy(CLI::App& app, Action& action);
 /// `doctor`: finds what prevents communication between hosts, and the commands that repair it.
 void add_doctor(CLI::App& app, Action& action);

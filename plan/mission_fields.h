@@ -2,13 +2,14 @@
 // Every field of a mission, once: its number in the plan, its name, its limits, and when it has a
 // value of its own. A new field is one entry here.
 //
-// list_fields(io, mission) visits them in the order of scenario.proto. The visitors are the limits
-// (plan/mission_limits.cc), the plan's writer and reader (plan/plan.cc), the conversion of
-// scenarios and their rules (scenario/parse/convert.cc, scenario/parse/fields.cc) and the text
-// (logger/mission_text.cc).
+// list_fields(io, mission) visits them in the order of scenario.proto. The visitors:
+//   limits                                  plan/mission_limits.cc
+//   writer and reader of the plan           plan/plan.cc
+//   conversion of scenarios, their rules    scenario/parse/convert.cc, scenario/parse/fields.cc
+//   text of a scenario                      logger/mission_text.cc
 //
-// A number in the plan is that of plan/plan.proto, unique within its part. A name with a dot is
-// that of a field in a block, such as agents.quorum.
+// A field's number is that of plan/plan.proto, unique within its part. A dot in a name separates
+// block and field, as in agents.quorum.
 #pragma once
 
 #include <concepts>
@@ -20,27 +21,27 @@
 
 namespace ergocast {
 
-/// When a field has a value of its own, which a scenario's text then has. A visitor that fills a
-/// mission uses `otherwise` alone, because the other members describe the mission before.
+/// When a field has a value of its own. Only then a scenario's text contains it. A visitor that
+/// fills a mission uses only `otherwise`, because the mission does not yet have its values.
 struct When {
   bool given = true;
   double otherwise = 0;  ///< its value if it is not given; plans omit this value
   bool in_box = false;   ///< the text of a scenario in a box has the field also if it is not given
 };
 inline constexpr When kAlways;
-/// Otherwise the field is 0, false or its first word.
+/// A field that is not given is 0, false or its first word.
 constexpr When only_if(bool given) { return {given}; }
-/// The field has a constant default, which a person does not see.
+/// The field has a constant default, which a scenario's text omits.
 constexpr When unless(auto value, double usual) { return {value != usual, usual}; }
-/// A field along z, and its value in a plane.
+/// The field is along z. In a plane it has the value `in_plane`.
 constexpr When unless_in_plane(auto value, double in_plane) {
   return {value != in_plane, in_plane, true};
 }
 
 struct Field {
   int number;          ///< in the plan
-  const char* name;    ///< in scenario.proto, or in plan.proto alone if a scenario has none such
-  Limits limits = {};  ///< of a number; of a text's length
+  const char* name;    ///< in scenario.proto; in plan.proto if scenarios have no such field
+  Limits limits = {};  ///< of a number, or of a text's length
   When when = kAlways;
 };
 
@@ -48,8 +49,8 @@ struct Field {
 /// core/mission/mission.h.
 using Words = std::initializer_list<const char*>;
 
-/// The kinds of fields. A visitor derives from this class, which ignores every field, and hides the
-/// functions that it uses.
+/// The kinds of fields. This class ignores every field. A visitor derives from it, and hides the
+/// functions for the kinds that it needs.
 struct FieldVisitor {
   void number(const Field&, auto&) {}         ///< a double or an int
   void choice(const Field&, auto&, Words) {}  ///< an enumeration
@@ -57,9 +58,9 @@ struct FieldVisitor {
   void text(const Field&, auto&) {}  ///< a name
   /// A block of fields, which may be optional, or a list of such blocks.
   void part(const Field&, auto&) {}
-  /// The x and y of one place or of several, and their z. y of one place has the next number.
+  /// One place or several: x and y, then z. For one place, y has the number after that of x.
   void places(const Field&, const Field&, auto&) {}
-  /// What a scenario has in another form or not at all: its conversion has code of its own.
+  /// A field that a scenario has in another form, or not at all. Its conversion is written by hand.
   void derived(const Field&, auto&) {}
 };
 
@@ -175,7 +176,7 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.part({7, "law"}, m.law);
   io.part({8, "time"}, m.timing);
   io.places({9, "agents.starts"}, {17, "start_heights_m"}, m.starts_m);
-  // The greatest field number, and its value is never 0: a truncated plan lacks it.
+  // This field has the greatest number and is never 0. So a truncated plan lacks it.
   io.number({100, "agents.quorum", limits::kTeam}, m.quorum);
   io.number({10, "agents.forget_silent_after_s", limits::between(0, 1e6)}, m.forget_silent_after_s);
   io.flag({15, "agents.dead_reckoning"}, m.dead_reckoning);

@@ -20,9 +20,8 @@ class CommandWindow {
  public:
   /// A command is obeyed for at least so long after its tick has passed, and at most for twice as
   /// long.
-  /// Limit (Time): age up to which a STOP, PAUSE or RECALL of an operator is obeyed
-  /// [s]. Beyond it: it may
-  /// be refused with `late`; after twice this time it always is.
+  /// Limit (Time): age up to which a STOP, PAUSE or RECALL of an operator is obeyed [s]. Beyond it:
+  /// it may be refused with `late`; after twice this time it always is.
   static constexpr std::chrono::seconds kLength{5};
 
   /// The receiver knows at `now` that the mission has reached `tick`. Before it takes part, it may

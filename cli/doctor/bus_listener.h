@@ -44,7 +44,7 @@ class Overheard {
 
   MessageAuthenticator authenticator_;
   std::map<RunId, HeardRun> runs_;
-  std::int64_t other_key_ = 0, unkeyed_ = 0;  // ours by their format, but refused by our seal
+  std::int64_t other_key_ = 0, unkeyed_ = 0;  // ours by their format, but refused by our key
   std::int64_t foreign_messages_ = 0;         // LCM's, but not of Ergocast
   std::set<std::string> foreign_channels_;
 };

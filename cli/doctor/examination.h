@@ -15,7 +15,7 @@ struct Examination {
   std::string port_taken;
 };
 
-/// @param seal  the team's, if it has a key
+/// @param authenticator  the team's, if it has a key
 /// @param several_hosts  whether the team uses other hosts, too
 Examination examine(const LcmUrl& url, const MessageAuthenticator& authenticator,
                     bool several_hosts);

@@ -204,7 +204,7 @@ Result<fs::path> world_program(const fs::path& wanted, const fs::path& programs)
 
 /// Makes the sealed files that the processes inherit, from the data in this process. An error if
 /// memory is missing.
-/// @pre options.seal can sign
+/// @pre options.authenticator can sign
 std::optional<std::string> seal_files(const RunOptions& options, const Mission& mission,
                                       Launcher::Setup& setup) {
   std::optional<std::string> problem;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Connects the desk with the team's buses and with the page's process.
+// Connects the ControlDesk with the team's buses and with the page's process.
 #include "cli/operate/control.h"
 
 #include <chrono>
@@ -13,9 +13,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Requests that are taken in at once; the others follow in the next turn.
+/// The most requests in one turn; the others follow in the next.
 constexpr int kRequestsAtOnce = 64;
-/// A page's process that was started again learns the state so.
+/// The state is repeated with this period, so a restarted page's process receives it.
 constexpr auto kStatePeriod = 500ms;
 
 }  // namespace

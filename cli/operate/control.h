@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Gives orders to one team for the operators of its page. It listens to the team, and holds the key
-// that signs orders; the page's process has neither that key nor a way to publish them.
+// that signs orders. The page's process does not have that key, and publishes nothing.
 #pragma once
 
 #include <functional>
@@ -26,16 +26,17 @@ class Control {
   static Result<std::unique_ptr<Control>> open(const BusOptions& team,
                                                std::function<void(const std::string&)> print);
 
-  /// Takes requests in, follows orders and tells the page. Call at least ten times a second.
+  /// Receives requests, follows orders and sends the state to the page. Call at least ten times a
+  /// second.
   void attend(Instant now);
-  /// Listens until `until`, or until `wake_fd` is readable. For an owner without another bus.
+  /// Listens until `until`, or until `wake_fd` is readable. For a caller that has no other bus.
   void listen(Instant until, int wake_fd) { transport_->deliver_until(until, wake_fd); }
 
   /// Whether the mission's end has been received.
   bool over() const { return team_.over(); }
-  /// The end of the page's process, which inherits it.
+  /// The page's end of the link. The page's process inherits it.
   const ControlLink& page_end() const { return links_.second; }
-  /// What a page must know to ask for anything.
+  /// Each request of a page must have this token.
   const std::string& token() const { return token_; }
 
  private:
@@ -48,7 +49,7 @@ class Control {
   MonitoredRun team_;
   ControlDesk desk_;
   std::unique_ptr<Transport> transport_;
-  std::string state_;  // as the page knows it
+  std::string state_;  // the last that was sent to the page
   Instant next_state_{};
 };
 

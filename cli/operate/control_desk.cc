@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps the operator, the last numbers, and the orders that are being followed.
+// Keeps the operator with control, each operator's last number, and the newest orders.
 #include "cli/operate/control_desk.h"
 
 #include <algorithm>
@@ -80,7 +80,7 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
   if (request.act == ControlAct::kStopNow) return std::nullopt;
   if (!within_rate(now)) return "too many requests in a second";
   if (request.act != ControlAct::kTake && !is_held_by(request)) {
-    return operator_ ? operator_->name + " has control now" : "nobody has control: take it first";
+    return operator_ ? operator_->name + " has control now" : "no operator has control: take it";
   }
   if (request.act == ControlAct::kHere || request.act == ControlAct::kRelease) return std::nullopt;
   if (!window_.admits(request.tick))
@@ -90,7 +90,7 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
   const auto going =
       std::count_if(acts_.begin(), acts_.end(), [](const Act& act) { return !act.over(); });
   if (going >= static_cast<std::ptrdiff_t>(kMostActs))
-    return "so many orders are not carried out yet";
+    return "too many orders are in progress: wait until one of them has ended";
   return std::nullopt;
 }
 
@@ -140,7 +140,7 @@ void ControlDesk::give(const ControlRequest& request, const MonitoredRun& team, 
   acts_.push_back({request, team.mission_time(team.tick()), order_for(request, team, now)});
 }
 
-/// Orders that are being followed stay.
+/// Removes the oldest order that has ended, if there are too many.
 void ControlDesk::make_room() {
   const auto over = [](const Act& act) { return act.over(); };
   const auto oldest = std::find_if(acts_.begin(), acts_.end(), over);
@@ -173,7 +173,7 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
   }
 }
 
-/// A pause that still waits for robots to stand ends with a resumption, and the reverse.
+/// A resumption ends a pause that still waits for robots to stand. A pause ends a resumption.
 void ControlDesk::end_contradicted(const ControlRequest& request) {
   if (!pauses_or_resumes(request.act)) return;
   for (Act& act : acts_) {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decides who may order what from a page, and follows the orders. No clock, socket or output.
+// Decides which requests from a page become orders, and follows the orders. It has no clock, socket
+// or output.
 //
-// At most one operator has control. Another one takes it over, visibly for both. An operator whose
-// browser sends nothing for 10 s loses it, and the mission goes on as it is. Only the operator's
-// requests become orders, with one exception: whoever has the page's token may stop the team at
-// once.
+// At most one operator has control. Another operator can take it over, and both see that. An
+// operator whose browser sends nothing for 10 s loses control, and the mission goes on as it is.
+// Only requests of the operator with control become orders. The exception is a stop at once, for
+// which the page's token suffices.
 //
-// A request counts once: its number must be greater than any before of the same operator, and it
-// names the newest tick that the page has shown, which must be recent (team/command_window.h). A
-// stop at once is obeyed at any tick, because a late one is safer than none.
+// A request counts once: its number must exceed all earlier numbers of the same operator. A request
+// for control or for an order names the newest tick that the page has shown. That tick must be
+// recent (team/command_window.h). A stop at once is obeyed at any tick, because a late one is safer
+// than none.
 #pragma once
 
 #include <chrono>
@@ -35,15 +37,15 @@ class ControlDesk {
   /// Limit (Page): requests of operators in a second, other than to stop at once. Beyond it: they
   /// are refused.
   static constexpr int kMostInASecond = 20;
-  /// Limit (Page): acts of operators that the page shows. Beyond it: the oldest are not shown; the
-  /// log has all.
+  /// Limit (Page): orders of operators on a page. Beyond it: the oldest finished one is no longer
+  /// shown; while none is finished, only a stop at once is accepted.
   static constexpr std::size_t kMostActs = 8;
 
-  /// @param host   named as the place of the operator in the record of a stop
+  /// @param host   the operator's place in the record of a stop
   /// @param keyed  whether the team has a key
   ControlDesk(std::string host, bool keyed) : host_(std::move(host)), keyed_(keyed) {}
 
-  /// Takes a request in: it becomes an order, or is refused.
+  /// Turns a request into an order, or refuses it.
   void receive(const ControlRequest& request, const MonitoredRun& team, Instant now);
   /// Appends the messages that are due, and judges what the team has reported. Call at least ten
   /// times a second.
@@ -51,7 +53,7 @@ class ControlDesk {
 
   /// What every page shows: {"operator", "acts", "refused"}.
   nlohmann::ordered_json state() const;
-  /// Lines for the log since the last call: who asked for what and when, and what came of it.
+  /// Lines for the log since the last call: each request, its operator, its time and its outcome.
   std::vector<std::string> take_lines() { return std::exchange(lines_, {}); }
 
  private:
@@ -69,7 +71,7 @@ class ControlDesk {
   };
   /// The last number of each operator.
   struct Numbers {
-    /// Of operators whose numbers are remembered.
+    /// The most operators whose numbers are remembered.
     static constexpr std::size_t kMost = 64;
     std::deque<std::pair<std::uint32_t, std::int64_t>> last;
 
@@ -94,7 +96,7 @@ class ControlDesk {
   Numbers numbers_;
   CommandWindow window_;
   std::deque<Act> acts_;                                           // the newest last
-  std::optional<std::pair<ControlRequest, std::string>> refused_;  // the last, and why
+  std::optional<std::pair<ControlRequest, std::string>> refused_;  // the last, and the reason
   std::vector<std::string> lines_;
   Instant second_{};
   int in_this_second_ = 0, over_rate_ = 0;

@@ -15,7 +15,7 @@ Result<SealedFile> sealed(const std::string& name, const std::string& text) {
   return SealedFile::make(name, std::as_bytes(std::span(text)));
 }
 
-/// The page's process checks what it receives, and cannot sign.
+/// A key with which the page's process can verify messages, but not sign them.
 Result<SealedFile> key_of_page(const MissionKey& key) {
   return sealed("page-key", key_text(key, false));
 }

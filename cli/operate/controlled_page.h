@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A page in a process of its own, and the control that it may have in this one.
+// A page in a process of its own. If the page has control, this process gives the orders.
 #pragma once
 
 #include <memory>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sentences that several orders share.
+// Reports that several orders share.
 #include "cli/operate/order.h"
 
 namespace ergocast::cli {
 namespace {
 
-/// How long to wait for the whole mission; agents of a large team send it in turn.
+/// How long to wait for the whole mission. A large mission arrives part by part.
 constexpr std::chrono::seconds kMissionPatience{20};
 
 }  // namespace

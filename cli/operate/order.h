@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An order of an operator to a running team. It is sent until the team's own messages show that the
-// team obeys.
+// An order of an operator to a running team. It is repeated until the team's own messages show that
+// the team obeys.
 //
 // `ergocast pause`, `resume`, `stop` and `recall` and the buttons of the page give the same orders.
 // An order has no clock, sends through an outbox, and prints nothing.
@@ -19,15 +19,15 @@ namespace ergocast::cli {
 struct OrderReport {
   enum class State {
     kSent,      ///< nothing shows that the team obeys
-    kAnswered,  ///< the coordinator has answered; robots go on until the tick that it names
+    kAnswered,  ///< the coordinator has answered; robots do not obey yet
     kObeyed,    ///< the team obeys; robots may still brake, or be on their way
-    kDone,      ///< all robots have reported it
+    kDone,      ///< the order is carried out
     kFailed,    ///< `text` has the cause and the remedy
   };
   State state = State::kSent;
   std::string text;  ///< a sentence for people, without a full stop
 
-  /// Whether nothing more is to come.
+  /// Whether this report is the last one.
   bool ended() const { return state == State::kDone || state == State::kFailed; }
 };
 
@@ -46,11 +46,11 @@ class Order {
   virtual OrderReport report(const MonitoredRun& team, Instant now) const = 0;
 };
 
-/// The report of an order that has waited so long for the mission.
+/// The report of an order that has waited for the mission so far.
 OrderReport waiting_for_mission(const MonitoredRun& team, Instant::duration waited);
 
-/// "4 of 6 stand, 1 circles; agent 2 still moves", of the newest states of the world; a fixed wing
-/// cannot stand.
+/// "4 of 6 stand, 1 circles; agent 2 still moves", from the world's newest states. A fixed wing
+/// circles, because it cannot stand.
 std::string standing_text(const MonitoredRun& team);
 
 }  // namespace ergocast::cli

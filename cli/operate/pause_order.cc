@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks for the mission until its holds are known, then repeats PAUSE until the next change is
-// named.
+// Asks for the mission until its holds are known. Then repeats PAUSE until MISSION names the tick
+// of the change.
 #include "cli/operate/pause_order.h"
 
 #include <chrono>
@@ -71,7 +71,7 @@ OrderReport PauseOrder::unnamed(const MonitoredRun& team, Instant now) const {
   return {State::kFailed, why_not(team)};
 }
 
-/// In real time the tick comes two seconds later, and vehicles move until then.
+/// In real time the named tick is two seconds ahead, and vehicles move until then.
 OrderReport PauseOrder::paused(const MonitoredRun& team) const {
   const Tick named = team.holds().back().from;
   const std::string when = team.mission_time(named);
@@ -85,7 +85,7 @@ OrderReport PauseOrder::paused(const MonitoredRun& team) const {
               standing_text(team)};
 }
 
-/// Nothing depends on its time of arrival, so no process waits for it.
+/// A resumption counts as obeyed before its tick, because no operator has to wait for that.
 OrderReport PauseOrder::resumed(const MonitoredRun& team) const {
   if (obsolete_ || team.holds().empty()) return {State::kDone, "the mission is not paused"};
   const Tick named = team.holds().back().until;

@@ -13,7 +13,7 @@ namespace ergocast::cli {
 
 class PauseOrder final : public Order {
  public:
-  /// @param pauses  whether it pauses the mission, or resumes it
+  /// @param pauses  true: it pauses the mission; false: it resumes it
   PauseOrder(bool pauses, Instant now);
 
   void send(const MonitoredRun& team, Instant now, Outbox& out) override;
@@ -29,8 +29,8 @@ class PauseOrder final : public Order {
   bool pauses_;
   Header header_;
   Instant since_, next_{};
-  std::optional<std::int32_t> changes_;  // as counted when the mission was first known
-  bool obsolete_ = false;                // the mission was already as the order wants it
+  std::optional<std::int32_t> changes_;  // their count when the mission was first known
+  bool obsolete_ = false;                // the mission was already in the wanted state
   bool was_named_ = false;
 };
 

@@ -37,7 +37,7 @@ class Recalling : public TeamCommand {
     return carry_out_all(orders);
   }
 
-  /// All at the same time.
+  /// Gives all orders at the same time; returns the exit code.
   int carry_out_all(std::vector<RecallOrder>& orders) {
     const MonitoredRun& team = runs_.begin()->second;
     int code = kExitDone;

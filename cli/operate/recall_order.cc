@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Repeats RECALL until the roster names it, and reads its effect from the agent's status.
+// Repeats RECALL until the roster contains the recall. The agent's status then shows the effect.
 #include "cli/operate/recall_order.h"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ bool RecallOrder::is_gone(const MonitoredRun& team) const {
   return entry == nullptr || team.phase_of(entry->author) == AgentPhase::kFinished;
 }
 
-/// Whether MISSION has what was ordered.
+/// Whether the roster in MISSION contains the recall.
 bool RecallOrder::is_named(const MonitoredRun& team) const {
   const RosterEntry* const entry = team.present_member(recall_.agent);
   if (entry == nullptr) return recall_.leaves;

@@ -13,13 +13,13 @@ namespace ergocast::cli {
 
 class RecallOrder final : public Order {
  public:
-  /// @param leaves  out of the mission
+  /// @param leaves  true: the agent leaves the mission; false: it goes home
   RecallOrder(AgentId agent, bool leaves, Instant now);
 
   void send(const MonitoredRun& team, Instant now, Outbox& out) override;
   OrderReport report(const MonitoredRun& team, Instant now) const override;
 
-  /// The error if the order cannot be given. @pre team.is_running()
+  /// Why the order cannot be given; nothing if it can. @pre team.is_running()
   std::optional<std::string> why_impossible(const MonitoredRun& team) const;
 
  private:
@@ -31,8 +31,8 @@ class RecallOrder final : public Order {
 
   Recall recall_;
   Instant since_, next_{};
-  bool checked_ = false;                // whether the mission was known
-  std::optional<std::string> problem_;  // why it was impossible then
+  bool checked_ = false;                // why_impossible() was called, once the mission was known
+  std::optional<std::string> problem_;  // its result
 };
 
 }  // namespace ergocast::cli

@@ -45,7 +45,7 @@ class Stopping : public TeamCommand {
     for (const auto& [run, team] : runs_) send_stop_to(run, team);
     send_stop_to_the_crowd();
   }
-  /// Listens for a moment and evaluates; returns the exit code once all is known.
+  /// Listens for one turn and judges the answers; returns the exit code once all runs have one.
   std::optional<int> judge_answers() {
     if (!listen()) return interrupted();
     for (auto& [run, request] : requests_) {
@@ -106,7 +106,7 @@ class Stopping : public TeamCommand {
     crowd_.clear();
   }
 
-  /// The exit code; nullopt while a new run may still appear, or a run has not answered.
+  /// The exit code; nullopt while a new run may still appear, or a run has no exit code yet.
   std::optional<int> result() const {
     if (options_.run == 0 && waited() < (runs_.empty() ? kListeningTime : kLookAround))
       return std::nullopt;
@@ -178,14 +178,14 @@ int stop_at_once(const std::vector<StopOptions>& teams, int code) {
   return code;
 }
 
-/// Asks a run to end that still reads its scenario. It has no team, only a process of this user.
+/// Ends a run that still reads its scenario. Such a run has no team, only a process of this user.
 void end_preparing(const LiveRun& run) {
   std::printf("run %s: ending it while it reads its scenario\n", to_hex(run.run).c_str());
   std::fflush(stdout);
   kill(run.pid, SIGTERM);
 }
 
-/// The exit code, once that run is no longer live or does not end.
+/// Waits until the run has ended; returns the exit code.
 int await_end(const LiveRun& run) {
   const auto is_it = [&run](const LiveRun& one) { return one.run == run.run; };
   for (const Instant until = now() + kLongestEnd; now() < until;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Repeats STOP, and judges by the team's last messages whether it has ended.
+// Repeats STOP, and judges by the team's last messages whether the team has ended.
 #include "cli/operate/stop_order.h"
 
 #include <chrono>
@@ -13,8 +13,8 @@ using State = OrderReport::State;
 
 /// How long the team may take to exit.
 constexpr auto kLongest = 15s;
-/// Without a roster an emergency stop is repeated at least this long, because an unknown process
-/// may miss the first ones.
+/// Without a roster an emergency stop is repeated at least this long. An unknown process may miss
+/// the first ones.
 constexpr auto kLeastInsistence = 1s;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order to end a mission: in order, by its coordinator, or at once.
+// The order to end a mission: by its coordinator, in order, or at once.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace ergocast::cli {
 class StopOrder final : public Order {
  public:
   /// @param at_once  all processes stop at once, and the vehicles stand still
-  /// @param reason   the mission's record says it
+  /// @param reason   for the mission's record
   /// @param keyed    whether the team has a key
   StopOrder(RunId run, bool at_once, std::string reason, bool keyed, Instant now);
 

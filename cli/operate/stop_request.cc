@@ -15,7 +15,7 @@ namespace {
 constexpr auto kRepeatPeriod = std::chrono::milliseconds(100);
 
 /// A tick that never passes. Without a key anybody can forge a STOP, so refusing old ones protects
-/// nothing. A host that receives nothing of the team can then still stop it.
+/// nothing. With this tick, a host that receives nothing can stop the team, too.
 constexpr Tick kNeverLate = kMostEver;
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Repeats STOP: `ergocast run` sends it to its own mission, `ergocast stop` to any mission.
+// Repeats STOP. `ergocast run` sends it to its own mission, `ergocast stop` and a page with control
+// to any mission.
 #pragma once
 
 #include <string>
@@ -11,10 +12,10 @@ namespace ergocast::cli {
 
 class StopRequest {
  public:
-  /// @param failed  whether the mission is to count as failed
+  /// @param failed  whether the mission counts as failed
   StopRequest(RunId run, bool failed, std::string reason);
 
-  /// Appends STOP for every bus with a receiver for it, if the last one was long enough ago.
+  /// Appends STOP for each bus on which a process receives it, if the last one was long enough ago.
   /// @param at_once  all processes stop at once and the vehicles stand still; otherwise only the
   ///                 coordinator obeys and ends the mission in order
   /// @param newest   the newest known tick of the mission; 0 if none is known. A team with a key

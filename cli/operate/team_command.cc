@@ -12,7 +12,7 @@ namespace ergocast::cli {
 namespace {
 
 constexpr auto kTurnTime = std::chrono::milliseconds(20);
-/// The number of runs beyond kMostRuns that are kept.
+/// The most runs beyond kMostRuns that are remembered.
 constexpr std::size_t kMostInCrowd = 256;
 
 }  // namespace

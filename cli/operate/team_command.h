@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The common part of the commands that give orders (cli/operate/order.h). They listen for the runs
-// on a URL and give the order to one of them. Then they wait until its messages show that it obeys.
+// The common part of the commands that give orders (cli/operate/order.h). A command listens for the
+// runs on a URL and gives the order to one of them. Then it waits until the run's messages show
+// that it obeys.
 #pragma once
 
 #include <chrono>
@@ -28,7 +29,7 @@ class TeamCommand {
   int carry_out();
   /// Only opens the buses. If they cannot be used, prints an error and returns the exit code.
   std::optional<int> open();
-  /// Whether a signal arrived while it listened.
+  /// Whether a signal has arrived during listen().
   bool was_interrupted() const { return interrupted_; }
 
  protected:
@@ -40,8 +41,8 @@ class TeamCommand {
   /// detected.
   static constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 
-  /// Listens until a run is received, and any other run on this URL would be. False if a signal
-  /// arrived.
+  /// Listens until a run is received, and long enough to receive any other run on this URL. False
+  /// if a signal arrived.
   bool look_around();
   /// Listens for one turn. False if a signal arrived.
   bool listen();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast watch`: serves a page of a record or of a running team, on which operators may give
-// orders.
+// `ergocast watch`: serves a page of a record or of a running team. With --control, operators give
+// orders on the page.
 #include <poll.h>
 
 #include <chrono>
@@ -35,7 +35,8 @@ using namespace std::chrono_literals;
 
 /// The longest time between two looks at the page's requests.
 constexpr auto kControlPeriod = 50ms;
-/// The coordinator reports the end's reason after the end, and the logger closes the record.
+/// After the mission's end the coordinator still reports the reason, and the logger closes the
+/// record.
 constexpr auto kLinger = 1s;
 
 struct WatchOptions : BusOptions {

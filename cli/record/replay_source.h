@@ -27,7 +27,7 @@ struct ReplayedMessage {
 
 class ReplaySource {
  public:
-  /// @param seal  has the team's key, if the run had one
+  /// @param authenticator  has the team's key, if the run had one
   static Result<ReplaySource> open(const std::filesystem::path& run_dir, const Mission& mission,
                                    const MessageAuthenticator& authenticator);
 

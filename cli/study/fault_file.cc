@@ -22,7 +22,7 @@ std::string known_names() {
   return names;
 }
 
-/// Puts one line into `faults`; returns what is wrong with the line, or an empty text.
+/// Writes the value of one line into `faults`; returns the line's problem, or an empty text.
 std::string take(const CLI::ConfigItem& item, lab::Faults& faults) {
   for (const lab::FaultField& field : lab::fault_fields()) {
     if (item.fullname() != field.name) continue;

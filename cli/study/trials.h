@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast simulate --seeds`: one mission for each seed, under faults.
+// `ergocast simulate --seeds`: runs one mission for each seed, under faults.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace ergocast::cli {
 
 struct TrialsOptions {
-  MissionOptions mission;  ///< `out` is a CSV file here; empty: none
+  MissionOptions mission;  ///< here `out` names a CSV file; empty: none
   std::string faults;      ///< a file, "swarm", or empty: none
   Seeds seeds;
   int jobs = 1;

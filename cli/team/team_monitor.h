@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The runs received on one URL. `ergocast status` and `ergocast stop` listen to them; `stop` checks
-// here whether a run still sends.
+// The runs received on one URL. The commands that show a team or give it orders listen to them
+// here.
 #pragma once
 
 #include <functional>

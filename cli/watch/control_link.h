@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The connection between the process that gives orders and the process that serves its page: a pair
-// of sockets without a name, so that no other process can connect.
+// The connection between the process that gives orders and the process that serves its page. It is
+// a pair of sockets without a name, so no other process can connect.
 //
-// Each text is one packet: a process that is killed leaves no half of one.
+// Each text is one packet, so a killed process cannot leave half of a text.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ class ControlLink {
 
   /// Both ends; nothing if the system has no descriptors for them.
   static std::optional<std::pair<ControlLink, ControlLink>> pair();
-  /// An end that this process has inherited; nothing if `fd` is none.
+  /// An end that this process has inherited; nothing if `fd` is no such end.
   static std::optional<ControlLink> inherited(int fd);
 
   int fd() const { return end_.fd(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a request field by field; whatever is not expected makes it none.
+// Reads a request field by field. A text with anything unexpected is no request.
 #include "cli/watch/control_request.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ std::optional<std::string> word(const json& object, const char* key) {
   return found->get<std::string>();
 }
 
-/// A name stands in one line of the log.
+/// Whether the text is short and fits into one line of the log.
 bool is_name(const std::string& text) {
   return text.size() <= ControlRequest::kLongestName && printable(text) == text &&
          text.find_first_of("\n\t") == text.npos;

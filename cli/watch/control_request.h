@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an operator asks for on the page of `ergocast run --watch --control`.
+// A request of an operator from a page with control (`ergocast run --watch --control` or `ergocast
+// watch --control`).
 //
-// A browser sends a request as JSON. The page's process checks its form and hands it to the process
-// that started it. That process decides (cli/operate/control_desk.h), and trusts no page.
+// A browser sends a request as JSON. The page's process checks its form, and passes it on to the
+// process that started it. That process checks it again and decides (cli/operate/control_desk.h).
 #pragma once
 
 #include <cstddef>
@@ -16,9 +17,9 @@
 namespace ergocast::cli {
 
 enum class ControlAct {
-  kTake,     ///< becomes the operator, in the place of another one
-  kRelease,  ///< is the operator no longer
-  kHere,     ///< is still the operator
+  kTake,     ///< takes control, also from another operator
+  kRelease,  ///< gives control back
+  kHere,     ///< keeps control: the browser is still there
   kPause,
   kResume,
   kStop,     ///< in order
@@ -37,13 +38,13 @@ struct ControlRequest {
   static constexpr std::size_t kLongestName = 48;
 
   std::uint32_t operator_id = 0;  ///< random, one for each page that was opened; not secret
-  std::string name;               ///< as the operator calls himself; printable UTF-8
-  std::int64_t number = 0;        ///< greater than in each request before of this operator
+  std::string name;               ///< the operator chooses it; printable UTF-8
+  std::int64_t number = 0;        ///< greater than in all earlier requests of this operator
   Tick tick = 0;                  ///< the newest that the page has shown
   ControlAct act = ControlAct::kHere;
-  AgentId agent = kUnassigned;  ///< of kHome and kOut
+  AgentId agent = kUnassigned;  ///< for kHome and kOut only
 
-  /// Nothing if it is no request: unknown or missing fields, wrong types, numbers out of range.
+  /// Nothing if a field is unknown, missing, of a wrong type or out of range.
   static std::optional<ControlRequest> parse(std::string_view text);
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Adds an event to each browser's stream whenever the state of control has changed.
+// Adds an event to each browser's stream when the state of control has changed.
 #include "cli/watch/page_control.h"
 
 namespace ergocast::cli {

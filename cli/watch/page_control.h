@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page's side of control: passes requests of operators on, and the state of control to the
-// browsers. It decides nothing.
+// The page's side of control. It passes operators' requests to the process that decides, and the
+// state of control to the browsers.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ namespace ergocast::cli {
 
 class PageControl {
  public:
-  /// @param token  that a request must have
+  /// @param token  each request must have it
   PageControl(ControlLink link, std::string token)
       : link_(std::move(link)), token_(std::move(token)) {}
 
-  /// The content with control: requests are answered, and each browser's events have the state.
-  /// Valid as long as this object.
+  /// Adds control to the content: requests are passed on, and each browser's events contain the
+  /// state. Valid as long as this object.
   PageServer::Content joined(PageServer::Content content);
-  /// Takes the newest state in; call it often.
+  /// Receives the newest state; call it often.
   void listen();
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of `ergocast run --watch` in a separate process. If it ends, the mission continues.
+// The page of `ergocast run --watch`, or of `ergocast watch --control`, in a separate process. If
+// it ends, the mission continues.
 //
 // The socket is bound here, before the mission starts, and outlives the process that serves it. So
 // a restarted process has the same address and token, and waiting browsers connect to it.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast run-page`: `ergocast run --watch` starts it to serve its page
-// (cli/watch/page_process.h).
+// `ergocast run-page`: `ergocast run --watch` and `ergocast watch --control` start it to serve
+// their page (cli/watch/page_process.h).
 #include <poll.h>
 #include <sys/resource.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a function that may fail returns: its value, or the problem.
+// The return type of a function that may fail: a value or a problem.
 #pragma once
 
 #include <string>
@@ -16,12 +16,13 @@ namespace ergocast {
 ///   use(*url);  // or url->base()
 ///
 /// tl::expected is std::expected of C++23 for C++20. This alias becomes std::expected when all
-/// compilers of Debian's stable release have it; its clang has not.
-/// @pre of `*result` and `result->`: there is a value. value() checks and throws; tests use it.
+/// compilers of Debian's stable release have it; its clang does not.
+/// @pre for `*result` and `result->`: there is a value. value() checks this and throws; tests use
+/// it.
 template <class T, class E = std::string>
 using Result = tl::expected<T, E>;
 
-/// What such a function returns instead of a value: `return failure("there is no such file")`.
+/// Makes the result of a function that has failed: `return failure("there is no such file")`.
 template <class E>
 tl::unexpected<std::decay_t<E>> failure(E&& problem) {
   return tl::unexpected<std::decay_t<E>>(std::forward<E>(problem));

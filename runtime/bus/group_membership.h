@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Renews the membership of sockets in the multicast group. A membership belongs to one network
-// interface and ends with it. After an adapter was replaced, or a container reconnected, a process
-// would receive nothing.
+// interface and ends with it. Without renewal, a process would receive nothing after its network
+// adapter was replaced or its container was reconnected.
 #pragma once
 
 #include <netinet/in.h>

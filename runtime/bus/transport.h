@@ -40,7 +40,8 @@ class Transport {
   /// Opens every bus for publishing and listens where `subscriptions` has a message. An error names
   /// its remedy.
   /// @param run  the only run accepted; 0 accepts any until set_run()
-  /// @param seal  signs and tags published messages; messages that it does not verify are refused
+  /// @param authenticator  signs and tags published messages. Messages that it does not verify are
+  ///                       refused
   static Result<std::unique_ptr<Transport>> open(const LcmUrl& url, RunId run,
                                                  const MessageAuthenticator& authenticator,
                                                  const Subscriptions& subscriptions,

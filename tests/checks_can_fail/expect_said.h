@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The register's rule: the program has printed every text in its sources, each after a planted
-// fault.
+// Checks that a program has printed every text in its sources. Planted faults cause the texts.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,12 +13,12 @@
 
 namespace ergocast::test {
 
-/// Texts that no plant on a test machine can produce. Keep them few.
+/// A text that no planted fault can produce on a test machine. Keep these few.
 struct Unsayable {
   std::string file, words, why;
 };
 
-/// Whether two statements may use the same text, so that one plant serves both.
+/// Whether two statements may print the same text, so that one planted fault covers both.
 enum class Words { kAreTheirOwn, kMayBeShared };
 
 /// Fails for each text of `files` that is in none of `said`, unless it is listed as unsayable. Also
@@ -36,7 +35,7 @@ inline void expect_all_said(const std::vector<std::string>& files,
       return words.starts_with(one.file + ":") && words.find(one.words) != words.npos;
     });
     if (reason == unsayable.end()) {
-      ADD_FAILURE() << "nothing planted brings out " << words
+      ADD_FAILURE() << "no planted fault produces " << words
                     << "\n(tests/checks_can_fail/README.md)";
     } else {
       used.insert(&*reason);
@@ -44,11 +43,11 @@ inline void expect_all_said(const std::vector<std::string>& files,
   }
   for (const Unsayable& one : unsayable) {
     EXPECT_TRUE(used.contains(&one))
-        << one.file << " prints it after all, or no more: " << one.words;
+        << one.file << " does print it, or no longer has it: " << one.words;
   }
   if (words_of_two == Words::kMayBeShared) return;
   for (const std::string& words : said_twice(sayings)) {
-    ADD_FAILURE() << "two checks in one's words: " << words;
+    ADD_FAILURE() << "two checks print the same words: " << words;
   }
 }
 

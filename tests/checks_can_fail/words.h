@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads from a part of the program's sources all texts that it can print. So every new check needs
-// a planted fault, even if its author does not know this register.
+// Reads all texts that a part of the program can print from its sources. So every new check needs
+// a planted fault, even if its author does not know these tests.
 #pragma once
 
 #include <string>

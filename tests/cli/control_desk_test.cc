@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rights to give orders from a page, and what becomes of an order, for a team of two.
+// Which requests from a page become orders, and what is reported of them, for a team of two.
 #include "cli/operate/control_desk.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ class Desk : public ::testing::Test {
 
 TEST_F(Desk, OnlyTheOperatorsRequestsBecomeOrders) {
   ask(ControlAct::kPause);
-  EXPECT_EQ(refusal(), "nobody has control: take it first");
+  EXPECT_EQ(refusal(), "no operator has control: take it");
   ask(ControlAct::kTake);
   EXPECT_EQ(operator_name()["name"], "anna");
   ask(ControlAct::kPause, 2);
@@ -85,7 +85,7 @@ TEST_F(Desk, OnlyTheOperatorsRequestsBecomeOrders) {
   EXPECT_EQ(lines_.back(), "control: anna asks for: pause, at tick 100, t = 10.0 s");
 }
 
-TEST_F(Desk, WhoeverHasTheTokenStopsTheTeamAtOnceAtAnyTick) {
+TEST_F(Desk, TheTokenSufficesToStopTheTeamAtOnceAtAnyTick) {
   now_ += 1min;
   move(5000, 1);
   now_ += 1min;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The roster entry of an agent that an operator recalls: it is changed once, its successors inherit
-// it, and nobody follows an agent that was sent out.
+// The roster entry of an agent that an operator recalls. It changes once, and successors inherit
+// the recall. No process takes the number of an agent that was sent out.
 #include <gtest/gtest.h>
 
 #include "tests/coordinator/driven_coordinator.h"
@@ -55,10 +55,10 @@ TEST(Recalling, HasAnEffectOnlyOnce) {
   EXPECT_EQ(newest(coordinator, 1).recall_revision, revision) << "it rests since then";
   EXPECT_TRUE(newest(coordinator, 1).leaves);
   give(coordinator, recall_of(1), at(2300ms));
-  EXPECT_TRUE(newest(coordinator, 1).leaves) << "nobody comes back";
+  EXPECT_TRUE(newest(coordinator, 1).leaves) << "it does not come back";
 }
 
-TEST(Recalling, IsOfAPresentMemberWhileTheMissionRuns) {
+TEST(Recalling, NeedsAPresentMemberAndARunningMission) {
   Coordinator waiting = coordinator_of(small_mission(3));
   advance(waiting, at(0s));
   give(waiting, hello_of(1), at(0s));

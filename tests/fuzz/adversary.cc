@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Records recent datagrams, changes one to four things in a copy, and sends the copy in LCM's
-// format.
+// Records datagrams, makes one to four changes in a copy, and sends the copy in LCM's format.
 #include "tests/fuzz/adversary.h"
 
 #include <algorithm>
@@ -74,7 +73,7 @@ Adversary::Packet Adversary::damaged(const Packet& original) {
   }
   packet.message.resize(now);
   if (packet.message == original.message) packet.message[dice_.below(now)] ^= 1;
-  // An attacker without a key can compute the tag of a team without a key.
+  // An attacker without a key can compute the tag that a team without a key uses.
   if (authenticator_.keyed() && now >= kHeaderBytes && dice_.below(2) == 0) retag(packet.message);
   if (dice_.below(8) == 0) packet.channel = heard_[dice_.below(heard_.size())].channel;
   if (dice_.below(64) == 0) packet.channel += static_cast<char>('0' + dice_.below(10));
@@ -103,7 +102,7 @@ void Adversary::strike() {
   if (what == 1) datagram.resize(dice_.below(datagram.size()));  // cut off
   if (what == 2) datagram[dice_.below(kLcmHeaderBytes)] = static_cast<std::uint8_t>(dice_.next());
   if (what == 3) std::replace(datagram.begin(), datagram.end(), std::uint8_t{0}, std::uint8_t{1});
-  // The header of a fragment can crash LCM itself, which no program with LCM can prevent.
+  // A crafted fragment header can crash LCM's library. No program that uses it can prevent this.
   if (datagram.size() >= 4 && std::memcmp(datagram.data(), "LC03", 4) == 0) datagram[3] = '4';
   const sockaddr_in to = address_of(url_.group, url_.base_port + packet.bus);
   sendto(mouth_.fd(), datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),

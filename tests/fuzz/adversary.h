@@ -16,8 +16,8 @@ namespace ergocast::fuzz {
 
 class Adversary {
  public:
-  /// @param seal  the team's, only for reading its state. If it has a key, some forgeries get the
-  ///              tag that is valid without one.
+  /// @param authenticator  the team's, only for reading its state. If it has a key, some forgeries
+  ///                       get the tag that is valid without a key.
   Adversary(const LcmUrl& url, const MessageAuthenticator& authenticator, std::uint64_t seed);
 
   /// Reads the waiting datagrams. They are recorded until the first one was sent.

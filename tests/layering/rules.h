@@ -132,7 +132,6 @@ inline const std::vector<Rule> kRules = {
      {"text", "core", "plan", "team", "lcmtypes", "target", "scenario", "runtime/bus",
       "runtime/record", "runtime/process", "logger", "report", "cli"},
      {kJson, kFiles, kSystem}},
-    // What an operator orders of a team; commands and the page give these orders.
     {"cli/record",
      {"text", "core", "modes", "plan", "team", "lcmtypes", "scenario", "runtime/bus",
       "runtime/record", "runtime/process", "logger", "report", "report/export", "lab", "cli",
@@ -144,6 +143,7 @@ inline const std::vector<Rule> kRules = {
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     {"cli/watch/tls_server.cc", {"text", "runtime/process", "cli/watch"}, {kTls, kSystem}},
     {"cli/watch/page_server.cc", {"runtime/bus", "runtime/process", "cli/watch"}, {kHttp, kSystem}},
+    // An operator's orders to a team. Commands and the page give the same orders.
     {"cli/operate",
      {"text", "core", "team", "runtime/bus", "runtime/process", "report", "cli", "cli/team",
       "cli/record", "cli/watch"},

@@ -9,7 +9,7 @@ namespace {
 
 class ControlledPage : public PageInABrowser {
  protected:
-  /// A real-time team and its page, opened with the right to give orders.
+  /// Starts a real-time team, and opens its page with the token that permits orders.
   void control(const std::vector<std::string>& more = {}) {
     std::vector<std::string> options{"--watch", "--control", "--port", "8820"};
     options.insert(options.end(), more.begin(), more.end());
@@ -31,7 +31,7 @@ class ControlledPage : public PageInABrowser {
     EXPECT_TRUE(becomes("holder", "You have control"));
   }
   static std::string button(const std::string& act) { return "#orders [data-act=" + act + "]"; }
-  /// Both presses, so soon after each other that no machine is too slow.
+  /// Both presses in one script, so that no machine is too slow for the second one.
   void order(const std::string& act) {
     js("const button = document.querySelector('" + button(act) +
        "');"
@@ -57,7 +57,7 @@ class ControlledPage : public PageInABrowser {
 
 TEST_F(ControlledPage, PausesResumesAndStopsATeamFromAPhonesWindow) {
   control();
-  EXPECT_FALSE(visible(button("pause")));  // nobody has control yet
+  EXPECT_FALSE(visible(button("pause")));  // no operator has control yet
   take_control();
   screenshot("control_phone");
   EXPECT_EQ(js("return document.documentElement.scrollWidth <= innerWidth"), true);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clients that try to give orders on a page with control, and must not: on this host, without the
-// token, with replays, and too often.
+// Clients that must not give orders on a page with control: other processes of this host, clients
+// without the token, replayed requests, and too many requests.
 #include "tests/process/support/mission.h"
 #include "tests/support/http.h"
 
@@ -63,7 +63,7 @@ class AttackedControl : public RunningMission {
   int number_ = 0;
 };
 
-TEST_F(AttackedControl, WithoutTheTokenOrFromAnotherOriginNothingIsOrdered) {
+TEST_F(AttackedControl, RefusesOrdersWithoutTheTokenOrFromAnotherOrigin) {
   Child mission = control();
   const Tick tick = shown_tick();
   const auto stop = [&] { return asking("stop-now", tick); };
@@ -93,7 +93,7 @@ TEST_F(AttackedControl, WithoutTheTokenOrFromAnotherOriginNothingIsOrdered) {
   end(mission);
 }
 
-TEST_F(AttackedControl, WhatIsNoRequestIsRefused) {
+TEST_F(AttackedControl, RefusesMalformedRequests) {
   Child mission = control();
   const Tick tick = shown_tick();
   const auto good = asking("pause", tick);
@@ -121,7 +121,7 @@ TEST_F(AttackedControl, WhatIsNoRequestIsRefused) {
 TEST_F(AttackedControl, AReplayAnOldTickAndANonOperatorOrderNothing) {
   Child mission = control();
   EXPECT_EQ(post(asking("pause", shown_tick())), 202);
-  EXPECT_TRUE(says("anna asks for: pause: refused: nobody has control: take it first"));
+  EXPECT_TRUE(says("anna asks for: pause: refused: no operator has control: take it"));
   ASSERT_TRUE(take_control()) << printed();
   const auto pause = asking("pause", shown_tick());
   EXPECT_EQ(post(pause), 202);
@@ -176,7 +176,7 @@ TEST_F(AttackedControl, APageWithoutControlOrdersNothing) {
   end(mission);
 }
 
-TEST_F(AttackedControl, BeyondThisHostThereIsNoControlWithoutTls) {
+TEST_F(AttackedControl, ControlWithListenNeedsTls) {
   EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--watch", "--control",
                       "--listen", "127.0.0.2", "--out", out()}),
             2);

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Estimates from an agent's places how it moves.
+// Estimates an agent's velocity and direction from its recorded places.
 
-const WINDOW_S = 1; // a point's single steps are noise
-const ENOUGH = 16; // steps in which places are rounded: so far has to be from place to place
+const WINDOW_S = 1; // single steps of a point are mostly noise
+const ENOUGH = 16; // least distance between two places that give a direction, in rounding steps
 const COURSES_S = [1, 2, 5, 10, 20, 30, 60, 120, 300, 600];
-const TURN = ['UNICYCLE', 'FIXED_WING']; // they have a heading, also while they stand
-const SHARE = 0.1; // of the domain's longest side: the course at full speed
+const TURN = ['UNICYCLE', 'FIXED_WING']; // vehicles with a heading, even at standstill
+const SHARE = 0.1; // length of a course at full speed, in the domain's longest side
 
-// "POINT", or the vehicle of the agent's planned kind.
+// The vehicle of the agent's kind; "POINT" if the mission has no other vehicles.
 function vehicleOf(run, id) {
   const { vehicles } = run.mission;
   return vehicles ? (vehicles.find(kind => (id -= kind.count) < 0) ?? vehicles[0]).vehicle : 'POINT';
 }
 
-// For how many seconds the map draws courses.
+// How many seconds ahead the map draws courses.
 export function courseSeconds({ mission }) {
   const wanted = (SHARE * Math.max(...(mission.box_m ?? mission.size_m))) / (mission.u_max_mps || 1),
     off = s => Math.abs(Math.log(s / wanted));
@@ -25,7 +25,7 @@ const difference = (track, from, to, seconds) =>
     .concat(track.z ? [track.z[to] - track.z[from]] : [])
     .map(d => d / seconds);
 
-// Rows between two places that are far enough apart to tell a direction, at most a window.
+// The number of rows back to a place that is far enough away to give a direction; at most `most`.
 function spanOf(run, track, row, most) {
   let n = 1;
   while (
@@ -37,8 +37,9 @@ function spanOf(run, track, row, most) {
   return n;
 }
 
-// Metres per second over the rows before this one; null: it stands, or nothing is known. A vehicle
-// that cannot change its velocity at once is followed around its curve, to the row itself.
+// The velocity in m/s; null: the agent stands, or nothing is known. For a point it is the mean over
+// the rows before this one. Other vehicles change their velocity gradually, so theirs is estimated at
+// the row itself.
 export function velocityAt(run, id, row) {
   const track = run.byId.get(id),
     window = Math.max(1, Math.round(WINDOW_S / run.step)),
@@ -57,8 +58,8 @@ export function velocityAt(run, id, row) {
   return now.map((v, axis) => v + (v - before[axis]) / 2);
 }
 
-// The unit vector along which the agent looks: that of its vehicle, or that of its velocity; null for a
-// point that stands.
+// The unit vector of the agent's heading or, if its vehicle has none, of its velocity. Null if it
+// has neither.
 export function directionAt(run, id, row, velocity) {
   const { h } = run.byId.get(id);
   if (h && TURN.includes(vehicleOf(run, id)) && h[row] === h[row]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shows a mission in a box along one axis, as a run in a plane that the map can draw.
+// Views a mission in a box along one axis: the result is a run in a plane, which the map can draw.
 import { averageOf, picture } from './cosine_sums.js';
 import { Places, axesOf } from './places.js';
 import { targetOfModes } from './run.js';
@@ -18,8 +18,8 @@ function projectedTrack(track, axes, factors) {
   return seen;
 }
 
-// The run seen along the axis that `name`, "xy", "xz" or "yz", lacks. It follows the run. Heights of
-// a flat box are `stretch[1]` times what they are.
+// The run in two dimensions: `name` is "xy", "xz" or "yz", and the view is along the third axis. It
+// changes with the run. Heights of a flat box are drawn `stretch[1]` times too large.
 export function projected(run, name) {
   run.projections ??= new Map();
   if (run.projections.has(name)) return run.projections.get(name);
@@ -41,7 +41,7 @@ export function projected(run, name) {
     nowhere: undefined,
     pace: undefined,
     mission: { ...mission, size_m: size, box_m: mission.size_m, origin_m: pick(mission.origin_m) },
-    // From above the record has the density itself.
+    // For the view from above, the record contains the density itself.
     density:
       hidden === 2
         ? run.density

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paints which agents are blocked, and by which.
+// Paints which agents are blocked, and what blocks them.
 // It draws on a canvas, or on anything with the same methods (svg.js).
 
 const SIGN = 5.5; // pixels: the radius of the sign of a blocked agent
 const HEAD = 6; // pixels
 
-// Where the line from a blocked agent to the one that blocks it begins and ends: at their places, but
-// beside numbers.
+// The two ends of the line from a blocked agent to the agent that blocks it. They are at the agents'
+// places, or beside a number that is drawn there.
 export function lineBetween(from, to) {
   const away = [to.x - from.x, to.y - from.y],
     long = Math.hypot(...away),
@@ -41,7 +41,7 @@ function paintLine(g, [[x, y], [tipX, tipY]], colours) {
   }
 }
 
-// Where the sign of an agent is that an edge blocks: on the other side of its place than the pin's head.
+// The place of the sign for an agent that an edge or a wall blocks: opposite the pin's head.
 export function signAt({ x, y, head, rim, inside, r }) {
   const long = Math.hypot(head[0] - x, head[1] - y);
   if (inside || long < 1e-6) return [x, y + r + SIGN + 2];
@@ -49,7 +49,7 @@ export function signAt({ x, y, head, rim, inside, r }) {
   return [x - (head[0] - x) * away, y - (head[1] - y) * away];
 }
 
-// No entry: a disc with a bar.
+// Paints a no-entry sign: a disc with a bar.
 function paintSign(g, [x, y], colours) {
   g.beginPath();
   g.arc(x, y, SIGN, 0, 2 * Math.PI);
@@ -62,7 +62,7 @@ function paintSign(g, [x, y], colours) {
   g.fillRect(x - 3.4, y - 1.2, 6.8, 2.4);
 }
 
-// `blocks`: {marker, by: the number of the agent that blocks it, or null for an edge}.
+// `blocks`: a list of {marker, by}. `by` is the number of the blocking agent; null: an edge or a wall.
 export function paintBlockLines(g, markers, blocks, colours) {
   const byId = new Map(markers.map(marker => [marker.track.id, marker]));
   for (const { marker, by } of blocks) {
@@ -71,7 +71,7 @@ export function paintBlockLines(g, markers, blocks, colours) {
   }
 }
 
-// Signs of agents that no other one blocks.
+// Paints a sign for each agent that an edge or a wall blocks.
 export function paintBlockSigns(g, blocks, colours) {
   for (const { marker, by } of blocks) if (by === null) paintSign(g, signAt(marker), colours);
 }

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paints where an agent heads, and how far it comes in the next seconds.
+// Paints an agent's direction, and its course: the line to the place that it reaches in the next seconds.
 // It draws on a canvas, or on anything with the same methods (svg.js).
 import { courseSeconds, directionAt, velocityAt } from '../data/motion.js';
 
 const HEAD = 5; // pixels
-const GAP = 2.5; // between an agent and its nose
-const LEAST = 0.01; // pixels: seen end on, a course has no direction
+const GAP = 2.5; // pixels between an agent and its nose, the arrowhead that shows its direction
+const LEAST = 0.01; // pixels: a shorter course is seen end on, and has no direction
 
-// {heading: radians on the screen, end: its place at the course's end, long: pixels up to there}; null
-// for a point that stands.
+// {heading: radians on the screen, end: the place at the course's end, long: pixels to that place}; null
+// if the agent has no direction.
 export function courseOf(run, view, { track, at, x, y }) {
   const velocity = velocityAt(run, track.id, at),
     direction = directionAt(run, track.id, at, velocity);
   if (!direction) return null;
-  // What turns moves along its heading.
+  // A vehicle with a heading moves along it.
   const speed = velocity ? Math.hypot(...velocity) : 0,
     seconds = courseSeconds(run),
     end = view.later(run, track, at, direction, speed * seconds),
@@ -52,7 +52,7 @@ export function paintNose(g, marker, course, colour, colours) {
   g.fill();
 }
 
-// The line from the nose to the course's end; none if that is not beyond the nose.
+// Paints the line from the nose to the course's end. A course that ends near the nose gets no line.
 export function paintCourse(g, marker, course, colour, colours) {
   const [, from] = noseOf(marker, course),
     at = placeOn(marker, course),

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lets an operator give orders to a running team, and says what the team has reported of each.
+// Lets an operator give orders to a running team, and shows what the team reports about the newest one.
 import { S } from './state.js';
 import { $, put } from '../text.js';
 
-const CONFIRM_MS = 3000, // for a second press
-  HERE_MS = 3000, // the server takes control from a browser that is silent for 10 s
+const CONFIRM_MS = 3000, // time for the second press
+  HERE_MS = 3000, // an operator whose browser is silent for 10 s loses control
   SEND_MS = 5000;
 
-// The right to give orders is in the address, after #. It stays in this page's memory: neither the address
-// bar, the history nor a cookie keeps it.
+// The address has, after #, the token that permits orders. Only this page's memory keeps it: not the
+// address bar, the history or a cookie.
 const token = takeToken();
 const me = { id: crypto.getRandomValues(new Uint32Array(1))[0] || 1, number: 0, mine: false };
-let armed = null, // {button, timer}: waits for its second press
-  shownAct = '', // the newest act, its state, and what was said of it
+let armed = null, // {button, timer}: the button that waits for its second press
+  shownAct = '', // operator, number and state of the order that was shown last
   shownRefusal = 0,
   chosenByPin;
 
@@ -52,7 +52,7 @@ async function send(act, agent) {
     if (answer.status === 202) return;
     complain(`${act}: not sent: ${(await answer.text()).trim()}`);
   } catch {
-    complain(`${act}: no answer from the page’s server: it may not have been sent. Press again.`);
+    complain(`${act}: no answer from the page’s server: the order may not have been sent. Press again.`);
   }
 }
 
@@ -90,7 +90,7 @@ function give(act, label) {
   send(act, named ? Number($('orderedAgent').value) : undefined);
 }
 
-// The agents that can be chosen. Whichever is pinned on the map or in the table becomes the choice.
+// Lists the agents that can be chosen. An agent that is pinned on the map or in the table is chosen.
 export function listAgents() {
   if (!me.mine) return;
   const select = $('orderedAgent'),
@@ -142,7 +142,7 @@ function showRefusal(refused) {
   return true;
 }
 
-// The state of control, as the server tells it: {operator, acts, refused}.
+// Shows the state of control that the server sends: {operator, acts, refused}.
 export function showControl({ operator, acts, refused }) {
   $('control').hidden = false;
   $('readOnly').hidden = token !== null;

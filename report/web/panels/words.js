@@ -20,13 +20,13 @@ const MAP = {
   scale: 'A colour shows how many times denser a place is than the average of the domain.',
   Trail: 'How much of its way is drawn behind each agent.',
   Course:
-    'The thin line from an agent: where it comes in that time with its velocity of now, after all limits, ' +
-    'which for points is the mean of the last second. An agent that stands has none.',
+    'The thin line from an agent ends where its present velocity leads in that time. ' +
+    'The velocity of a point is its mean of the last second. An agent that stands has no line.',
   Distance:
     'A ring around each agent, to scale. Its radius is half the distance that agents keep: ' +
     'where two rings touch, the distance is reached. In a team of more than 12 only chosen agents have it.',
   'Radio range': 'Teammates inside an agent’s circle receive what the agent sends.',
-  pin: 'Its tip is where an agent is, and the arrow there says where it heads. Its size means nothing.',
+  pin: 'Its tip is an agent’s place, and the arrow there shows its direction. Its size means nothing.',
   disc: 'An agent’s body, to scale. Its radius is half the distance that bodies keep.',
   'thick arrow': 'From an agent that has been blocked for a second or more to the one that blocks it.',
   'no-entry sign': 'An agent that an edge or a wall has blocked for a second or more.',
@@ -48,7 +48,7 @@ const AGENTS = {
   '#': 'The number of an agent. A click on its row chooses the agent.',
   State: 'Whether it runs, rests, goes home, waits for another process, is late, silent or gone.',
   Speed: 'Over the last second.',
-  Distance: 'The length of its way since the start.',
+  Distance: 'The length of its path since the start.',
   'Oldest update':
     'The mission time since it last received coverage of the teammate that it knows least of. ' +
     'It grows when a teammate stops or messages are lost.',
@@ -56,8 +56,7 @@ const AGENTS = {
     'How far the φ² that it computes is above (+) or below (−) the team’s median. ' +
     'Near 0 % it knows what the others know.',
   Lag:
-    'The longest time in the last half second that its process woke up late. ' +
-    'Above 100 ms the machine is too busy.',
+    'The longest delay of its process in the last half second. Above 100 ms the machine is too busy.',
   'Own φ²': 'φ² of the coverage that it knew at the end',
   Lost: 'Messages that teammates sent and it did not receive.',
   Dropped:
@@ -67,7 +66,7 @@ const AGENTS = {
 const FIGURES = {
   result:
     'done: the last tick of the plan is recorded. stopped: it ended before. failed: it could not go on.',
-  'φ² in modes of': 'Which modes the numbers of φ² are of. They compare only with numbers of the same modes.',
+  'φ² in modes of': 'The modes in which φ² is computed. Compare it only with φ² in the same modes.',
   'φ² first': 'At the first recorded time.',
   'φ² last': 'At the last recorded time.',
   'slope, last decade': 'The power of t that fits φ² over the last tenfold of time. −1 falls like 1/t.',
