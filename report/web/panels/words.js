@@ -55,8 +55,7 @@ const AGENTS = {
   'φ² vs team':
     'How far the φ² that it computes is above (+) or below (−) the team’s median. ' +
     'Near 0 % it knows what the others know.',
-  Lag:
-    'The longest delay of its process in the last half second. Above 100 ms the machine is too busy.',
+  Lag: 'The longest delay of its process in the last half second. Above 100 ms the machine is too busy.',
   'Own φ²': 'φ² of the coverage that it knew at the end',
   Lost: 'Messages that teammates sent and it did not receive.',
   Dropped:
