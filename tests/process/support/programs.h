@@ -13,6 +13,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -25,9 +26,13 @@
 
 namespace ergocast::test {
 
+/// Empty if it cannot be read. (An iterator would throw where a process ends while its file in
+/// /proc is read.)
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
 }
 
 inline std::filesystem::path scenario_file(const std::string& name) {
