@@ -157,7 +157,8 @@ void Invariants::check(double t_s, const Command& command, const TableView& spea
   const double margin_mps =
       8 * 0x1p-53 * (v_mps.norm() + contraction_mps.norm() + noise_mps.norm());
   if (u_mps <= (law.u_max_mps + push_mps) * (1 + 1e-12) + margin_mps) return;
-  const RosterEntry* const own = entry_of(*speaker.roster, speaker.self);
+  const RosterEntry* const own =
+      speaker.roster != nullptr ? entry_of(*speaker.roster, speaker.self) : nullptr;
   const bool may_go_home =
       home_from_.contains(command.header.sender) || (own != nullptr && is_recalled(*own, speaker));
   if (may_go_home && v_mps.norm() <= law.u_max_mps * (1 + 1e-12)) return;

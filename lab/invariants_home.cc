@@ -39,7 +39,8 @@ double tolerated_m(const Mission& mission, AgentId id) {
 
 }  // namespace
 
-/// Checks the agents that the mission began with, in lockstep, where no tick is lost.
+/// Checks the agents that the mission began with, in lockstep, where no tick is lost. An agent that
+/// was sent out of the mission stands where it was.
 void Invariants::check_home(double t_s, const WorldState& world) {
   const Timing& timing = mission_.timing;
   if (home_from_.empty() || timing.pace == Pace::kRealtime ||
@@ -49,10 +50,13 @@ void Invariants::check_home(double t_s, const WorldState& world) {
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     const auto from = home_from_.find(vehicle.id);
     if (from == home_from_.end() || counted < from->second) continue;
-    const bool from_the_start = std::ranges::any_of(truth_.roster(), [&](const RosterEntry& entry) {
-      return entry.author.agent == vehicle.id && entry.active_from == 0;
-    });
-    if (!from_the_start) continue;
+    bool from_the_start = false, sent_out = false;
+    for (const RosterEntry& entry : truth_.roster()) {
+      if (entry.author.agent != vehicle.id) continue;
+      from_the_start = from_the_start || entry.active_from == 0;
+      sent_out = sent_out || entry.leaves;
+    }
+    if (!from_the_start || sent_out) continue;
     const double apart_m = (vehicle.position_m - station_m_of(mission_, vehicle.id)).norm();
     const double most_m = tolerated_m(mission_, vehicle.id);
     if (apart_m <= most_m * (1 + 1e-9)) continue;

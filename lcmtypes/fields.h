@@ -55,8 +55,8 @@ struct Fields<MissionPart> {
     io.bytes(m.signature);
     io.count(m.revision);
     io.enumerator(m.state, MissionState::kFailed);
-    io.within(m.part, 0, kMaxPlanParts - 1);
-    io.within(m.parts, 1, kMaxPlanParts);
+    io.within(m.part, 0, kMaxMissionParts - 1);
+    io.within(m.parts, 1, kMaxMissionParts);
     io.holds(m.part < m.parts);
     io.number(m.content_hash);
     io.length(m.roster, kMaxRosterEntriesPerMessage);

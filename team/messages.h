@@ -32,6 +32,11 @@ inline constexpr int kMaxPlanBytesPerMessage = 512;
 /// Limit (Messages): parts of a plan. Beyond it: the scenario is refused.
 inline constexpr int kMaxPlanParts = 512;
 static_assert(std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage == kMaxPlanBytes);
+/// Limit (Messages): parts of a MISSION: as many as the largest roster needs. Beyond it: the part
+/// is refused with `range`.
+inline constexpr int kMaxMissionParts = 683;
+static_assert(kMaxMissionParts >= kMaxPlanParts &&
+              std::size_t{kMaxMissionParts} * kMaxRosterEntriesPerMessage >= kMaxRosterEntries);
 inline constexpr int kMaxHoldsPerMessage = 1;
 inline constexpr int kMaxEchoesPerMessage = kMostLeasedAgents;
 inline constexpr int kMaxReasonLength = 150;

@@ -42,7 +42,7 @@ std::uint64_t hash_of(const MissionPart& part) {
 
 bool MissionFollower::receive(const MissionPart& part) {
   if (part.header.sender != kCoordinator || part.revision <= revision_ || part.parts < 1 ||
-      part.parts > kMaxPlanParts || part.part < 0 || part.part >= part.parts) {
+      part.parts > kMaxMissionParts || part.part < 0 || part.part >= part.parts) {
     return false;
   }
   Pages& pages = collected_[part.revision];

@@ -406,6 +406,7 @@ const std::vector<Unsayable> kUnsayable = {
      "the file has to be cut off amid its numbers"},
     {"target/maps/netcdf_file.cc", "is stored in parts of more than",
      "the classic format has no parts"},
+    {"target/maps/netcdf_file.cc", "are in another file", "the classic format names no other file"},
     {"scenario/parse/text.cc", "is longer than the limit", "a file is bounded before it is read"},
 };
 

@@ -83,6 +83,12 @@ std::vector<Lie> lies_of_the_summary() {
        [](const fs::path& run) {
          call_it_a_run(run, [](Json& s) { s["processes"] = {{{"name", "world"}}}; });
        }},
+      {"the operator recalled agent 1 at tick 3", 2,
+       [](const fs::path& run) {
+         call_it_a_run(run, [](Json& s) {
+           s["recalls"] = {{{"agent", 1}, {"from_tick", 3}, {"sent_out", false}}};
+         });
+       }},
       {"joined at tick 3", 2,
        [=](const fs::path& run) { call_it_a_run(run, agent("active_from", 3)); }},
       {"is not one that ergocast wrote", 2,

@@ -54,7 +54,7 @@ TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogethe
   Coordinator coordinator = coordinator_of(mission);
   admit_all(coordinator, 30, at(0s));
   const auto parts = only<MissionPart>(advance(coordinator, at(0s)));
-  ASSERT_EQ(parts.size(), 2u * 4u) << "four parts on two buses";
+  ASSERT_EQ(parts.size(), 2u * 5u) << "five parts on two buses";
   MissionFollower follower;
   for (const MissionPart& part : parts) {
     EXPECT_LE(part.roster.size(), static_cast<std::size_t>(kMaxRosterEntriesPerMessage));

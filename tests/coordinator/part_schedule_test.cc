@@ -77,7 +77,7 @@ TEST(LargeTeam, IsAdmittedAndFollowedFromWhatChanges) {
   };
   admit_all(coordinator, kMaxAgents, at(0s));
   ASSERT_EQ(coordinator.roster().size(), static_cast<std::size_t>(kMaxAgents));
-  for (int i = 0; i < 5; ++i) follow(at(i * 100ms));
+  for (int i = 0; i < 6; ++i) follow(at(i * 100ms));
   EXPECT_EQ(follower.roster().size(), static_cast<std::size_t>(kMaxAgents));
   ASSERT_TRUE(follower.mission());
   EXPECT_EQ(follower.mission()->starts_m.size(), static_cast<std::size_t>(kMaxAgents));
@@ -107,9 +107,9 @@ TEST(LargeTeam, WithAllItsIncarnationsIsFollowedAlsoByALatecomerUnderLoss) {
   ASSERT_EQ(coordinator.roster().size(), kMaxRosterEntries);
   MissionFollower follower;
   int sent = 0, repetitions = 0;
-  // Every fifth datagram is lost: after r rounds of 16 repetitions a part is missing with
+  // Every fifth datagram is lost: after r rounds of 22 repetitions a part is missing with
   // probability 0.2^r.
-  for (; repetitions < 8 * 16 && follower.roster().size() < kMaxRosterEntries; ++repetitions) {
+  for (; repetitions < 8 * 22 && follower.roster().size() < kMaxRosterEntries; ++repetitions) {
     for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) {
       if (++sent % 5 != 0) follower.receive(part);
     }

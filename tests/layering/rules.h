@@ -69,6 +69,7 @@ inline const std::vector<Rule> kRules = {
     {"lcmtypes", {"text", "core", "plan", "team"}, {kLcmTypes, kHash, kCrypto}},
     {"target", {"text", "core"}, {}},
     {"target/maps", {"text", "core", "target"}, {kPng, kFiles}},
+    {"target/maps/hdf5_storage.cc", {"target/maps"}, {kLoader, kFiles}},
     {"target/maps/netcdf_library.cc", {"target/maps"}, {kLoader}},
     // Places on the earth, and drawings: for scenarios and exports, not for participants.
     {"target/geo", {"text", "core"}, {kEarth, kFiles, kJson, kXml}},
@@ -145,7 +146,7 @@ inline const std::vector<Rule> kRules = {
     {"cli/watch/page_server.cc", {"runtime/bus", "runtime/process", "cli/watch"}, {kHttp, kSystem}},
     // An operator's orders to a team. Commands and the page give the same orders.
     {"cli/operate",
-     {"text", "core", "team", "runtime/bus", "runtime/process", "report", "cli", "cli/team",
+     {"text", "core", "team", "lcmtypes", "runtime/bus", "runtime/process", "report", "cli", "cli/team",
       "cli/record", "cli/watch"},
      {kCommandLine, kJson, kFiles, kSystem}},
     {"cli/launch",

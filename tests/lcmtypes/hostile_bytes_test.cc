@@ -108,16 +108,16 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
 }
 
 TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
-  // 46 bytes less of roster and 46 more of plan: the total size is right, only the meaning changes.
+  // 55 bytes less of roster and 55 more of plan: the total size is right, only the meaning changes.
   Bytes shifted = encoded(mission_part());
   put32(shifted, kSignatureEnd + 25, 1);
-  put32(shifted, kSignatureEnd + 29, 346);
+  put32(shifted, kSignatureEnd + 29, 355);
   const auto part = decoded_as<MissionPart>(retagged(shifted));
   EXPECT_EQ(part.roster.size(), 1u);
-  EXPECT_EQ(part.plan.size(), 346u);
+  EXPECT_EQ(part.plan.size(), 355u);
   // A right total does not help beyond a limit.
-  put32(shifted, kSignatureEnd + 25, 9);
-  put32(shifted, kSignatureEnd + 29, 300 - 7 * 46);
+  put32(shifted, kSignatureEnd + 25, 7);
+  put32(shifted, kSignatureEnd + 29, 300 - 5 * 55);
   EXPECT_EQ(verdict(retagged(shifted)), "size");
 }
 
@@ -233,7 +233,7 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<Part>(mission_part(), [](Part& m) { m.revision = std::int64_t{1} << 49; }),
       changed<Part>(mission_part(), [](Part& m) { m.part = -1; }),
       changed<Part>(mission_part(), [](Part& m) { m.part = m.parts; }),
-      changed<Part>(mission_part(), [](Part& m) { m.parts = kMaxPlanParts + 1; }),
+      changed<Part>(mission_part(), [](Part& m) { m.parts = kMaxMissionParts + 1; }),
       changed<Part>(mission_part(), [](Part& m) { m.part = 0, m.parts = 0; }),
       changed<Part>(mission_part(), [](Part& m) { m.part = -5, m.parts = kLeast; }),
       changed<Part>(mission_part(), [](Part& m) { m.roster[1].author.agent = -1; }),

@@ -138,6 +138,7 @@ TEST_F(ControlledPage, GivesOrdersByHttpsWhereOtherHostsReachIt) {
   order("pause");
   EXPECT_TRUE(becomes("controlText", "paused at tick .*: 4 of 4 stand"));
   browser_->click("#stopNow");
+  EXPECT_TRUE(browser_->becomes("return document.getElementById('control').hidden"));
   end_with_the_mission();
   expect_no_errors();
 }

@@ -126,7 +126,7 @@ TEST_F(KeyFile, OtherTextIsRefusedWithFileAndLine) {
   EXPECT_NE(problem(line(good, 1) + "shared 12\n" + line(good, 3)).find(":2:"), std::string::npos);
   EXPECT_NE(problem(line(good, 1) + "shared " + std::string(64, 'g')).find(":2:"),
             std::string::npos);
-  EXPECT_NE(problem(good + std::string(5000, '0')).find(":5:"), std::string::npos);
+  EXPECT_NE(problem(good + std::string(5000, '0')).find("too long for a key"), std::string::npos);
   EXPECT_NE(
       problem(line(good, 1) + line(good, 2) + line(good, 3) + line(other, 4)).find("different"),
       std::string::npos);

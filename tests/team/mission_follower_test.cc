@@ -141,7 +141,7 @@ TEST(MissionFollower, HostileCountsHaveNoEffect) {
   follower.receive(part_of(1, 0, 2));
   const std::pair<int, int> lies[] = {
       {0, 0},      {0, -1},        {-1, 2},    {2, 2},      {5, 2},
-      {0, kLeast}, {kMost, kMost}, {0, kMost}, {kLeast, 2}, {0, kMaxPlanParts + 1}};
+      {0, kLeast}, {kMost, kMost}, {0, kMost}, {kLeast, 2}, {0, kMaxMissionParts + 1}};
   for (const auto& [part, parts] : lies) {
     EXPECT_FALSE(follower.receive(part_of(1, part, parts))) << part << " of " << parts;
     EXPECT_FALSE(follower.receive(part_of(2, part, parts))) << part << " of " << parts;
