@@ -54,8 +54,10 @@ struct Table {
     plain[kind] = name_of<M>();
     for (int id = -1; id < kMaxAgents; ++id)
       numbered[kind][index(id)] = plain[kind] + "_" + (id < 0 ? "NEW" : std::to_string(id));
-    stems[kind] = plain[kind] + (kPerAgent<M> ? "_" : "");
-    names[kind] = {stems[kind], kPerAgent<M>};
+    stems[kind] = plain[kind];
+    const bool is_per_agent = kPerAgent<M>;
+    if (is_per_agent) stems[kind] += '_';
+    names[kind] = {stems[kind], is_per_agent};
   }
 };
 

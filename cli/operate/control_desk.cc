@@ -12,8 +12,9 @@
 namespace ergocast::cli {
 namespace {
 
-using namespace std::chrono_literals;
 using State = OrderReport::State;
+
+constexpr std::chrono::seconds kSecond{1};
 
 std::string called(const ControlRequest& request) {
   return request.name.empty() ? "an operator without a name" : request.name;
@@ -95,7 +96,7 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
 }
 
 bool ControlDesk::within_rate(Instant now) {
-  if (now - second_ >= 1s) {
+  if (now - second_ >= kSecond) {
     if (over_rate_ > 1)
       note(std::to_string(over_rate_) + " requests were refused: too many in a second");
     second_ = now;

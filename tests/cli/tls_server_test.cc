@@ -207,19 +207,20 @@ class EncryptedStream : public EncryptedConnections {
   EncryptedStream() {
     int ends[2] = {-1, -1};
     EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
-    stream_ = tls_->open(Socket(ends[0]));
+    server_stream_ = tls_->open(Socket(ends[0]));
     other_.emplace(ends[1]);
     SSL_CTX_set_min_proto_version(context_, TLS1_3_VERSION);
     client_.reset(SSL_new(context_));
     SSL_set_fd(client_.get(), other_->fd());
     SSL_set_connect_state(client_.get());
     std::array<char, 100> bytes;
-    for (int i = 0; i < 20 && SSL_do_handshake(client_.get()) != 1; ++i) (void)stream_->read(bytes);
+    for (int i = 0; i < 20 && SSL_do_handshake(client_.get()) != 1; ++i)
+      (void)server_stream_->read(bytes);
     EXPECT_EQ(SSL_is_init_finished(client_.get()), 1);
-    EXPECT_EQ(stream_->read(bytes).value(), 0U);
+    EXPECT_EQ(server_stream_->read(bytes).value(), 0U);
   }
 
-  std::unique_ptr<ByteStream> stream_;
+  std::unique_ptr<ByteStream> server_stream_;
   std::optional<Socket> other_;
   std::unique_ptr<SSL, void (*)(SSL*)> client_{nullptr, &SSL_free};
 };
@@ -232,13 +233,13 @@ TEST_F(EncryptedStream, OneCallHandlesOnlyAPortionOfWhatAClientSends) {
   } while (SSL_do_handshake(client_.get()) == 1);
   const auto unread = [this] {
     int count = 0;
-    ioctl(stream_->fd(), FIONREAD, &count);
+    ioctl(server_stream_->fd(), FIONREAD, &count);
     return count;
   };
   const int before = unread();
   ASSERT_GT(before, kPortion + 1000);
   std::array<char, 100> bytes;
-  EXPECT_EQ(stream_->read(bytes).value(), 0U);
+  EXPECT_EQ(server_stream_->read(bytes).value(), 0U);
   EXPECT_EQ(before - unread(), kPortion);
 }
 
@@ -246,17 +247,18 @@ TEST_F(EncryptedStream, KeepsOneRecordForAClientThatTakesNothing) {
   const std::string text(kLongPage, 'x');
   std::size_t sent = 0;
   for (std::size_t count = 1; count > 0 && sent < text.size();) {
-    count = stream_->write(std::string_view(text).substr(sent)).value();
+    count = server_stream_->write(std::string_view(text).substr(sent)).value();
     sent += count;
   }
   ASSERT_LT(sent, text.size());  // what the kernel holds is less
-  EXPECT_TRUE(stream_->owes());
+  EXPECT_TRUE(server_stream_->owes());
   std::string received;
   std::vector<char> bytes(100'000);
   while (received.size() < text.size()) {
     const int count = SSL_read(client_.get(), bytes.data(), static_cast<int>(bytes.size()));
     if (count > 0) received.append(bytes.data(), static_cast<std::size_t>(count));
-    if (sent < text.size()) sent += stream_->write(std::string_view(text).substr(sent)).value();
+    if (sent < text.size())
+      sent += server_stream_->write(std::string_view(text).substr(sent)).value();
   }
   EXPECT_EQ(received, text);
 }
