@@ -17,6 +17,9 @@ using namespace std::chrono_literals;
 constexpr int kRequestsAtOnce = 64;
 /// The state is repeated with this period, so a restarted page's process receives it.
 constexpr auto kStatePeriod = 500ms;
+/// Requests of so long ago do not count, but for a stop at once. The desk cannot see their age
+/// after this process was stopped, because it has received no tick meanwhile.
+constexpr auto kSleep = 5s;
 
 }  // namespace
 
@@ -47,10 +50,15 @@ Control::Control(const BusOptions& team, std::pair<ControlLink, ControlLink> lin
 
 void Control::attend(Instant now) {
   transport_->deliver_until(now, -1);
+  const bool slept = last_attended_ && now - *last_attended_ > kSleep;
+  last_attended_ = now;
+  if (slept) desk_.wake(now);
   for (int i = 0; i < kRequestsAtOnce; ++i) {
     const auto text = links_.first.receive();
     if (!text) break;
-    if (const auto request = ControlRequest::parse(*text)) desk_.receive(*request, team_, now);
+    const auto request = ControlRequest::parse(*text);
+    const bool counts = request && (!slept || request->act == ControlAct::kStopNow);
+    if (counts) desk_.receive(*request, team_, now);
   }
   Outbox out;
   desk_.advance(team_, now, out);

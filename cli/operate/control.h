@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -51,6 +52,7 @@ class Control {
   std::unique_ptr<Transport> transport_;
   std::string state_;  // the last that was sent to the page
   Instant next_state_{};
+  std::optional<Instant> last_attended_;
 };
 
 }  // namespace ergocast::cli

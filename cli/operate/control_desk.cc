@@ -43,6 +43,8 @@ bool pauses_or_resumes(ControlAct act) {
   return act == ControlAct::kPause || act == ControlAct::kResume;
 }
 
+bool recalls(ControlAct act) { return act == ControlAct::kHome || act == ControlAct::kOut; }
+
 }  // namespace
 
 bool ControlDesk::Numbers::is_new(const ControlRequest& request) {
@@ -62,7 +64,10 @@ bool ControlDesk::Numbers::is_new(const ControlRequest& request) {
 // ---- requests ----
 
 void ControlDesk::receive(const ControlRequest& request, const MonitoredRun& team, Instant now) {
-  if (!numbers_.is_new(request)) return;  // a repetition
+  if (request.act != ControlAct::kStopNow && !numbers_.is_new(request)) {
+    refused_ = {request, "the page has sent a later request: reload it if it has not"};
+    return;
+  }
   if (const auto why = why_refused(request, team, now)) {
     refused_ = {request, *why};
     if (over_rate_ <= 1)
@@ -88,10 +93,10 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
     return "the page has shown nothing new for several seconds: look at the team again";
   if (request.act == ControlAct::kTake) return std::nullopt;
   if (team.unheard()) return "no message of the team arrives";
-  const auto going =
-      std::count_if(acts_.begin(), acts_.end(), [](const Act& act) { return !act.over(); });
-  if (going >= static_cast<std::ptrdiff_t>(kMostActs))
-    return "too many orders are in progress: wait until one of them has ended";
+  const auto unanswered = std::ranges::count_if(
+      acts_, [](const Act& act) { return !act.over() && act.report.state < State::kObeyed; });
+  if (recalls(request.act) && unanswered >= static_cast<std::ptrdiff_t>(kMostActs))
+    return "too many orders wait for an answer";
   return std::nullopt;
 }
 
@@ -131,21 +136,40 @@ void ControlDesk::change_operator(const ControlRequest& request, const Monitored
 // ---- orders ----
 
 void ControlDesk::give(const ControlRequest& request, const MonitoredRun& team, Instant now) {
-  const auto same = std::find_if(acts_.begin(), acts_.end(), [&request](const Act& act) {
-    return !act.over() && act.request.act == request.act && act.request.agent == request.agent;
+  const bool is_known = std::ranges::any_of(acts_, [&request](const Act& act) {
+    const bool stands = act.request.act == ControlAct::kStopNow && act.report.state == State::kDone;
+    return (!act.over() || stands) && act.request.act == request.act &&
+           act.request.agent == request.agent;
   });
-  if (same != acts_.end()) return;  // it is being carried out
+  if (is_known) return;
   end_contradicted(request);
   make_room();
   note(called(request) + " asks for: " + what(request) + ", at " + team.mission_time(team.tick()));
   acts_.push_back({request, team.mission_time(team.tick()), order_for(request, team, now)});
 }
 
-/// Removes the oldest order that has ended, if there are too many.
+/// Removes the oldest order that has ended, if there are too many. If none has, an agent on its way
+/// home needs no more messages.
 void ControlDesk::make_room() {
-  const auto over = [](const Act& act) { return act.over(); };
-  const auto oldest = std::find_if(acts_.begin(), acts_.end(), over);
-  if (acts_.size() >= kMostActs && oldest != acts_.end()) acts_.erase(oldest);
+  if (acts_.size() < kMostActs) return;
+  auto oldest = std::ranges::find_if(acts_, [](const Act& act) { return act.over(); });
+  if (oldest == acts_.end()) {
+    oldest = std::ranges::find_if(acts_, [](const Act& act) {
+      return recalls(act.request.act) && act.report.state == State::kObeyed;
+    });
+    if (oldest != acts_.end()) note_end(*oldest, "");
+  }
+  if (oldest != acts_.end()) acts_.erase(oldest);
+}
+
+void ControlDesk::note_end(const Act& act, const std::string& then) {
+  note(what(act.request) + " of " + called(act.request) + ", asked for at " + act.at + ": " +
+       act.report.text + then);
+}
+
+void ControlDesk::wake(Instant now) {
+  if (operator_) operator_->last_sign = now;
+  note("this process has slept: requests that came meanwhile do not count");
 }
 
 std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
@@ -176,13 +200,13 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
 
 /// A resumption ends a pause that still waits for robots to stand. A pause ends a resumption.
 void ControlDesk::end_contradicted(const ControlRequest& request) {
-  if (!pauses_or_resumes(request.act)) return;
   for (Act& act : acts_) {
-    if (!act.over() && pauses_or_resumes(act.request.act) && act.request.act != request.act) {
-      note(what(act.request) + " of " + called(act.request) + ": " + act.report.text + "; then " +
-           called(request) + " asks for: " + what(request));
-      act.order.reset();
-    }
+    const bool of_one_kind =
+        (pauses_or_resumes(act.request.act) && pauses_or_resumes(request.act)) ||
+        (recalls(act.request.act) && recalls(request.act) && act.request.agent == request.agent);
+    if (act.over() || !of_one_kind || act.request.act == request.act) continue;
+    note_end(act, "; then " + called(request) + " asks for: " + what(request));
+    act.order.reset();
   }
 }
 
@@ -198,8 +222,7 @@ void ControlDesk::advance(const MonitoredRun& team, Instant now, Outbox& out) {
     act.order->send(team, now, out);
     act.report = act.order->report(team, now);
     if (!act.report.ended()) continue;
-    note(what(act.request) + " of " + called(act.request) + ", asked for at " + act.at + ": " +
-         act.report.text);
+    note_end(act, "");
     act.order.reset();
   }
 }

@@ -47,6 +47,8 @@ class ControlDesk {
 
   /// Turns a request into an order, or refuses it.
   void receive(const ControlRequest& request, const MonitoredRun& team, Instant now);
+  /// Call if advance() was not called for some seconds: the operator's browser is not to blame.
+  void wake(Instant now);
   /// Appends the messages that are due, and judges what the team has reported. Call at least ten
   /// times a second.
   void advance(const MonitoredRun& team, Instant now, Outbox& out);
@@ -88,6 +90,7 @@ class ControlDesk {
                                    Instant now) const;
   void end_contradicted(const ControlRequest& request);
   void make_room();
+  void note_end(const Act& act, const std::string& then);
   void note(const std::string& line) { lines_.push_back("control: " + line); }
 
   std::string host_;

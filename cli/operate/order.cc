@@ -7,6 +7,8 @@ namespace {
 
 /// How long to wait for the whole mission. A large mission arrives part by part.
 constexpr std::chrono::seconds kMissionPatience{20};
+/// Vehicles that a sentence names.
+constexpr std::size_t kMostNames = 10;
 
 }  // namespace
 
@@ -21,12 +23,17 @@ OrderReport waiting_for_mission(const MonitoredRun& team, Instant::duration wait
 }
 
 std::string standing_text(const MonitoredRun& team) {
-  const MonitoredRun::Standing vehicles = team.standing();
+  MonitoredRun::Standing vehicles = team.standing();
   std::string text =
       std::to_string(vehicles.standing) + " of " + std::to_string(vehicles.all) + " stand";
   if (vehicles.circling > 0)
     text += ", " + std::to_string(vehicles.circling) +
             (vehicles.circling == 1 ? " circles" : " circle");
+  if (vehicles.moving.size() > kMostNames) {
+    const std::size_t others = vehicles.moving.size() - kMostNames;
+    vehicles.moving.resize(kMostNames);
+    vehicles.moving.push_back(std::to_string(others) + " others");
+  }
   if (!vehicles.moving.empty())
     text += "; " + listed(vehicles.moving) +
             (vehicles.moving.size() == 1 ? " still moves" : " still move");

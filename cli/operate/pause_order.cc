@@ -59,7 +59,7 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
 
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {
   if (!changes_) return waiting_for_mission(team, now - since_);
-  if (team.over()) return {State::kFailed, "the mission had already ended: " + team.reason()};
+  if (team.over()) return {State::kFailed, "the mission has ended: " + team.reason()};
   if (!is_named(team) && was_named_)
     return {State::kDone, pauses_ ? "the mission was resumed" : "the mission was paused again"};
   if (!is_named(team)) return unnamed(team, now);

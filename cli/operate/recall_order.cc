@@ -42,6 +42,12 @@ bool RecallOrder::is_gone(const MonitoredRun& team) const {
   return entry == nullptr || team.phase_of(entry->author) == AgentPhase::kFinished;
 }
 
+bool RecallOrder::is_returning(const MonitoredRun& team) const {
+  const RosterEntry* const entry = team.present_member(recall_.agent);
+  return entry != nullptr && !recall_.leaves &&
+         team.phase_of(entry->author) == AgentPhase::kReturning;
+}
+
 /// Whether the roster in MISSION contains the recall.
 bool RecallOrder::is_named(const MonitoredRun& team) const {
   const RosterEntry* const entry = team.present_member(recall_.agent);
@@ -69,6 +75,7 @@ void RecallOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
     problem_ = why_impossible(team);
     since_ = now;
   }
+  was_on_its_way_ = was_on_its_way_ || is_returning(team);
   if (problem_ || is_named(team) || now < next_) return;
   next_ = now + kSendPeriod;
   ++recall_.header.sequence;
@@ -79,7 +86,7 @@ void RecallOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
 
 OrderReport RecallOrder::report(const MonitoredRun& team, Instant now) const {
   if (problem_) return {State::kFailed, *problem_};
-  if (team.over()) return {State::kFailed, "the mission had already ended: " + team.reason()};
+  if (team.over()) return {State::kFailed, "the mission has ended: " + team.reason()};
   if (!checked_) return waiting_for_mission(team, now - since_);
   return is_named(team) ? named(team, now) : unnamed(team, now);
 }
@@ -102,6 +109,8 @@ OrderReport RecallOrder::named(const MonitoredRun& team, Instant now) const {
     if (phase == AgentPhase::kResting) return {State::kDone, name() + " rests at home"};
     if (phase == AgentPhase::kReturning) return {State::kObeyed, name() + " is on its way home"};
   }
+  if (was_on_its_way_)
+    return {State::kObeyed, name() + " does not report; it goes on home once it runs again"};
   if (now - since_ < kAnswerPatience)
     return {State::kAnswered, "the coordinator has recalled " + name()};
   return {State::kFailed,

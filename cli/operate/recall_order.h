@@ -25,12 +25,14 @@ class RecallOrder final : public Order {
  private:
   std::string name() const;
   bool is_gone(const MonitoredRun& team) const;
+  bool is_returning(const MonitoredRun& team) const;
   bool is_named(const MonitoredRun& team) const;
   OrderReport unnamed(const MonitoredRun& team, Instant now) const;
   OrderReport named(const MonitoredRun& team, Instant now) const;
 
   Recall recall_;
   Instant since_, next_{};
+  bool was_on_its_way_ = false;         // home
   bool checked_ = false;                // why_impossible() was called, once the mission was known
   std::optional<std::string> problem_;  // its result
 };

@@ -3,6 +3,7 @@
 #include "cli/watch/control_request.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -36,10 +37,19 @@ std::optional<std::string> word(const json& object, const char* key) {
   return found->get<std::string>();
 }
 
-/// Whether the text is short and fits into one line of the log.
+/// Whether a text has characters that nobody sees, or that turn its direction.
+bool hides(const std::string& text) {
+  constexpr std::array kMarks = {"\u200b", "\u200c", "\u200d", "\u200e", "\u200f", "\u2028",
+                                 "\u2029", "\u202a", "\u202b", "\u202c", "\u202d", "\u202e",
+                                 "\u2060", "\u2066", "\u2067", "\u2068", "\u2069", "\ufeff"};
+  return std::ranges::any_of(kMarks,
+                             [&](const char* mark) { return text.find(mark) != text.npos; });
+}
+
+/// Whether a name fits into a line of the log.
 bool is_name(const std::string& text) {
   return text.size() <= ControlRequest::kLongestName && printable(text) == text &&
-         text.find_first_of("\n\t") == text.npos;
+         text.find_first_of("\n\t") == text.npos && !hides(text);
 }
 
 }  // namespace
@@ -54,11 +64,11 @@ std::optional<ControlRequest> ControlRequest::parse(std::string_view text) {
   const auto number = whole_number(object, "number", 1, std::int64_t{1} << 53);
   const auto tick = whole_number(object, "tick", 0, std::int64_t{1} << 53);
   const auto name = word(object, "name"), act = word(object, "act");
-  if (!id || !number || !tick || !name || !act || !is_name(*name)) return std::nullopt;
+  if (!id || !number || !tick || !name || !act) return std::nullopt;
   const auto known = std::find(std::begin(kNames), std::end(kNames), *act);
   if (known == std::end(kNames)) return std::nullopt;
   ControlRequest request{.operator_id = static_cast<std::uint32_t>(*id),
-                         .name = *name,
+                         .name = is_name(*name) ? *name : "",
                          .number = *number,
                          .tick = *tick,
                          .act = static_cast<ControlAct>(std::distance(std::begin(kNames), known))};

@@ -33,14 +33,16 @@ const char* to_string(ControlAct act);
 struct ControlRequest {
   /// Limit (Page): length of a request of an operator [bytes]. Beyond it: it is refused with 400.
   static constexpr std::size_t kLongest = 512;
-  /// Limit (Page): length of an operator's name [bytes]. Beyond it: the request is refused with
-  /// 400.
+  /// Limit (Page): length of an operator's name [bytes]. Beyond it: the request counts
+  /// without a name.
   static constexpr std::size_t kLongestName = 48;
 
   std::uint32_t operator_id = 0;  ///< random, one for each page that was opened; not secret
-  std::string name;               ///< the operator chooses it; printable UTF-8
-  std::int64_t number = 0;        ///< greater than in all earlier requests of this operator
-  Tick tick = 0;                  ///< the newest that the page has shown
+  /// The operator chooses it. Empty if it does not fit into a line of the log: a bad name stops no
+  /// request.
+  std::string name;
+  std::int64_t number = 0;  ///< greater than in all earlier requests of this operator
+  Tick tick = 0;            ///< the newest that the page has shown
   ControlAct act = ControlAct::kHere;
   AgentId agent = kUnassigned;  ///< for kHome and kOut only
 

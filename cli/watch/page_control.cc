@@ -2,25 +2,38 @@
 // Adds an event to each browser's stream when the state of control has changed.
 #include "cli/watch/page_control.h"
 
-namespace ergocast::cli {
+#include <chrono>
 
-void PageControl::listen() {
+namespace ergocast::cli {
+namespace {
+
+/// The other process repeats the state twice a second.
+constexpr std::chrono::seconds kPatience{3};
+
+}  // namespace
+
+void PageControl::listen(Instant now) {
   while (auto state = link_.receive()) {
+    heard_ = now;
     if (*state == state_) continue;
     state_ = std::move(*state);
     ++changes_;
   }
+  const bool silent = now - heard_ > kPatience;
+  if (silent != silent_) ++changes_;
+  silent_ = silent;
 }
 
 PageServer::Content PageControl::joined(PageServer::Content content) {
   content.control_token = token_;
-  content.control = [this](const std::string& request) { return link_.send(request); };
+  content.control = [this](const std::string& request) { return !silent_ && link_.send(request); };
   content.events = [this, make = std::move(content.events)] {
     return [this, base = make(), seen = std::uint64_t{0}]() mutable -> std::optional<std::string> {
       auto text = base();
-      if (!text || seen == changes_) return text;
+      if (!text || seen == changes_ || state_.empty()) return text;
       seen = changes_;
-      return *text + "event: control\ndata: " + state_ + "\n\n";
+      const std::string state = silent_ ? R"({"silent":true})" : state_;
+      return *text + "event: control\ndata: " + state + "\n\n";
     };
   };
   return content;

@@ -10,6 +10,7 @@
 
 #include "cli/watch/control_link.h"
 #include "cli/watch/page_server.h"
+#include "core/base/ids.h"
 
 namespace ergocast::cli {
 
@@ -23,12 +24,14 @@ class PageControl {
   /// state. Valid as long as this object.
   PageServer::Content joined(PageServer::Content content);
   /// Receives the newest state; call it often.
-  void listen();
+  void listen(Instant now);
 
  private:
   ControlLink link_;
   std::string token_, state_;
   std::uint64_t changes_ = 0;
+  Instant heard_{};     // when the last state came
+  bool silent_ = true;  // none has come for some seconds
 };
 
 }  // namespace ergocast::cli

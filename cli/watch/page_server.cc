@@ -209,7 +209,7 @@ class Server final : public PageServer {
     if (!ControlRequest::parse(text)) {
       refuse(response, 400, "no request of an operator");
     } else if (!content_.control(text)) {
-      refuse(response, 503, "too many requests at once");
+      refuse(response, 503, "no order can be given now: its process does not answer");
     } else {
       response.status = 202;
     }

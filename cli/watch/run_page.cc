@@ -20,6 +20,7 @@
 #include "cli/watch/page_process.h"
 #include "cli/watch/serve_page.h"
 #include "report/target_density.h"
+#include "runtime/bus/clock.h"
 #include "runtime/process/signals.h"
 
 namespace ergocast::cli {
@@ -102,7 +103,7 @@ int run_page(const RunPageOptions& options) {
       *std::move(socket), control ? control->joined(watch.content()) : watch.content());
   serve_until_stop(*server, signals, [&, over = false]() mutable {
     watch.listen(server->fd());
-    if (control) control->listen();
+    if (control) control->listen(now());
     if (over || !closed(kPageUntil)) return;
     over = true;
     setrlimit(RLIMIT_DATA, &former);  // a long record may need more; the mission is over

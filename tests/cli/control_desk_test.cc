@@ -168,6 +168,15 @@ TEST_F(Desk, AStopAtOnceHasNoLimitOfRate) {
   EXPECT_EQ(sent<Stop>(), 2);
 }
 
+TEST_F(Desk, AStopAtOnceNeedsNoNumberAndIsSaidOnce) {
+  ask(ControlAct::kTake);
+  numbers_ = 0;
+  ask(ControlAct::kStopNow);
+  EXPECT_EQ(sent<Stop>(), 2);
+  ask(ControlAct::kHere);
+  EXPECT_NE(refusal().find("a later request"), std::string::npos);
+}
+
 TEST_F(Desk, AResumptionEndsAPauseThatStillWaits) {
   ask(ControlAct::kTake);
   ask(ControlAct::kPause);

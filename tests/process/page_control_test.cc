@@ -106,9 +106,8 @@ TEST_F(AttackedControl, RefusesMalformedRequests) {
        {changed("act", "explode"), changed("act", 3), changed("operator", 0),
         changed("operator", -1), changed("operator", 4294967296), changed("operator", "7"),
         changed("number", 0), changed("number", 1.5), changed("number", 18446744073709551615U),
-        changed("tick", -1), changed("name", std::string(49, 'a')), changed("name", 5),
-        changed("name", "a\nb"), changed("name", "\x1b[2J"), changed("agent", 1),
-        changed("more", 1), changed("act", "home"), nlohmann::json::array(), nlohmann::json()}) {
+        changed("tick", -1), changed("name", 5), changed("agent", 1), changed("more", 1),
+        changed("act", "home"), nlohmann::json::array(), nlohmann::json()}) {
     EXPECT_EQ(post(request), 400) << request;
   }
   EXPECT_EQ(post(good, {{"X-Ergocast-Request", std::string(2000, '[')}}), 400);
@@ -116,6 +115,44 @@ TEST_F(AttackedControl, RefusesMalformedRequests) {
   EXPECT_TRUE(moves_on());
   EXPECT_FALSE(printed("control:")) << printed();
   end(mission);
+}
+
+TEST_F(AttackedControl, ABadNameStopsNoStop) {
+  Child mission = control();
+  for (const std::string& name : {std::string(49, 'a'), std::string("a\nb"), std::string("\x1b[2J"),
+                                  std::string("\u202eanna")}) {
+    auto request = asking("take", shown_tick());
+    request["name"] = name;
+    EXPECT_EQ(post(request), 202) << name;
+  }
+  EXPECT_TRUE(says("an operator without a name takes control")) << printed();
+  auto stop = asking("stop-now", 0);
+  stop["name"] = std::string(49, 'b');
+  EXPECT_EQ(post(stop), 202);
+  EXPECT_TRUE(says("stop now of an operator without a name")) << printed();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+}
+
+// A request is as old as the time that the process has slept.
+TEST_F(AttackedControl, RequestsToAProcessThatSleepsDoNotCountButForAStop) {
+  Child mission = control();
+  ASSERT_TRUE(take_control()) << printed();
+  const Tick tick = shown_tick();
+  mission.send(SIGSTOP);
+  int status = 202;
+  EXPECT_TRUE(eventually([&] { return (status = post(asking("pause", tick))) != 202; }));
+  EXPECT_EQ(status, 503);  // the page's process notices
+  std::this_thread::sleep_for(std::chrono::seconds(6));
+  mission.send(SIGCONT);
+  EXPECT_TRUE(says("this process has slept")) << printed();
+  EXPECT_TRUE(eventually([&] { return post(asking("stop-now", 0)) == 202; }));
+  EXPECT_TRUE(says("stop now of anna")) << printed();
+  EXPECT_FALSE(printed("asks for: pause")) << printed();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << printed();
 }
 
 TEST_F(AttackedControl, AReplayAnOldTickAndANonOperatorOrderNothing) {

@@ -31,12 +31,19 @@ const speak = text => put($('controlSpoken'), text);
 
 // A header holds ASCII only.
 const ascii = text =>
-  text.replace(/[\u007f-\uffff]/g, c => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`);
+  text.replace(/[%\u007f-\uffff]/g, c => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`);
+
+// The server takes 48 bytes of a name.
+function fitting(name) {
+  const letters = [...name];
+  while (new TextEncoder().encode(letters.join('')).length > 48) letters.pop();
+  return letters.join('');
+}
 
 async function send(act, agent) {
   const request = {
     operator: me.id,
-    name: $('operatorName').value.trim(),
+    name: fitting($('operatorName').value.trim()),
     number: ++me.number,
     tick: S.facts?.state?.world_tick ?? 0,
     act,
@@ -143,7 +150,11 @@ function showRefusal(refused) {
 }
 
 // Shows the state of control that the server sends: {operator, acts, refused}.
-export function showControl({ operator, acts, refused }) {
+export function showControl({ silent, operator, acts, refused }) {
+  if (silent) {
+    complain('The process that gives the orders does not answer: no order is carried out.');
+    return;
+  }
   $('control').hidden = false;
   $('readOnly').hidden = token !== null;
   $('stopNow').hidden = $('take').parentElement.hidden = token === null;
