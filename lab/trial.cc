@@ -250,7 +250,11 @@ void Trial::check_recovered() {
   if (simulation_.now() < next_check_) return;
   next_check_ = simulation_.now() + kCheckPeriod;
   if (simulation_.mission_over() || faults_.lasting_share >= 1) return;
-  const auto living = views(false);
+  auto living = views(false);
+  // A process that was away when its number was sent out is not admitted any more.
+  std::erase_if(living, [this](const TableView& view) {
+    return view.table == nullptr && simulation_.sent_out(view.self.agent);
+  });
   invariants_.recovered(t_s(), living);
   invariants_.coordinated(t_s(), simulation_.coordinator(),
                           simulation_.local_time(simulation_.coordinator_node()), living);
