@@ -15,6 +15,8 @@ using namespace std::chrono_literals;
 
 /// The most requests in one turn; the others follow in the next.
 constexpr int kRequestsAtOnce = 64;
+/// More than the link holds: after a sleep the whole queue is read at once.
+constexpr int kMostQueued = 4096;
 /// The state is repeated with this period, so a restarted page's process receives it.
 constexpr auto kStatePeriod = 500ms;
 /// Requests of so long ago do not count, but for a stop at once. The desk cannot see their age
@@ -53,7 +55,7 @@ void Control::attend(Instant now) {
   const bool slept = last_attended_ && now - *last_attended_ > kSleep;
   last_attended_ = now;
   if (slept) desk_.wake(now);
-  for (int i = 0; i < kRequestsAtOnce; ++i) {
+  for (int i = 0; i < (slept ? kMostQueued : kRequestsAtOnce); ++i) {
     const auto text = links_.first.receive();
     if (!text) break;
     const auto request = ControlRequest::parse(*text);
