@@ -173,6 +173,7 @@ TEST_F(Desk, AStopAtOnceNeedsNoNumberAndIsSaidOnce) {
   numbers_ = 0;
   ask(ControlAct::kStopNow);
   EXPECT_EQ(sent<Stop>(), 2);
+  numbers_ = 0;
   ask(ControlAct::kHere);
   EXPECT_NE(refusal().find("a later request"), std::string::npos);
 }
@@ -184,7 +185,7 @@ TEST_F(Desk, AResumptionEndsAPauseThatStillWaits) {
   move(110, 1);
   ask(ControlAct::kResume);
   const auto found = std::find_if(lines_.begin(), lines_.end(), [](const std::string& line) {
-    return line.find("pause of anna: paused at") != line.npos;
+    return line.find("pause of anna, asked for at") != line.npos;
   });
   ASSERT_NE(found, lines_.end());
   EXPECT_NE(found->find("still move; then anna asks for: resume"), std::string::npos) << *found;
