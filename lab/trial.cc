@@ -59,6 +59,7 @@ class Trial : SimulationObserver {
   AgentState& at(NodeId node) { return agents_[static_cast<std::size_t>(node)]; }
   TableView view_of(NodeId node) const;
   std::vector<TableView> views(bool also_finished) const;
+  std::vector<TableView> expected_back() const;
 
   void note_tick(NodeId node);
   void note_answer(NodeId node, const Command& command, const TableView& view);
@@ -237,6 +238,15 @@ std::vector<TableView> Trial::views(bool also_finished) const {
   return views;
 }
 
+/// A process that was away when its number was sent out is not admitted any more.
+std::vector<TableView> Trial::expected_back() const {
+  auto running = views(false);
+  std::erase_if(running, [this](const TableView& view) {
+    return view.table == nullptr && simulation_.sent_out(view.self.agent);
+  });
+  return running;
+}
+
 // ---- judgement ----
 
 void Trial::check_coordinator() {
@@ -250,11 +260,7 @@ void Trial::check_recovered() {
   if (simulation_.now() < next_check_) return;
   next_check_ = simulation_.now() + kCheckPeriod;
   if (simulation_.mission_over() || faults_.lasting_share >= 1) return;
-  auto living = views(false);
-  // A process that was away when its number was sent out is not admitted any more.
-  std::erase_if(living, [this](const TableView& view) {
-    return view.table == nullptr && simulation_.sent_out(view.self.agent);
-  });
+  const auto living = expected_back();
   invariants_.recovered(t_s(), living);
   invariants_.coordinated(t_s(), simulation_.coordinator(),
                           simulation_.local_time(simulation_.coordinator_node()), living);
@@ -319,7 +325,7 @@ TrialResult Trial::result() {
   // The mission was given up because of our faults.
   result.timed_out = failed_since_ && our_doing(*failed_since_);
   if (!result.timed_out && !invariants_.violation()) {
-    if (faults_.lasting_share < 1) invariants_.recovered(t_s(), views(false));
+    if (faults_.lasting_share < 1) invariants_.recovered(t_s(), expected_back());
     invariants_.compare_views(views(true));
     const std::string failure = failed() ? simulation_.coordinator().reason() : "";
     invariants_.ended(t_s(), still_running(), failure, simulation_.recorder().facts(), excused_);
