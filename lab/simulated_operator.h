@@ -64,7 +64,11 @@ class SimulatedOperator {
   }
   /// Forgets the recalls that the coordinator has received and refused.
   void forget_refused(const Coordinator& coordinator) {
-    std::erase_if(recalls_, [&](const Recall& recall) { return !is_obeyed(recall, coordinator); });
+    std::erase_if(recalls_, [&](const Recall& recall) {
+      const bool refused = !is_obeyed(recall, coordinator);
+      if (refused && recall.leaves) sent_out_.erase(recall.agent);
+      return refused;
+    });
   }
 
  private:

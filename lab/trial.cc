@@ -59,6 +59,7 @@ class Trial : SimulationObserver {
   AgentState& at(NodeId node) { return agents_[static_cast<std::size_t>(node)]; }
   TableView view_of(NodeId node) const;
   std::vector<TableView> views(bool also_finished) const;
+  bool shut_out(NodeId node) const;
   std::vector<TableView> expected_back() const;
 
   void note_tick(NodeId node);
@@ -238,13 +239,21 @@ std::vector<TableView> Trial::views(bool also_finished) const {
   return views;
 }
 
-/// A process that was away when its number was sent out is not admitted any more.
+/// Whether it is a process that was away when its number was sent out, and that has received no
+/// whole MISSION since. It is not admitted any more. It also does not learn of the end if the
+/// coordinator is killed during it: the team has left without waiting for it.
+bool Trial::shut_out(NodeId node) const {
+  return is_agent(node) && simulation_.sent_out(node) && simulation_.up(node) &&
+         simulation_.agent(node).follower().revision() < 0;
+}
+
 std::vector<TableView> Trial::expected_back() const {
-  auto running = views(false);
-  std::erase_if(running, [this](const TableView& view) {
-    return view.table == nullptr && simulation_.sent_out(view.self.agent);
-  });
-  return running;
+  std::vector<TableView> views;
+  for (NodeId node = 0; is_agent(node); ++node) {
+    const bool runs = simulation_.up(node) && !simulation_.finished(node);
+    if (runs && !shut_out(node)) views.push_back(view_of(node));
+  }
+  return views;
 }
 
 // ---- judgement ----
@@ -269,7 +278,7 @@ void Trial::check_recovered() {
 std::string Trial::still_running() const {
   std::string names;
   for (NodeId node = 0; node < simulation_.node_count(); ++node) {
-    if (simulation_.finished(node)) continue;
+    if (simulation_.finished(node) || shut_out(node)) continue;
     names += (names.empty() ? "" : ", ") + simulation_.name_of(node);
   }
   return names;
