@@ -145,6 +145,7 @@ ergocast_test(NAME cli_tests LABELS unit
 ergocast_test(NAME page_server_tests LABELS unit
   SOURCES
     cli/connections_test.cc
+    cli/page_control_test.cc
     cli/tls_server_test.cc
     support/tls.cc
   LIBS ergocast_page_server OpenSSL::SSL)

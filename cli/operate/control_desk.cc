@@ -198,7 +198,8 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
   }
 }
 
-/// A resumption ends a pause that still waits for robots to stand. A pause ends a resumption.
+/// A resumption ends a pause that still waits for robots to stand, and a pause ends a resumption.
+/// So do Home and Out of one agent.
 void ControlDesk::end_contradicted(const ControlRequest& request) {
   for (Act& act : acts_) {
     const bool of_one_kind =

@@ -37,8 +37,8 @@ class ControlDesk {
   /// Limit (Page): requests of operators in a second, other than to stop at once. Beyond it: they
   /// are refused.
   static constexpr int kMostInASecond = 20;
-  /// Limit (Page): orders of operators on a page. Beyond it: the oldest finished one is no longer
-  /// shown; while none is finished, only a stop at once is accepted.
+  /// Limit (Page): orders of operators on a page. Beyond it: the oldest that has ended, or of an
+  /// agent on its way home, is no longer shown; Home and Out wait while all are unanswered.
   static constexpr std::size_t kMostActs = 8;
 
   /// @param host   the operator's place in the record of a stop

@@ -87,8 +87,8 @@ bool MonitoredRun::unheard() const {
 }
 
 bool MonitoredRun::stands_still() const {
-  return std::all_of(vehicles_.begin(), vehicles_.end(),
-                     [](const auto& one) { return one.second.velocity_mps.isZero(0); });
+  const Standing vehicles = standing();
+  return vehicles.standing == vehicles.all;
 }
 
 MonitoredRun::Standing MonitoredRun::standing() const {

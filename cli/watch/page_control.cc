@@ -19,6 +19,10 @@ void PageControl::listen(Instant now) {
     state_ = std::move(*state);
     ++changes_;
   }
+  if (now - second_ >= std::chrono::seconds(1)) {
+    second_ = now;
+    passed_on_ = 0;
+  }
   const bool silent = now - heard_ > kPatience;
   if (silent != silent_) ++changes_;
   silent_ = silent;
@@ -26,7 +30,12 @@ void PageControl::listen(Instant now) {
 
 PageServer::Content PageControl::joined(PageServer::Content content) {
   content.control_token = token_;
-  content.control = [this](const std::string& request) { return !silent_ && link_.send(request); };
+  content.control = [this](const ControlRequest& request, const std::string& text) {
+    const bool counts = request.act != ControlAct::kStopNow;
+    if (silent_ || (counts && passed_on_ >= kMostInASecond)) return false;
+    passed_on_ += counts ? 1 : 0;
+    return link_.send(text);
+  };
   content.events = [this, make = std::move(content.events)] {
     return [this, base = make(), seen = std::uint64_t{0}]() mutable -> std::optional<std::string> {
       auto text = base();

@@ -16,6 +16,10 @@ namespace ergocast::cli {
 
 class PageControl {
  public:
+  /// Limit (Page): requests of all browsers that a page passes on in a second, other than to stop
+  /// at once. Beyond it: the answer is 503.
+  static constexpr int kMostInASecond = 40;
+
   /// @param token  each request must have it
   PageControl(ControlLink link, std::string token)
       : link_(std::move(link)), token_(std::move(token)) {}
@@ -32,6 +36,8 @@ class PageControl {
   std::uint64_t changes_ = 0;
   Instant heard_{};     // when the last state came
   bool silent_ = true;  // none has come for some seconds
+  Instant second_{};
+  int passed_on_ = 0;  // since then
 };
 
 }  // namespace ergocast::cli

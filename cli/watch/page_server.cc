@@ -10,8 +10,6 @@
 #include <cstring>
 #include <utility>
 
-#include "cli/watch/control_request.h"
-
 namespace ergocast::cli {
 namespace {
 
@@ -206,10 +204,13 @@ class Server final : public PageServer {
 
   void pass_on(const Request& request, Response& response) {
     const std::string text = request.get_header_value(kRequestHeader);
-    if (!ControlRequest::parse(text)) {
+    const auto order = ControlRequest::parse(text);
+    if (!order) {
       refuse(response, 400, "no request of an operator");
-    } else if (!content_.control(text)) {
-      refuse(response, 503, "no order can be given now: its process does not answer");
+    } else if (!content_.control(*order, text)) {
+      refuse(response, 503,
+             "no order can be given now: too many requests, or the process that gives them does "
+             "not answer");
     } else {
       response.status = 202;
     }

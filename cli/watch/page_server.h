@@ -15,6 +15,7 @@
 #include <string>
 
 #include "cli/watch/connections.h"
+#include "cli/watch/control_request.h"
 #include "cli/watch/page_socket.h"
 #include "core/base/ids.h"
 
@@ -31,7 +32,7 @@ class PageServer {
     std::function<Connections::Stream()> events;
     /// Takes a request of an operator (cli/watch/control_request.h); false if it cannot be passed
     /// on now. Null: the page only shows.
-    std::function<bool(const std::string&)> control = {};
+    std::function<bool(const ControlRequest&, const std::string& text)> control = {};
     std::string control_token = {};
   };
 

@@ -2,12 +2,11 @@
 // Asks the HDF5 library that libnetcdf uses about each object of the root group.
 #include "target/maps/hdf5_storage.h"
 
-#include <dlfcn.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
+
+#include "target/maps/symbol.h"
 
 namespace ergocast {
 namespace {
@@ -36,9 +35,7 @@ std::optional<Hdf5Library> load(void* netcdf) {
   Hdf5Library library{};
   bool complete = true;
   const auto find = [&](auto& function, const char* name) {
-    void* const found = dlsym(netcdf, name);  // searches the libraries that it needs, too
-    complete = complete && found != nullptr;
-    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(found);
+    complete = find_symbol(netcdf, name, function) && complete;
   };
   find(library.H5Eset_auto2, "H5Eset_auto2");
   find(library.H5Fopen, "H5Fopen");

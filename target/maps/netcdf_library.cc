@@ -6,6 +6,8 @@
 
 #include <optional>
 
+#include "target/maps/symbol.h"
+
 namespace ergocast {
 namespace {
 
@@ -23,9 +25,7 @@ std::optional<NetcdfLibrary> load() {
   library.handle = handle;
   bool complete = true;
   const auto find = [&](auto& function, const char* name) {
-    void* const found = dlsym(handle, name);
-    complete = complete && found != nullptr;
-    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(found);
+    complete = find_symbol(handle, name, function) && complete;
   };
   find(library.nc_open, "nc_open");
   find(library.nc_close, "nc_close");

@@ -69,7 +69,7 @@ inline const std::vector<Rule> kRules = {
     {"lcmtypes", {"text", "core", "plan", "team"}, {kLcmTypes, kHash, kCrypto}},
     {"target", {"text", "core"}, {}},
     {"target/maps", {"text", "core", "target"}, {kPng, kFiles}},
-    {"target/maps/hdf5_storage.cc", {"target/maps"}, {kLoader, kFiles}},
+    {"target/maps/symbol.h", {}, {kLoader}},
     {"target/maps/netcdf_library.cc", {"target/maps"}, {kLoader}},
     // Places on the earth, and drawings: for scenarios and exports, not for participants.
     {"target/geo", {"text", "core"}, {kEarth, kFiles, kJson, kXml}},

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the page's process passes on to the process that gives the orders.
+#include "cli/watch/page_control.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+class PassedOn : public ::testing::Test {
+ protected:
+  PassedOn() {
+    ends_.first.send("{}");
+    control_.listen(now_);
+  }
+  bool pass_on(ControlAct act) {
+    ControlRequest request;
+    request.act = act;
+    return content_.control(request, "a request");
+  }
+
+  std::pair<ControlLink, ControlLink> ends_ = ControlLink::pair().value();
+  PageControl control_{std::move(ends_.second), "token"};
+  PageServer::Content content_ =
+      control_.joined({{}, {}, {}, [] { return [] { return std::string(); }; }});
+  Instant now_{100s};
+};
+
+TEST_F(PassedOn, AFloodOfRequestsLeavesRoomForAStopAtOnce) {
+  int passed = 0;
+  for (int i = 0; i < 10'000; ++i) passed += pass_on(ControlAct::kHere) ? 1 : 0;
+  EXPECT_EQ(passed, PageControl::kMostInASecond);
+  EXPECT_TRUE(pass_on(ControlAct::kStopNow));
+  now_ += 1s;
+  ends_.first.send("{}");
+  control_.listen(now_);
+  EXPECT_TRUE(pass_on(ControlAct::kHere));
+}
+
+TEST_F(PassedOn, NothingGoesToAProcessThatDoesNotAnswer) {
+  now_ += 10s;
+  control_.listen(now_);
+  EXPECT_FALSE(pass_on(ControlAct::kStopNow));
+  const auto browser = content_.events();
+  EXPECT_EQ(browser(), "event: control\ndata: {\"silent\":true}\n\n");
+  ends_.first.send("{}");
+  control_.listen(now_);
+  EXPECT_TRUE(pass_on(ControlAct::kStopNow));
+  EXPECT_EQ(browser(), "event: control\ndata: {}\n\n");
+}
+
+}  // namespace
+}  // namespace ergocast::cli
