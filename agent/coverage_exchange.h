@@ -33,6 +33,9 @@ class CoverageExchange {
   /// c_k of the rows that count, computed at each call.
   const Coefficients& team_coverage() const;
 
+  /// The counted tick has come; see CoverageTable.
+  void set_now(Tick counted) { table_.set_now(counted); }
+
   // ---- the own coverage ----
   void add_sample(const AgentStep& step);
   /// Broadcasts the own blocks that are due at `step`, or all. A recalled agent sends each block

@@ -95,7 +95,7 @@ bool Forecast::uniform_blocks(const CoverageTable& table) const {
 /// One row's part in one block, without its share and the places of its numbers.
 Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView sent = table.view(row, block);
-  Term term{.steps = sent.steps,
+  Term term{.remembered_steps = sent.remembered_steps,
             .tick = sent.tick,
             .period = sent.period,
             .rest_from = rest_from(table.author(row).agent),
@@ -103,12 +103,15 @@ Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) c
   const Outlook& outlook = outlooks_[row];
   if (!outlook.any || sent.steps == 0) return term;
   if (!outlook.by_places(sent.tick)) {
-    term.gained_steps = table.gains(row, block).steps;
+    const CoverageTable::Gains gains = table.gains(row, block);
+    term.gained_steps = gains.steps;
+    term.gained_time_steps = gains.time_steps;
     return term;
   }
   term.track = outlook.track;
-  term.steps = outlook.track->steps(block);
+  term.remembered_steps = outlook.track->remembered_steps(block);
   term.gained_steps = 1;
+  term.gained_time_steps = 1;
   term.tick = outlook.track->newest_tick();
   return term;
 }
@@ -121,7 +124,7 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row)) continue;
     const Term term = term_of(table, row, block);
-    steps += term.quality * static_cast<double>(term.steps);
+    steps += term.quality * term.remembered_steps;
     n += term.gained_steps > 0;
     if (const Author& author = table.author(row); author == self_) {
       terms_.own = term;
@@ -145,7 +148,7 @@ double Forecast::weigh(Term& term, double horizon_s, Tick tick) const {
   const double till_rest_s = static_cast<double>(term.rest_from - tick) * dt_s;
   const double weight_s =
       look_ahead_.weight_s(std::min(horizon_s, till_rest_s), term.gained_steps, age, term.period);
-  term.share = weight_s / (static_cast<double>(term.gained_steps) * dt_s);
+  term.share = weight_s / (term.gained_time_steps * dt_s);
   return term.quality * weight_s;
 }
 
