@@ -47,6 +47,7 @@ class Shadow {
   struct Snapshot {
     std::int64_t steps = 0;
     Tick tick = 0, next_tick = 0;
+    double elapsed_s = 0;
     BlockSums sums, gains;  ///< `gains` and their steps as the author has sent them
     std::int64_t gained_steps = 0;
   };
@@ -64,7 +65,8 @@ class Shadow {
   /// What one row adds to one block of ĉ.
   struct Part {
     std::vector<double> sums, gains;
-    std::int64_t steps = 0, gained_steps = 0;  ///< gained_steps 0: it has no forecast
+    double time_s = 0, gained_s = 0;  ///< what they cover
+    std::int64_t gained_steps = 0;    ///< 0: it has no forecast
     Tick tick = 0, period = 0;
     double quality = 1;
     Tick until = std::numeric_limits<Tick>::max();  ///< its author rests from then on
@@ -74,9 +76,9 @@ class Shadow {
   void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void dead_reckon(const RosterEntry& entry, Row& row) const;
-  Part part_of(const Mission& mission, const Block& block) const;
+  Part part_of(const Mission& mission, const Block& block, Tick halvings) const;
   std::vector<Part> parts_of(const Mission& mission, const Row& row, const RosterEntry* entry,
-                             bool has_forecast) const;
+                             bool has_forecast, Tick halvings) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
   /// The modes of the one mission that this shadow follows.

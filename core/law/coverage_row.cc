@@ -26,6 +26,9 @@ bool gains_within(std::span<const double> sums, const double* before, double lim
   return beyond == 0;
 }
 
+/// A time that has no effect beside a step [s].
+constexpr double kFaded_s = 0x1p-400;
+
 /// Multiplies sums by a power of two.
 ERGOCAST_VECTORIZED
 void multiply(std::span<double> sums, double factor) {
@@ -125,7 +128,8 @@ void CoverageBlock::fade_before(std::int64_t halvings) {
 double CoverageBlock::halve(const GainRule& rule) {
   const std::int64_t had = rule.half_life.halvings(tick_);
   if (had == rule.halvings) return 1;
-  const double factor = HalfLife::factor(had, rule.halvings);
+  // A row that rests for ever fades no further than this: c_k stays a ratio of normal numbers.
+  const double factor = elapsed_s_ < kFaded_s ? 1 : HalfLife::factor(had, rule.halvings);
   tick_ = rule.half_life.tick_of(rule.halvings);
   elapsed_s_ *= factor;
   weigh(rule, 1);

@@ -13,6 +13,7 @@ namespace ergocast {
 
 // clang-format off
 WRAPPED(void, make_table, "_ZN8ergocast13CoverageTableC1ERKNS_5BasisEdl", CoverageTable*, const Basis&, double, Tick)
+WRAPPED(void, set_now, "_ZN8ergocast13CoverageTable7set_nowEl", CoverageTable*, Tick)
 WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtEPKd", CoverageTable*, const Author&, const BasisAt&, const double*)
 WRAPPED(void, set_quality, "_ZN8ergocast13CoverageTable11set_qualityERKNS_6AuthorEd", CoverageTable*, const Author&, double)
 WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl", CoverageTable*, const Contribution&, std::int64_t)
@@ -23,6 +24,10 @@ WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTabl
 // clang-format on
 
 // ---- coverage ----
+
+void bug_set_now(CoverageTable* self, Tick counted) {
+  real_set_now(self, bug("a half-life passes unnoticed") ? 0 : counted);
+}
 
 void bug_set_quality(CoverageTable* self, const Author& author, double quality) {
   real_set_quality(self, author, bug("a quality does not count") ? 1 : quality);

@@ -144,6 +144,8 @@ const Plant kPlants[] = {
     {Invariant::kForecastOfWhatIsKnown, "the resting are foreseen", "", kStations},
     {Invariant::kForecastOfWhatIsKnown, "the recalled are foreseen", kRecalls},
     {Invariant::kSumsBounded, "a sum runs away"},
+    {Invariant::kSumsBounded, "a half-life passes unnoticed", "", "law { memory_half_life_s: 3 }",
+     "remembers"},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},
     {Invariant::kWholeMessagesAccepted, "whole messages are refused"},

@@ -2,7 +2,7 @@
 // Computes the coverage c_k from positions, for any row at once.
 // The sums are kept every 128 rows. The order is that of the wire: the modes along z count slowest, those
 // along y fastest. Where kinds of agents see differently, each place counts with its kind's quality and
-// footprint.
+// footprint. With a half-life, all sums are halved at its ticks, as in core/law/half_life.h.
 const EVERY = 128;
 
 // cos(m π u) of all m, by recurrence.
@@ -31,7 +31,8 @@ export class Coverage {
   reset(row) {
     const keep = Math.floor(row / EVERY) + 1;
     if (!row || !this.sums) {
-      this.sums = [new Float64Array(this.M * this.N * this.P)]; // sums[i]: Σ f_k over the rows [0, 128 i)
+      // sums[i]: Σ f_k over the rows [0, 128 i), halved as often as at the last of them
+      this.sums = [new Float64Array(this.M * this.N * this.P)];
       this.counts = [0]; // how many positions these are
     }
     this.sums.length = this.counts.length = Math.min(this.sums.length, keep);
@@ -41,10 +42,24 @@ export class Coverage {
       this.upto = 0;
     }
   }
-  add(sum, from, to) {
+  // How often coverage has been halved by the sample of a row.
+  halvingsAt(row) {
+    const { dt_s, half_life_ticks } = this.run.mission;
+    if (!half_life_ticks || row < 0) return 0;
+    return Math.floor(Math.round(this.run.counted(row * this.run.step) / dt_s) / half_life_ticks);
+  }
+  // Adds the rows [from, to) to a sum of those before; returns how many positions these are then.
+  add(sum, count, from, to) {
+    if (from >= to) return count;
     const { M, N, P, cx, cy, cz, run } = this,
-      [lx, ly, lz] = run.size;
-    let count = 0;
+      [lx, ly, lz] = run.size,
+      forgets = run.mission.half_life_ticks > 0,
+      halvings = this.halvingsAt(to - 1),
+      left = row => (forgets ? 2 ** Math.max(-512, this.halvingsAt(row) - halvings) : 1),
+      weights = Float64Array.from({ length: to - from }, (_, i) => left(from + i)),
+      kept = left(from - 1);
+    if (kept !== 1) for (let i = 0; i < sum.length; i++) sum[i] *= kept;
+    count *= kept;
     cz[0] = 1;
     for (const track of run.tracks) {
       const sensor = this.sensorOf(track.id);
@@ -56,13 +71,14 @@ export class Coverage {
             py = p[2 * k + 1];
           if (run.holds.length && run.heldAt(k)) continue; // the mission is paused
           if (!(px >= 0 && px <= lx && py >= 0 && py <= ly)) continue;
-          count += sensor ? sensor.quality : 1;
+          const weight = weights[k - from];
+          count += weight * (sensor ? sensor.quality : 1);
           cosines(cx, px / lx);
           cosines(cy, py / ly);
           if (z) cosines(cz, z[k] / lz);
           for (let l = 0, i = 0; l < P; l++)
             for (let m = 0; m < M; m++) {
-              const c = cz[l] * cx[m];
+              const c = weight * cz[l] * cx[m];
               if (sensor) for (let n = 0; n < N; n++, i++) sum[i] += sensor.qg[i] * c * cy[n];
               else for (let n = 0; n < N; n++) sum[i++] += c * cy[n];
             }
@@ -79,7 +95,7 @@ export class Coverage {
       if (performance.now() > stop) return false;
       const i = this.sums.length,
         sum = this.sums[i - 1].slice();
-      this.counts.push(this.counts[i - 1] + this.add(sum, (i - 1) * EVERY, i * EVERY));
+      this.counts.push(this.add(sum, this.counts[i - 1], (i - 1) * EVERY, i * EVERY));
       this.sums.push(sum);
     }
     return true;
@@ -93,7 +109,7 @@ export class Coverage {
       this.count = this.counts[mark];
       this.upto = mark * EVERY;
     }
-    this.count += this.add(this.sum, this.upto, to);
+    this.count = this.add(this.sum, this.count, this.upto, to);
     this.upto = to;
     return this.count ? this.sum.map(s => s / this.count) : this.sum.slice();
   }
