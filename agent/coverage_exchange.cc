@@ -55,8 +55,9 @@ const Coefficients& CoverageExchange::team_coverage() const {
 
 // ---- the own coverage ----
 
-void CoverageExchange::add_sample(const AgentStep& step) {
+void CoverageExchange::add_sample(const AgentStep& step, const TargetShift& shift) {
   table_.add_sample(self_, *step.basis_at, sensors_.of(kind_).footprint());
+  if (const double* const by = shift.at(step.counted)) table_.shift_sample(self_, by);
 }
 
 /// An agent that learns late of a pause has counted too many ticks. The tick that it announced is

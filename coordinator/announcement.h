@@ -14,7 +14,6 @@
 #include "coordinator/members.h"
 #include "coordinator/part_schedule.h"
 #include "core/base/ids.h"
-#include "core/mission/hold.h"
 #include "core/mission/mission.h"
 #include "team/messages.h"
 #include "team/participant.h"
@@ -31,7 +30,7 @@ struct MissionContent {
   const std::string& reason;
   const std::vector<std::byte>& plan;
   const Members& members;
-  std::span<const Hold> holds;
+  const std::vector<std::byte>& amendments;  ///< as encoded
   std::int64_t stand_by_revision;
 };
 

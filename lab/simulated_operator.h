@@ -39,7 +39,7 @@ class SimulatedOperator {
   bool idle() const { return messages_ == 0 && !paused_until_ && recalls_.empty(); }
 
   /// The message that it sends now. It repeats its wish until a tick is named.
-  std::optional<Pause> message(Instant now, RunId run, const Coordinator& coordinator) {
+  std::optional<Amend> message(Instant now, RunId run, const Coordinator& coordinator) {
     const auto& holds = coordinator.holds();
     if (is_open(holds) == paused_until_.has_value()) {
       next_message_ = now;
@@ -47,7 +47,9 @@ class SimulatedOperator {
     }
     if (now < next_message_) return {};
     next_message_ = now + kPeriod;
-    return Pause{{run, kOperator, 1, ++messages_, coordinator.tick()}, named_changes(holds), {}};
+    return Amend{.header = {run, kOperator, 1, ++messages_, coordinator.tick()},
+                 .number = coordinator.amendments().named,
+                 .kind = is_open(holds) ? AmendmentKind::kResume : AmendmentKind::kPause};
   }
   /// The recalls that it sends now: those that the coordinator does not know. The coordinator
   /// receives each of them at once. It may be lost with this coordinator; then it is sent again.

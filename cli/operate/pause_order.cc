@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks for the mission until its holds are known. Then repeats PAUSE until MISSION names the tick
+// Asks for the mission until its holds are known. Then repeats AMEND until MISSION names the tick
 // of the change.
 #include "cli/operate/pause_order.h"
 
@@ -34,18 +34,18 @@ bool PauseOrder::is_named(const MonitoredRun& team) const {
 
 void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   if (team.over()) return;
-  if (team.is_running() && !changes_) {
-    changes_ = named_changes(team.holds());
+  if (team.is_running() && !number_) {
+    number_ = team.amendments().named;
     obsolete_ = is_named(team);
     since_ = now;
     next_ = now;
   }
-  was_named_ = was_named_ || (changes_ && is_named(team));
+  was_named_ = was_named_ || (number_ && is_named(team));
   if (was_named_ || now < next_) return;
   next_ = now + kAskPeriod;
   ++header_.sequence;
   header_.run = team.run();
-  if (!changes_) {
+  if (!number_) {
     // The coordinator sends MISSION once a second; an agent repeats it at once.
     Hello question;
     question.header = header_;
@@ -54,11 +54,14 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
     return;
   }
   header_.tick = team.tick();
-  out.push_back({Bus::kSwarm, Pause{header_, *changes_, {}}});
+  out.push_back({Bus::kSwarm, Amend{.header = header_,
+                                          .number = *number_,
+                                          .kind = pauses_ ? AmendmentKind::kPause
+                                                          : AmendmentKind::kResume}});
 }
 
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {
-  if (!changes_) return waiting_for_mission(team, now - since_);
+  if (!number_) return waiting_for_mission(team, now - since_);
   if (team.over()) return {State::kFailed, "the mission has ended: " + team.reason()};
   if (!is_named(team) && was_named_)
     return {State::kDone, pauses_ ? "the mission was resumed" : "the mission was paused again"};

@@ -60,7 +60,8 @@ class MonitoredRun {
     return knows_mission() && me_.follower().state() == MissionState::kRunning && !over_;
   }
   /// See core/mission/hold.h. @pre knows_mission()
-  std::span<const Hold> holds() const { return me_.follower().holds(); }
+  const Amendments& amendments() const { return me_.follower().amendments(); }
+  std::span<const Hold> holds() const { return amendments().holds; }
   bool unheard() const;
   bool coordinator_seen() const { return seen(kCoordinator); }
   bool world_seen() const { return !vehicles_.empty(); }

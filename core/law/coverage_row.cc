@@ -26,26 +26,26 @@ bool gains_within(std::span<const double> sums, const double* before, double lim
   return beyond == 0;
 }
 
-bool sums_are_possible(const Contribution& c, double dt_s) {
+bool sums_are_possible(const Contribution& c, double dt_s, double range) {
   const double expected_s = static_cast<double>(c.steps) * dt_s;
   const double margin_s = expected_s * rounding_margin(c.steps);
   if (!(std::abs(c.elapsed_s - expected_s) <= margin_s)) return false;
   // f_00 = 1, so S_00 is the time covered.
   if (c.block == 0 && !(std::abs(c.sums[0] - expected_s) <= margin_s)) return false;
-  return c.sums.largest() <= expected_s + margin_s;
+  return c.sums.largest() <= range * (expected_s + margin_s);
 }
 
 /// Numbers that travelled in 16 bits may have been rounded up, but not beyond 1.
-bool gains_are_possible(const Contribution& c, double dt_s) {
+bool gains_are_possible(const Contribution& c, double dt_s, double range) {
   const double gained_s = static_cast<double>(c.gained_steps) * dt_s;
   return c.gained_steps >= 0 && c.gained_steps <= c.steps &&
-         c.gains.largest() <= gained_s * (1 + rounding_margin(c.steps));
+         c.gains.largest() <= range * gained_s * (1 + rounding_margin(c.steps));
 }
 
 }  // namespace
 
-bool is_possible(const Contribution& theirs, double dt_s) {
-  return sums_are_possible(theirs, dt_s) && gains_are_possible(theirs, dt_s);
+bool is_possible(const Contribution& theirs, double dt_s, double range) {
+  return sums_are_possible(theirs, dt_s, range) && gains_are_possible(theirs, dt_s, range);
 }
 
 bool CoverageBlock::looks_like(const CoverageBlock& other) const {
@@ -71,6 +71,7 @@ void CoverageBlock::replace(const Contribution& theirs) {
   sequence_ = theirs.header.sequence;
   tick_ = theirs.header.tick;
   next_broadcast_tick_ = theirs.next_broadcast_tick;
+  range_ = theirs.range;
   sums_ = theirs.sums;
 }
 
@@ -82,7 +83,7 @@ std::int64_t CoverageBlock::compare(const Contribution& theirs, const GainRule& 
   sums_before_ = comparable ? std::move(sums_) : BlockSums();
   const double margin_s =
       static_cast<double>(theirs.steps) * rule.dt_s * rounding_margin(theirs.steps);
-  const double most_s = static_cast<double>(steps) * rule.dt_s + 2 * margin_s;
+  const double most_s = rule.range * (static_cast<double>(steps) * rule.dt_s + 2 * margin_s);
   return gains_within(theirs.sums, sums_before_.data(), most_s) ? steps : 0;
 }
 
@@ -91,6 +92,7 @@ void CoverageBlock::write_header(Contribution& out) const {
   out.header.tick = tick_;
   out.steps = steps_;
   out.next_broadcast_tick = next_broadcast_tick_;
+  out.range = range_;
 }
 
 CoverageRow::CoverageRow(const Author& author, const BlockLayout& layout)

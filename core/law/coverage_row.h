@@ -20,15 +20,17 @@
 namespace ergocast {
 
 /// Whether an honest agent can have sent these sums and gains: the elapsed time is steps·dt, S_00
-/// is the elapsed time, and neither |S| nor a gain exceeds its time, all up to rounding (1e-9 and
-/// half an ulp a step).
-bool is_possible(const Contribution& theirs, double dt_s);
+/// is the elapsed time, and neither |S| nor a gain exceeds `range` times its time, all up to rounding
+/// (1e-9 and half an ulp a step).
+/// @param range  1, or kShiftedRange once a target has changed
+bool is_possible(const Contribution& theirs, double dt_s, double range = 1);
 
 /// How a table finds what a block has gained since the one held before.
 struct GainRule {
   double dt_s;
   Tick joined;        ///< no block is compared with one that was sent before this tick
   bool noted = true;  ///< false: blocks in doubles are not compared
+  double range = 1;   ///< of samples: kShiftedRange once a target has changed
 };
 
 /// One block of a row, as it has arrived.
@@ -86,6 +88,7 @@ class CoverageBlock {
   std::int64_t steps_ = 0;
   std::int64_t sequence_ = 0;  // of the message that brought it, for a relay
   Tick tick_ = 0, next_broadcast_tick_ = 0;
+  std::int32_t range_ = 1;
   std::int64_t gained_steps_ = 0;
   BlockSums sums_;
   BlockSums sums_before_;      // kDouble: of the block that it is compared with

@@ -117,6 +117,14 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at, const do
   row->add_step();
 }
 
+void CoverageTable::shift_sample(const Author& author, const double* shift) {
+  CoverageRow* const row = find(author);
+  ERGOCAST_REQUIRE(row != nullptr && allows_shifts());
+  double* const samples = row->sampled();
+  for (int slot = 0; slot < layout_.slot_count(); ++slot)
+    samples[slot] -= shift[slot] * gain_rule_.dt_s;
+}
+
 /// The same additions, each in its slot.
 void CoverageTable::add_in_slots(const BasisAt& at, const double* footprint, double* samples) {
   auto& by_mode = scratch_.by_mode;
@@ -141,7 +149,7 @@ bool CoverageTable::fits(const Contribution& theirs) const {
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (theirs.encoding != layout_.encoding()) return Merge::kRefusedEncoding;
   if (theirs.steps < 1 || theirs.steps > max_steps || theirs.next_broadcast_tick < 0 ||
-      !fits(theirs) || !is_possible(theirs, gain_rule_.dt_s)) {
+      !fits(theirs) || !is_possible(theirs, gain_rule_.dt_s, gain_rule_.range)) {
     return Merge::kRefusedRange;
   }
   CoverageRow* const row = find_or_add(theirs.author());
@@ -170,6 +178,7 @@ Contribution CoverageTable::block(const Author& author, int block) const {
   out.encoding = layout_.encoding();
   if (const CoverageRow* row = find(author)) {
     row->write(out, static_cast<std::size_t>(layout_.size_of(block)));
+    if (!row->samples().empty() && allows_shifts()) out.range = kShiftedRange;
     out.elapsed_s = static_cast<double>(out.steps) * gain_rule_.dt_s;
   }
   return out;

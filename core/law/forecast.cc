@@ -170,6 +170,59 @@ void Forecast::point(Term& term, const CoverageTable& table, std::size_t row, in
   term.announced_gains = gains.announced != nullptr ? gains.announced - first : nullptr;
 }
 
+/// Adds what a term lacks of the shifts.
+/// @param change  the tick of the newest change
+void Forecast::add_correction(const Term& term, Tick sent_tick, std::int64_t sent_steps,
+                              Tick change, Correction& sum) const {
+  if (term.gained_steps == 0) return;
+  const double step_s = term.quality * sampling_.dt_s();
+  const auto steps_before = [change](Tick newest, std::int64_t steps) {
+    return std::clamp<std::int64_t>(change - 1 - newest + steps, 0, steps);
+  };
+  if (term.track == nullptr) {
+    // The gains have the former shift for some steps, and the present one for the others.
+    const std::int64_t former = steps_before(sent_tick, term.gained_steps);
+    const double lacks_s = term.share * static_cast<double>(former) * step_s;
+    sum.former_s -= lacks_s;
+    sum.present_s += lacks_s;
+    return;
+  }
+  // Places are f without a shift: those that extend the row, and the newest, at which it goes on.
+  const std::int64_t added = term.steps - sent_steps;
+  const std::int64_t former = steps_before(term.tick, added);
+  sum.former_s += static_cast<double>(former) * step_s;
+  sum.present_s += (static_cast<double>(added - former) + term.share) * step_s;
+}
+
+Forecast::Correction Forecast::correction(const CoverageTable& table, int block, Tick tick) const {
+  Correction sum;
+  if (shift_ == nullptr) return sum;
+  const Tick change = shift_->newest_change(tick);
+  auto earlier = terms_.earlier.begin(), later = terms_.later.begin();
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (!table.counts(row) || table.author(row) == self_) continue;
+    const CoverageTable::BlockView sent = table.view(row, block);
+    const Term& term = table.author(row) < self_ ? *earlier++ : *later++;
+    add_correction(term, sent.tick, sent.steps, change, sum);
+  }
+  return sum;
+}
+
+/// Subtracts what a block lacks of the shifts.
+void Forecast::correct(const Correction& correction, int block, double per_second, Tick tick,
+                       double* coverage) const {
+  if (shift_ == nullptr) return;
+  const Tick change = shift_->newest_change(tick);
+  const auto [first, count] = sampling_.layout().slots_of(block);
+  const auto subtract = [&, first = first, count = count](const double* shift, double seconds) {
+    if (shift == nullptr || seconds == 0) return;
+    for (int slot = first; slot < first + count; ++slot)
+      coverage[slot] -= shift[slot] * (seconds * per_second);
+  };
+  subtract(shift_->at(change - 1), correction.former_s);
+  subtract(shift_->at(tick), correction.present_s);
+}
+
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                           Tick tick, Coefficients& coverage) {
   ++looks_;
@@ -178,10 +231,15 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
   const bool in_basis_order = sampling_.layout().in_basis_order();
   double* const out = in_basis_order ? coverage.data() : by_slot_.data();
   double per_second = 0;
+  Correction lacks;
   for (int b = 0; b < table.block_count(); ++b) {
-    if (b == 0 || !uniform) per_second = weigh_terms(table, b, tick);
+    if (b == 0 || !uniform) {
+      per_second = weigh_terms(table, b, tick);
+      lacks = correction(table, b, tick);
+    }
     point_terms(table, b);
     team_sum_.average(terms_, sampling_, b, per_second, out);
+    correct(lacks, b, per_second, tick, out);
   }
   if (!in_basis_order) sampling_.layout().from_slots(out, coverage.data());
 }

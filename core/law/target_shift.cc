@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps the newest changes of the target, each as numbers by slot.
+#include "core/law/target_shift.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/mission/hold.h"
+
+namespace ergocast {
+
+TargetShift::TargetShift(const Mission& mission)
+    : layout_(mission), plan_target_(mission.target_coefficients) {}
+
+AlignedDoubles TargetShift::in_slots(const Coefficients& target) const {
+  const Coefficients shift = target - plan_target_;
+  AlignedDoubles slots(static_cast<std::size_t>(layout_.slot_count()));
+  if (layout_.in_basis_order()) {
+    std::ranges::copy(shift, slots.begin());
+  } else {
+    layout_.to_slots(shift.data(), slots.data());
+  }
+  return slots;
+}
+
+void TargetShift::note(const Amendments& list) {
+  if (list.targets.empty()) return;
+  const std::int32_t first = list.targets.front().number;
+  std::erase_if(changes_, [first](const Change& change) { return change.number >= first; });
+  for (const TargetChange& change : list.targets)
+    changes_.push_back(
+        {change.number, counted_ticks(list.holds, change.from), in_slots(change.target)});
+  const auto spare = std::ssize(changes_) - std::ssize(list.targets);
+  const auto most = static_cast<std::ptrdiff_t>(kMostChanges);
+  if (spare > most) changes_.erase(changes_.begin(), changes_.begin() + (spare - most));
+}
+
+const TargetShift::Change* TargetShift::find(Tick counted) const {
+  const auto found =
+      std::find_if(changes_.rbegin(), changes_.rend(),
+                   [counted](const Change& change) { return change.from <= counted; });
+  return found == changes_.rend() ? nullptr : &*found;
+}
+
+const double* TargetShift::at(Tick counted) const {
+  const Change* const change = find(counted);
+  return change == nullptr ? nullptr : change->by_slot.data();
+}
+
+Tick TargetShift::newest_change(Tick counted) const {
+  const Change* const change = find(counted);
+  return change == nullptr ? std::numeric_limits<Tick>::min() : change->from;
+}
+
+}  // namespace ergocast
