@@ -57,7 +57,8 @@ const Coefficients& CoverageExchange::team_coverage() const {
 
 void CoverageExchange::add_sample(const AgentStep& step, const TargetShift& shift) {
   table_.add_sample(self_, *step.basis_at, sensors_.of(kind_).footprint());
-  if (const double* const by = shift.at(step.counted)) table_.shift_sample(self_, by);
+  const TargetShift::Change* const change = shift.at(step.counted);
+  if (change != nullptr) table_.shift_sample(self_, change->by_slot.data());
 }
 
 /// An agent that learns late of a pause has counted too many ticks. The tick that it announced is

@@ -206,8 +206,10 @@ void Invariants::check_view(double t_s, const TableView& holder,
   const double error = (c - c_true).cwiseAbs().maxCoeff();
   if (covered_s <= stale_s) return;
   // One holder may have the author's own sums of a row, and another the sums that have travelled.
-  const double most = 2 * stale_s / (covered_s - stale_s) +
-                      2 * rounding_of(mission_.timing.contribution_encoding) + rounding(last_tick_);
+  const double range = holder.table->allows_shifts() ? kShiftedRange : 1;
+  const double most =
+      range * (2 * stale_s / (covered_s - stale_s) +
+               2 * rounding_of(mission_.timing.contribution_encoding) + rounding(last_tick_));
   if (error <= most) return;
   violate(t_s, Invariant::kViewsAgree, name_of(holder.self),
           text("|c - c_true| = ", error, " > ", most, " with ", stale_s, " s of ", covered_s,

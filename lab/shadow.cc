@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/law/forecast.h"
+#include "core/law/target_shift.h"
 
 namespace ergocast::lab {
 namespace {
@@ -208,6 +209,7 @@ bool has_forecast(const Mission& mission, const TableView& agent, const RosterEn
 // ---- what was received ----
 
 void Shadow::receive(const Mission& mission, const TableView& agent, const Message& message) {
+  if (std::holds_alternative<MissionPart>(message)) note_targets(mission, *agent.amendments);
   if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);
   if (const auto* world = std::get_if<WorldState>(&message)) note_places(mission, agent, *world);
 }
@@ -298,6 +300,46 @@ void Shadow::dead_reckon(const RosterEntry& entry, Row& row) const {
   if (entry.active_at(places.back().tick)) row.newest = places.back();
 }
 
+// ---- targets that have changed ----
+
+/// Targets that a newer list has no more still count for earlier ticks, as core/law/target_shift.h
+/// says.
+void Shadow::note_targets(const Mission& mission, const Amendments& list) {
+  if (list.targets.empty()) return;
+  targets_.erase(targets_.lower_bound(list.targets.front().number), targets_.end());
+  for (const TargetChange& change : list.targets) {
+    targets_[change.number] = {counted_ticks(list.holds, change.from),
+                               change.target - mission.target_coefficients};
+  }
+  while (targets_.size() > TargetShift::kMostChanges) targets_.erase(targets_.begin());
+}
+
+/// (μ − μ₀) dt at a tick.
+Coefficients Shadow::shift_s(const Mission& mission, Tick tick) const {
+  Coefficients shift = Coefficients::Zero(mission.basis.mode_count());
+  for (const auto& [number, target] : targets_)
+    if (target.first <= tick) shift = mission.timing.dt_s * target.second;
+  return shift;
+}
+
+void Shadow::add_shift(const Mission& mission, int block, Tick tick, double factor,
+                       std::vector<double>& numbers) const {
+  if (targets_.empty()) return;
+  const auto shift = block_of(shift_s(mission, tick),
+                              modes(mission)[static_cast<std::size_t>(block)],
+                              block_size(mission));
+  for (std::size_t k = 0; k < shift.size(); ++k) numbers[k] += factor * shift[k];
+}
+
+/// A teammate will gain with the shift of `tick`, and has gained with those of its steps.
+void Shadow::correct_gains(const Mission& mission, int block, Tick tick, Part& part) const {
+  if (targets_.empty()) return;
+  for (Tick step = part.tick - part.gained_steps + 1; step <= part.tick; ++step) {
+    add_shift(mission, block, step, 1, part.gains);
+    add_shift(mission, block, tick, -1, part.gains);
+  }
+}
+
 // ---- the equation ----
 
 /// The part of a block without dead reckoning.
@@ -323,8 +365,10 @@ Shadow::Part Shadow::part_of(const Mission& mission, const Block& block) const {
 }
 
 /// What each block of a row adds to ĉ.
+/// @param forecast_tick  of the forecast, if the row has one
 std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& row,
-                                           const RosterEntry* entry, bool has_forecast) const {
+                                           const RosterEntry* entry,
+                                           std::optional<Tick> forecast_tick) const {
   std::map<Tick, Coefficients> gains;
   const auto gain = [&](const Place& place, int b) {
     auto found = gains.find(place.tick);
@@ -339,14 +383,22 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
     Part& part = parts.emplace_back(part_of(mission, block));
     part.quality = quality_of(mission, entry);
     if (entry != nullptr) part.until = covers_until(mission, entry->author.agent);
-    if (!has_forecast) part.gained_steps = 0;
-    if (part.gained_steps == 0 || !row.newest || row.newest->tick < block.held.tick) continue;
+    if (!forecast_tick) part.gained_steps = 0;
+    if (part.gained_steps == 0) continue;
+    if (!row.newest || row.newest->tick < block.held.tick) {
+      correct_gains(mission, b, *forecast_tick, part);
+      continue;
+    }
+    // Places may be missing; the steps at them count as the last ones up to the newest.
+    Tick step = row.newest->tick - std::ssize(block.since);
     for (const Place& place : block.since) {
       const auto more = gain(place, b);
       for (std::size_t k = 0; k < more.size(); ++k) part.sums[k] += more[k];
+      add_shift(mission, b, ++step, -1, part.sums);
     }
     part.steps += std::ssize(block.since);
     part.gains = gain(*row.newest, b);
+    add_shift(mission, b, *forecast_tick, -1, part.gains);
     part.gained_steps = 1;
     part.tick = row.newest->tick;
   }
@@ -366,8 +418,9 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
   for (const auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
     if (entry != nullptr && is_forgotten(*entry, agent)) continue;
-    team.push_back(
-        parts_of(mission, row, entry, entry != nullptr && has_forecast(mission, agent, *entry)));
+    const bool forecast = entry != nullptr && has_forecast(mission, agent, *entry);
+    team.push_back(parts_of(mission, row, entry,
+                            forecast ? std::optional(agent.counted) : std::nullopt));
   }
   return team;
 }

@@ -75,8 +75,14 @@ class Shadow {
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void dead_reckon(const RosterEntry& entry, Row& row) const;
   Part part_of(const Mission& mission, const Block& block) const;
+  void note_targets(const Mission& mission, const Amendments& list);
+  Coefficients shift_s(const Mission& mission, Tick tick) const;
+  /// Adds `factor` times the shift of a tick.
+  void add_shift(const Mission& mission, int block, Tick tick, double factor,
+                 std::vector<double>& numbers) const;
+  void correct_gains(const Mission& mission, int block, Tick tick, Part& part) const;
   std::vector<Part> parts_of(const Mission& mission, const Row& row, const RosterEntry* entry,
-                             bool has_forecast) const;
+                             std::optional<Tick> forecast_tick) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
   /// The modes of the one mission that this shadow follows.
@@ -85,6 +91,8 @@ class Shadow {
   mutable WireModes modes_;
   mutable std::optional<Eigen::Matrix3d> covariance_m2_;  // of the target
   Tick active_from_;
+  /// By the number of the amendment: the counted tick from which a target holds, and μ − μ₀.
+  std::map<std::int32_t, std::pair<Tick, Coefficients>> targets_;
   std::map<Author, Row> rows_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest are dropped
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // for the radio range, of the newest …

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A simulated operator: it pauses a mission and resumes it, and sends agents home or out of it.
+// A simulated operator: it pauses a mission and resumes it, gives the team other targets, and sends
+// agents home or out of the mission.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "coordinator/coordinator.h"
 #include "core/base/ids.h"
-#include "core/mission/hold.h"
+#include "core/mission/amendments.h"
+#include "plan/amendment_list.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {
@@ -27,6 +31,11 @@ class SimulatedOperator {
   void end_pause(Instant now) {
     if (paused_until_ && *paused_until_ <= now) paused_until_.reset();
   }
+  /// Wants the team to cover another target. It then wants no earlier one any more.
+  void want_target(TargetChange target) {
+    target_hash_ = target_hash(target);
+    target_ = encode_target(target);
+  }
   /// Wants an agent to go home, or out of the mission if it `leaves`.
   void want_recall(AgentId id, bool leaves) { recalls_.push_back({{}, id, leaves, {}}); }
   /// Wants the mission to go on.
@@ -36,7 +45,29 @@ class SimulatedOperator {
   /// When its pause ends; Instant::max(): it wants none.
   Instant next() const { return paused_until_.value_or(Instant::max()); }
   /// Whether it has wanted nothing yet, and wants nothing now.
-  bool idle() const { return messages_ == 0 && !paused_until_ && recalls_.empty(); }
+  bool idle() const { return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty(); }
+  /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
+  std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
+    std::vector<Amend> sent;
+    const Amendments& list = coordinator.amendments();
+    const auto is_ours = [this](const Amendment& one) { return one.hash == target_hash_; };
+    if (std::ranges::any_of(list.recent, is_ours)) target_.clear();
+    if (target_.empty() || now < next_target_) return sent;
+    next_target_ = now + kPeriod;
+    constexpr auto kPart = static_cast<std::size_t>(kMaxPlanBytesPerMessage);
+    const auto parts = static_cast<std::int32_t>((target_.size() + kPart - 1) / kPart);
+    for (std::int32_t part = 0; part < parts; ++part) {
+      const auto rest = std::span(target_).subspan(static_cast<std::size_t>(part) * kPart);
+      const auto share = rest.first(std::min(kPart, rest.size()));
+      sent.push_back({.header = {run, kOperator, 1, ++messages_, coordinator.tick()},
+                      .number = list.named,
+                      .kind = AmendmentKind::kTarget,
+                      .part = part,
+                      .parts = parts,
+                      .content = {share.begin(), share.end()}});
+    }
+    return sent;
+  }
 
   /// The message that it sends now. It repeats its wish until a tick is named.
   std::optional<Amend> message(Instant now, RunId run, const Coordinator& coordinator) {
@@ -87,6 +118,9 @@ class SimulatedOperator {
   std::optional<Instant> paused_until_;
   Instant next_message_;  // until its wish is obeyed
   std::int64_t messages_ = 0;
+  std::vector<std::byte> target_;  // that it wants, as AMEND carries it
+  std::uint64_t target_hash_ = 0;
+  Instant next_target_;
   std::vector<Recall> recalls_;  // that it wants
   std::set<AgentId> sent_out_;
 };

@@ -170,57 +170,57 @@ void Forecast::point(Term& term, const CoverageTable& table, std::size_t row, in
   term.announced_gains = gains.announced != nullptr ? gains.announced - first : nullptr;
 }
 
+/// Adds `each_s` to a change for each of the last `steps` ticks up to `newest` in which it held.
+void Forecast::add_steps(Tick newest, std::int64_t steps, double each_s, Correction& sum) const {
+  const std::span<const TargetShift::Change> changes = shift_->changes();
+  Tick until = newest + 1;
+  for (std::size_t i = changes.size(); i-- > 0;) {
+    const Tick from = std::max(changes[i].from, newest + 1 - steps);
+    if (from < until) sum[i] += static_cast<double>(until - from) * each_s;
+    until = std::min(until, changes[i].from);
+  }
+}
+
 /// Adds what a term lacks of the shifts.
-/// @param change  the tick of the newest change
-void Forecast::add_correction(const Term& term, Tick sent_tick, std::int64_t sent_steps,
-                              Tick change, Correction& sum) const {
+void Forecast::add_correction(const Term& term, const CoverageTable::BlockView& sent, Tick tick,
+                              Correction& sum) const {
   if (term.gained_steps == 0) return;
   const double step_s = term.quality * sampling_.dt_s();
-  const auto steps_before = [change](Tick newest, std::int64_t steps) {
-    return std::clamp<std::int64_t>(change - 1 - newest + steps, 0, steps);
-  };
-  if (term.track == nullptr) {
-    // The gains have the former shift for some steps, and the present one for the others.
-    const std::int64_t former = steps_before(sent_tick, term.gained_steps);
-    const double lacks_s = term.share * static_cast<double>(former) * step_s;
-    sum.former_s -= lacks_s;
-    sum.present_s += lacks_s;
+  if (term.track != nullptr) {
+    // Places are f without a shift: those that extend the row, and the newest, where it goes on.
+    add_steps(term.tick, term.steps - sent.steps, step_s, sum);
+    add_steps(tick, 1, term.share * step_s, sum);
     return;
   }
-  // Places are f without a shift: those that extend the row, and the newest, at which it goes on.
-  const std::int64_t added = term.steps - sent_steps;
-  const std::int64_t former = steps_before(term.tick, added);
-  sum.former_s += static_cast<double>(former) * step_s;
-  sum.present_s += (static_cast<double>(added - former) + term.share) * step_s;
+  // Its gains have the shifts of their ticks, and it will gain with the present one.
+  const double gained = static_cast<double>(term.gained_steps);
+  add_steps(sent.tick, term.gained_steps, -term.share * step_s, sum);
+  add_steps(tick, 1, gained * (term.share * step_s), sum);
 }
 
 Forecast::Correction Forecast::correction(const CoverageTable& table, int block, Tick tick) const {
-  Correction sum;
+  Correction sum{};
   if (shift_ == nullptr) return sum;
-  const Tick change = shift_->newest_change(tick);
   auto earlier = terms_.earlier.begin(), later = terms_.later.begin();
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row) || table.author(row) == self_) continue;
-    const CoverageTable::BlockView sent = table.view(row, block);
     const Term& term = table.author(row) < self_ ? *earlier++ : *later++;
-    add_correction(term, sent.tick, sent.steps, change, sum);
+    add_correction(term, table.view(row, block), tick, sum);
   }
   return sum;
 }
 
 /// Subtracts what a block lacks of the shifts.
-void Forecast::correct(const Correction& correction, int block, double per_second, Tick tick,
+void Forecast::correct(const Correction& correction, int block, double per_second,
                        double* coverage) const {
   if (shift_ == nullptr) return;
-  const Tick change = shift_->newest_change(tick);
   const auto [first, count] = sampling_.layout().slots_of(block);
-  const auto subtract = [&, first = first, count = count](const double* shift, double seconds) {
-    if (shift == nullptr || seconds == 0) return;
-    for (int slot = first; slot < first + count; ++slot)
-      coverage[slot] -= shift[slot] * (seconds * per_second);
-  };
-  subtract(shift_->at(change - 1), correction.former_s);
-  subtract(shift_->at(tick), correction.present_s);
+  for (std::size_t i = 0; i < shift_->changes().size(); ++i) {
+    const double share = correction[i] * per_second;
+    if (share == 0) continue;
+    const double* const shift = shift_->changes()[i].by_slot.data();
+    for (int slot = first; slot < first + count; ++slot) coverage[slot] -= shift[slot] * share;
+  }
 }
 
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,
@@ -231,7 +231,7 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
   const bool in_basis_order = sampling_.layout().in_basis_order();
   double* const out = in_basis_order ? coverage.data() : by_slot_.data();
   double per_second = 0;
-  Correction lacks;
+  Correction lacks{};
   for (int b = 0; b < table.block_count(); ++b) {
     if (b == 0 || !uniform) {
       per_second = weigh_terms(table, b, tick);
@@ -239,7 +239,7 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
     }
     point_terms(table, b);
     team_sum_.average(terms_, sampling_, b, per_second, out);
-    correct(lacks, b, per_second, tick, out);
+    correct(lacks, b, per_second, out);
   }
   if (!in_basis_order) sampling_.layout().from_slots(out, coverage.data());
 }

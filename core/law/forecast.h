@@ -27,6 +27,7 @@
 // not matter: in lockstep all agents that receive the same messages compute the same forecast.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -85,10 +86,8 @@ class Forecast {
     bool by_places(Tick tick) const { return track != nullptr && track->newest_tick() >= tick; }
   };
 
-  /// How much of each shift the sums of a block lack [s]; core/law/target_shift.h.
-  struct Correction {
-    double former_s = 0, present_s = 0;
-  };
+  /// How much of the shift of each change the sums of a block lack [s]; core/law/target_shift.h.
+  using Correction = std::array<double, TargetShift::kMostChanges>;
 
   void gather(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
   RowTrack* extended_track(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
@@ -97,9 +96,10 @@ class Forecast {
   Tick rest_from(AgentId id) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
   Correction correction(const CoverageTable& table, int block, Tick tick) const;
-  void add_correction(const Term& term, Tick sent_tick, std::int64_t sent_steps, Tick change,
+  void add_steps(Tick newest, std::int64_t steps, double each_s, Correction& sum) const;
+  void add_correction(const Term& term, const CoverageTable::BlockView& sent, Tick tick,
                       Correction& sum) const;
-  void correct(const Correction& correction, int block, double per_second, Tick tick,
+  void correct(const Correction& correction, int block, double per_second,
                double* coverage) const;
   double weigh(Term& term, double horizon_s, Tick tick) const;
   void point_terms(const CoverageTable& table, int block);

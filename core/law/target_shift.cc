@@ -30,26 +30,15 @@ void TargetShift::note(const Amendments& list) {
   for (const TargetChange& change : list.targets)
     changes_.push_back(
         {change.number, counted_ticks(list.holds, change.from), in_slots(change.target)});
-  const auto spare = std::ssize(changes_) - std::ssize(list.targets);
-  const auto most = static_cast<std::ptrdiff_t>(kMostChanges);
-  if (spare > most) changes_.erase(changes_.begin(), changes_.begin() + (spare - most));
+  if (changes_.size() > kMostChanges)
+    changes_.erase(changes_.begin(), changes_.end() - static_cast<std::ptrdiff_t>(kMostChanges));
 }
 
-const TargetShift::Change* TargetShift::find(Tick counted) const {
+const TargetShift::Change* TargetShift::at(Tick counted) const {
   const auto found =
       std::find_if(changes_.rbegin(), changes_.rend(),
                    [counted](const Change& change) { return change.from <= counted; });
   return found == changes_.rend() ? nullptr : &*found;
-}
-
-const double* TargetShift::at(Tick counted) const {
-  const Change* const change = find(counted);
-  return change == nullptr ? nullptr : change->by_slot.data();
-}
-
-Tick TargetShift::newest_change(Tick counted) const {
-  const Change* const change = find(counted);
-  return change == nullptr ? std::numeric_limits<Tick>::min() : change->from;
 }
 
 }  // namespace ergocast

@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,6 +22,15 @@ namespace ergocast {
 
 class TargetShift {
  public:
+  /// A target that holds from a tick on.
+  struct Change {
+    std::int32_t number;     ///< of the amendment
+    Tick from;               ///< as numbered among those that count
+    AlignedDoubles by_slot;  ///< μ − μ₀
+  };
+  /// The most changes that are kept. A list has at most two targets; the older ones serve forecasts.
+  static constexpr std::size_t kMostChanges = 6;
+
   explicit TargetShift(const Mission& mission);
 
   /// Takes in the newest list. Targets that it has no more still count for the ticks before the
@@ -31,27 +39,17 @@ class TargetShift {
 
   /// Whether any target has changed.
   bool any() const { return !changes_.empty(); }
-  /// μ − μ₀ at a tick, as numbered among those that count: one number for each slot. Null if it
-  /// is 0.
-  const double* at(Tick counted) const;
-  /// The counted tick of the newest change up to `counted`; before every tick if there is none.
-  Tick newest_change(Tick counted) const;
+  /// Ascending by `from`.
+  std::span<const Change> changes() const { return changes_; }
+  /// The change whose target holds at a counted tick; null: the plan's target holds.
+  const Change* at(Tick counted) const;
 
  private:
-  struct Change {
-    std::int32_t number;  // of the amendment
-    Tick from;            // counted
-    AlignedDoubles by_slot;
-  };
-  /// Forecasts refer to at most so many changes.
-  static constexpr std::size_t kMostChanges = 4;
-
-  const Change* find(Tick counted) const;
   AlignedDoubles in_slots(const Coefficients& target) const;
 
   BlockLayout layout_;
   Coefficients plan_target_;
-  std::vector<Change> changes_;  // ascending
+  std::vector<Change> changes_;
 };
 
 }  // namespace ergocast
