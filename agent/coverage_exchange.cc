@@ -37,6 +37,7 @@ void note_gains(const Contribution& before, Contribution& block) {
 CoverageExchange::CoverageExchange(const Mission& mission, const RosterEntry& self, Tick joined)
     : self_(self.author),
       kind_(self.kind),
+      realtime_(mission.timing.pace == Pace::kRealtime),
       sensors_(mission),
       table_(mission.basis, mission.timing.dt_s, joined),
       anti_entropy_(self.author, mission.seed, mission.timing.dt_s),
@@ -101,6 +102,10 @@ std::optional<Refusal> CoverageExchange::merge(const Contribution& theirs, int k
                                                std::int64_t max_steps, Tick counted) {
   switch (table_.merge(theirs, max_steps)) {
     case Merge::kRefusedRange:
+      return Refusal::kRange;
+    case Merge::kRefusedShift:
+      // In real time its author may know of a new target first. It sends the block again.
+      if (realtime_) return std::nullopt;
       return Refusal::kRange;
     case Merge::kRefusedLimit:
       return Refusal::kLimit;

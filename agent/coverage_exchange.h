@@ -79,6 +79,7 @@ class CoverageExchange {
  private:
   Author self_;
   int kind_;
+  bool realtime_;
   Sensors sensors_;
   CoverageTable table_;
   AntiEntropy anti_entropy_;

@@ -69,8 +69,11 @@ void Invariants::started(const Author& author) {
 
 void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
-  if (const auto* part = std::get_if<MissionPart>(&outgoing.message))
-    return truth_.receive(*part) ? check_closed_numbers(t_s) : void();
+  if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) {
+    if (!truth_.receive(*part)) return;
+    shifted_ = shifted_ || !truth_.amendments().targets.empty();
+    return check_closed_numbers(t_s);
+  }
   if (const auto* command = std::get_if<Command>(&outgoing.message)) {
     // A repeated command was checked before.
     const bool answers = speaker != nullptr && command->header.tick == speaker->answered;
@@ -169,7 +172,9 @@ void Invariants::check(double t_s, const Command& command, const TableView& spea
 void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
                        const TableView* speaker) {
   const double covered_s = static_cast<double>(block.steps) * mission_.timing.dt_s;
-  const double most_s = covered_s * (1 + 1e-9 + rounding(block.steps));
+  // Samples are shifted once the team has had another target.
+  const double range = shifted_ ? kShiftedRange : 1;
+  const double most_s = range * covered_s * (1 + 1e-9 + rounding(block.steps));
   double largest_s = 0;
   for (const double sum_s : block.sums) largest_s = std::max(largest_s, std::abs(sum_s));
   const bool zeroth_is_off =
@@ -277,7 +282,8 @@ void Invariants::ended(double t_s, const std::string& still_running, const std::
   }
   const bool recalled =
       std::ranges::any_of(truth_.roster(), [](const auto& entry) { return entry.recalled(); });
-  const double goal = recalled ? 0 : mission_.goal_ergodic_metric;  // fewer agents may miss it
+  // Fewer agents may miss it, and it was for the plan's target.
+  const double goal = recalled || shifted_ ? 0 : mission_.goal_ergodic_metric;
   if (goal > 0 && !(facts.ergodic_metric_last <= goal)) {
     violate(t_s, Invariant::kGoalReached, "the team",
             text("phi^2 = ", facts.ergodic_metric_last, " > ", goal,

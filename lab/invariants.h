@@ -80,7 +80,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kWallsKept, "bodies keep out of walls"},
         {Invariant::kHomeInTime, "agents are home in time"},
         {Invariant::kRecalledComeHome, "recalled agents come home"},
-        {Invariant::kSumsBounded, "|S_mn| <= S_00 = steps dt"},
+        {Invariant::kSumsBounded, "S_00 = steps dt, |S_mn| <= S_00, or 3 S_00 after a change"},
         {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
         {Invariant::kDigestsSayWhatIsHeld, "a digest lists what is held"},
         {Invariant::kWholeMessagesAccepted, "no whole message is refused"},
@@ -262,6 +262,7 @@ class Invariants {
   std::vector<Author> authors_;
   std::map<AgentId, int> incarnation_count_;
   MissionFollower truth_;                                  // follows all messages about the mission
+  bool shifted_ = false;                                   // a target has been named
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, std::int64_t> own_steps_;               // after the tick begun last
   std::map<Author, Shadow>

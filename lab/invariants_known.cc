@@ -20,7 +20,9 @@ void Invariants::received(const TableView& listener, const Message& message) {
   if (listener.table == nullptr) return;
   if (std::holds_alternative<MissionPart>(message)) {
     const RosterEntry* own = entry_of(*listener.roster, listener.self);
-    if (own != nullptr) shadows_.try_emplace(listener.self, own->active_from);
+    if (own == nullptr) return;
+    const auto shadow = shadows_.try_emplace(listener.self, own->active_from).first;
+    shadow->second.note_targets(mission_, *listener.amendments);
     return;
   }
   if (mission_.law.anticipation <= 0) return;

@@ -209,7 +209,6 @@ bool has_forecast(const Mission& mission, const TableView& agent, const RosterEn
 // ---- what was received ----
 
 void Shadow::receive(const Mission& mission, const TableView& agent, const Message& message) {
-  if (std::holds_alternative<MissionPart>(message)) note_targets(mission, *agent.amendments);
   if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);
   if (const auto* world = std::get_if<WorldState>(&message)) note_places(mission, agent, *world);
 }
@@ -306,7 +305,11 @@ void Shadow::dead_reckon(const RosterEntry& entry, Row& row) const {
 /// says.
 void Shadow::note_targets(const Mission& mission, const Amendments& list) {
   if (list.targets.empty()) return;
-  targets_.erase(targets_.lower_bound(list.targets.front().number), targets_.end());
+  const TargetChange& first = list.targets.front();
+  std::erase_if(targets_, [&](const auto& known) {
+    return known.first >= first.number ||
+           known.second.first >= counted_ticks(list.holds, first.from);
+  });
   for (const TargetChange& change : list.targets) {
     targets_[change.number] = {counted_ticks(list.holds, change.from),
                                change.target - mission.target_coefficients};

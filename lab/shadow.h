@@ -30,6 +30,9 @@ class Shadow {
   explicit Shadow(Tick active_from) : active_from_(active_from) {}
   Tick active_from() const { return active_from_; }
 
+  /// The agent has received this list.
+  void note_targets(const Mission& mission, const Amendments& list);
+
   /// A message has reached the agent, whose state is now `agent`.
   void receive(const Mission& mission, const TableView& agent, const Message& message);
 
@@ -75,7 +78,6 @@ class Shadow {
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void dead_reckon(const RosterEntry& entry, Row& row) const;
   Part part_of(const Mission& mission, const Block& block) const;
-  void note_targets(const Mission& mission, const Amendments& list);
   Coefficients shift_s(const Mission& mission, Tick tick) const;
   /// Adds `factor` times the shift of a tick.
   void add_shift(const Mission& mission, int block, Tick tick, double factor,

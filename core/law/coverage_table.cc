@@ -149,9 +149,10 @@ bool CoverageTable::fits(const Contribution& theirs) const {
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (theirs.encoding != layout_.encoding()) return Merge::kRefusedEncoding;
   if (theirs.steps < 1 || theirs.steps > max_steps || theirs.next_broadcast_tick < 0 ||
-      !fits(theirs) || !is_possible(theirs, gain_rule_.dt_s, gain_rule_.range)) {
+      !fits(theirs) || !is_possible(theirs, gain_rule_.dt_s, kShiftedRange)) {
     return Merge::kRefusedRange;
   }
+  if (!is_possible(theirs, gain_rule_.dt_s, gain_rule_.range)) return Merge::kRefusedShift;
   CoverageRow* const row = find_or_add(theirs.author());
   if (row == nullptr) return Merge::kRefusedLimit;
   const CoverageBlock& held = row->block(theirs.block);

@@ -21,7 +21,14 @@
 
 namespace ergocast {
 
-enum class Merge { kNewer, kStale, kRefusedRange, kRefusedLimit, kRefusedEncoding };
+enum class Merge {
+  kNewer,
+  kStale,
+  kRefusedRange,
+  kRefusedLimit,
+  kRefusedEncoding,
+  kRefusedShift,  ///< possible only if a target has changed, of which the table does not know
+};
 
 class CoverageTable {
  public:

@@ -26,7 +26,11 @@ AlignedDoubles TargetShift::in_slots(const Coefficients& target) const {
 void TargetShift::note(const Amendments& list) {
   if (list.targets.empty()) return;
   const std::int32_t first = list.targets.front().number;
-  std::erase_if(changes_, [first](const Change& change) { return change.number >= first; });
+  const Tick from = counted_ticks(list.holds, list.targets.front().from);
+  // A coordinator that did not know of a change names another one, possibly for an earlier tick.
+  std::erase_if(changes_, [first, from](const Change& change) {
+    return change.number >= first || change.from >= from;
+  });
   for (const TargetChange& change : list.targets)
     changes_.push_back(
         {change.number, counted_ticks(list.holds, change.from), in_slots(change.target)});
