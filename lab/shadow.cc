@@ -14,6 +14,9 @@
 namespace ergocast::lab {
 namespace {
 
+/// Room for rounding where a gain is compared with its time.
+constexpr double kRoom = 1e-6;
+
 /// A teammate that has been silent for this many announced periods has no forecast any more.
 constexpr Tick kPeriodsUntilDead = 8;
 
@@ -209,13 +212,13 @@ bool has_forecast(const Mission& mission, const TableView& agent, const RosterEn
 // ---- what was received ----
 
 void Shadow::receive(const Mission& mission, const TableView& agent, const Message& message) {
-  if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);
+  if (const auto* block = std::get_if<Contribution>(&message)) take(mission, agent, *block);
   if (const auto* world = std::get_if<WorldState>(&message)) note_places(mission, agent, *world);
 }
 
 /// Takes a block's content from the message itself. Only whether the block is held now comes from
 /// the table.
-void Shadow::take(const TableView& agent, const Contribution& theirs) {
+void Shadow::take(const Mission& mission, const TableView& agent, const Contribution& theirs) {
   if (theirs.author() == agent.self) return;
   Row& row = rows_[theirs.author()];
   row.blocks.resize(static_cast<std::size_t>(agent.table->block_count()));
@@ -225,6 +228,18 @@ void Shadow::take(const TableView& agent, const Contribution& theirs) {
   block.before = block.held;
   block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick,
                 theirs.sums,  theirs.gains,       theirs.gained_steps};
+  block.gains_possible = gains_are_possible(mission, agent, block);
+}
+
+/// A teammate may know of a new target first. What its block gains may then seem impossible.
+bool Shadow::gains_are_possible(const Mission& mission, const TableView& agent,
+                                const Block& block) const {
+  if (agent.table->allows_shifts()) return true;
+  const Part part = part_of(mission, block);
+  const double most_s =
+      static_cast<double>(part.gained_steps) * mission.timing.dt_s * (1 + kRoom);
+  return std::ranges::all_of(part.gains,
+                             [most_s](double gain_s) { return std::abs(gain_s) <= most_s; });
 }
 
 void Shadow::note_places(const Mission& mission, const TableView& agent, const WorldState& world) {
@@ -390,6 +405,7 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
     if (part.gained_steps == 0) continue;
     if (!row.newest || row.newest->tick < block.held.tick) {
       correct_gains(mission, b, *forecast_tick, part);
+      if (!block.gains_possible) part.gained_steps = 0;
       continue;
     }
     // Places may be missing; the steps at them count as the last ones up to the newest.

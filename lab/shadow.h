@@ -54,6 +54,7 @@ class Shadow {
     std::int64_t gained_steps = 0;
   };
   struct Block {
+    bool gains_possible = true;  ///< by the targets that the agent knew when `held` arrived
     Snapshot held,
         before;  ///< `before` is the previous one by steps, even if older blocks arrived later
     std::vector<Place> since;              ///< where its author was after `held`, as it was known
@@ -73,7 +74,8 @@ class Shadow {
     Tick until = std::numeric_limits<Tick>::max();  ///< its author rests from then on
   };
 
-  void take(const TableView& agent, const Contribution& theirs);
+  void take(const Mission& mission, const TableView& agent, const Contribution& theirs);
+  bool gains_are_possible(const Mission& mission, const TableView& agent, const Block& block) const;
   void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void dead_reckon(const RosterEntry& entry, Row& row) const;
