@@ -10,6 +10,7 @@ ergocast_test(NAME modes_tests LABELS unit
   LIBS ergocast::modes)
 ergocast_test(NAME core_tests LABELS unit
   SOURCES
+    core/amendments_test.cc
     core/basis_in_space_test.cc
     core/basis_test.cc
     core/block_layout_test.cc
@@ -30,6 +31,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/separation_test.cc
     core/speed_limit_test.cc
     core/step_constraints_test.cc
+    core/target_shift_test.cc
     core/vehicle_teams_test.cc core/vehicle_test.cc core/wall_following_test.cc core/walls_attack_test.cc
     core/station_test.cc
     core/walls_test.cc
@@ -105,6 +107,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     coordinator/departure_test.cc
     coordinator/farewell_test.cc
     coordinator/part_schedule_test.cc
+    coordinator/amending_test.cc
     coordinator/pausing_test.cc
     coordinator/recalling_test.cc
     coordinator/takeover_test.cc

@@ -93,7 +93,7 @@ TEST_F(LiveTeamFrames, ShowAPauseFromItsFirstTickToItsLast) {
   const auto incidents_at = [&](Tick tick, const std::vector<Hold>& holds) {
     const Instant now = kListening + 100ms * tick;
     MissionPart part = test::mission_part(++revision, MissionState::kRunning, test::roster_of(2));
-    part.amendments = pauses(holds);
+    part.amendments = test::pauses(holds);
     test::give(live_team, part, now);
     AgentStatus status = test::status_of(0, test::next_sequence(), tick);
     status.header.tick = tick;

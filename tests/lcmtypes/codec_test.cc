@@ -294,7 +294,7 @@ TEST(Codec, EncodingReusesItsBufferWithoutLeavingAnythingInIt) {
 TEST(Codec, TheFullestMessagesFitOneDatagram) {
   MissionPart part = mission_part();
   part.roster.assign(kMaxRosterEntriesPerMessage, part.roster[0]);
-  part.plan.assign(kMaxPlanBytesPerMessage, std::byte{1});
+  part.plan.assign(kMaxPlanBytesPerMessage - part.amendments.size(), std::byte{1});
   part.reason.assign(kMaxReasonLength, 'r');
   WorldState world = world_state();
   world.vehicle_count = kMaxVehiclesPerState;
@@ -302,7 +302,10 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
   status.host.assign(kMaxHostLength, 'h');
   TeamStatus team = team_status();
   team.host.assign(kMaxHostLength, 'h');
-  for (const Message& message : {Message(part), Message(world), Message(status), Message(team)}) {
+  Amend amendment = amend();
+  amendment.content.assign(kMaxPlanBytesPerMessage, std::byte{1});
+  for (const Message& message : {Message(part), Message(world), Message(status), Message(team),
+                                 Message(amendment)}) {
     EXPECT_LE(encoded(message).size(), kMaxDatagramBytes);
     EXPECT_EQ(verdict(message), "accepted");
   }
