@@ -11,8 +11,8 @@ namespace ergocast {
 namespace {
 
 /// Operators whose parts are collected at once.
-/// Limit (Team): operators whose targets a coordinator collects at once. Beyond it: the parts of the
-/// one that asked first are forgotten; it repeats them.
+/// Limit (Team): operators whose targets a coordinator collects at once. Beyond it: the parts of
+/// the one that asked first are forgotten; it repeats them.
 constexpr std::size_t kMostOperators = 4;
 
 /// Real time: the tick after the notice. It counts from the newest tick that the world can be at.

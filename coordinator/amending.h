@@ -64,8 +64,8 @@ class Amending {
   void replace(Amendments list);
 
   Amendments list_;
-  std::vector<std::byte> bytes_;        // of list_
-  std::vector<Collected> collected_;    // of the operators that asked last
+  std::vector<std::byte> bytes_;         // of list_
+  std::vector<Collected> collected_;     // of the operators that asked last
   std::int64_t stand_by_revision_ = -1;  // lockstep: the tick of wish_ is to be named
   std::optional<Wish> wish_;
 };

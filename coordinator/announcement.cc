@@ -18,10 +18,10 @@ constexpr auto kMissionGap = 100ms;
 /// How many parts a mission has.
 std::size_t part_count(const MissionContent& mission) {
   const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
-  return std::max({std::size_t{1},
-                   ceil_div(mission.plan.size() + mission.amendments.size(),
-                            kMaxPlanBytesPerMessage),
-                   ceil_div(mission.members.roster().size(), kMaxRosterEntriesPerMessage)});
+  return std::max(
+      {std::size_t{1},
+       ceil_div(mission.plan.size() + mission.amendments.size(), kMaxPlanBytesPerMessage),
+       ceil_div(mission.members.roster().size(), kMaxRosterEntriesPerMessage)});
 }
 
 /// The bytes from `first` on, at most `most`, as far as there are any.

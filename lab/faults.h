@@ -79,9 +79,8 @@ struct FaultEvent {
   Kind kind;
   double at_s;  ///< after the start of the mission
   double lasts_s;
-  std::uint64_t
-      who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall: which agent;
-            ///< target: which one
+  std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall:
+                      ///< which agent; target: which one
 };
 
 /// The events of `horizon_s` seconds, by time.

@@ -49,6 +49,7 @@ enum class Invariant : std::uint8_t {
   kWhatIsNotPausedCounts,
   kNobodyMovesWhilePaused,
   kAverageOfWhatIsHeld,
+  kSamplesAreTrue,
   kForecastOfWhatIsKnown,
   kZerothIsOne,
   kHonestMessagesAccepted,
@@ -91,6 +92,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kWhatIsNotPausedCounts, "every tick counts unless paused or at rest"},
         {Invariant::kNobodyMovesWhilePaused, "no vehicle moves while the mission is paused"},
         {Invariant::kAverageOfWhatIsHeld, "c_k = sum S / sum elapsed of what is held"},
+        {Invariant::kSamplesAreTrue,
+         "each sample is f at its place against the target of its tick"},
         {Invariant::kForecastOfWhatIsKnown, "forecast of what is known"},
         {Invariant::kZerothIsOne, "c_00 = 1"},
         {Invariant::kHonestMessagesAccepted, "no honest message is refused"},
@@ -178,7 +181,9 @@ class Invariants {
   /// so far that count; c_k is Σ S / Σ elapsed of what it holds; c_00 = 1. Where its law looks
   /// ahead, ĉ_k follows by the equation of core/law/forecast.h from what has reached it
   /// (lab/shadow.h).
-  void answered(double t_s, const TableView& holder);
+  /// @param x_m  where it was at that tick; nothing: its sample is not checked
+  void answered(double t_s, const TableView& holder,
+                const std::optional<Eigen::Vector3d>& x_m = std::nullopt);
   /// An agent's core has refused `counts` messages, none of them damaged.
   void refused(double t_s, const Author& who, const RefusalCounts& counts);
   /// An agent has ended by itself.
@@ -231,6 +236,7 @@ class Invariants {
   void check(double t_s, const Digest& digest, const TableView& speaker);
   void check_steps(double t_s, const TableView& holder);
   void check_average(double t_s, const TableView& holder);
+  void check_sample(double t_s, const TableView& holder, const Eigen::Vector3d& x_m);
   void check_forecast(double t_s, const TableView& holder);
   std::map<Author, std::vector<Best>> best_of(const std::vector<TableView>& living) const;
   double quality_of(const Author& author) const;

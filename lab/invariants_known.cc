@@ -31,8 +31,10 @@ void Invariants::received(const TableView& listener, const Message& message) {
   shadows_.at(listener.self).receive(mission_, listener, message);
 }
 
-void Invariants::answered(double t_s, const TableView& holder) {
+void Invariants::answered(double t_s, const TableView& holder,
+                          const std::optional<Eigen::Vector3d>& x_m) {
   check_steps(t_s, holder);
+  if (x_m) check_sample(t_s, holder, *x_m);
   const bool looks_ahead =
       mission_.law.anticipation > 0 && holder.foreseen != nullptr && !holder.held;
   if (looks_ahead) shadows_.at(holder.self).answer(mission_, holder);
@@ -41,6 +43,14 @@ void Invariants::answered(double t_s, const TableView& holder) {
   if (holder.answered % kTicksBetweenAverages != 0) return;
   check_average(t_s, holder);
   if (looks_ahead) check_forecast(t_s, holder);
+}
+
+void Invariants::check_sample(double t_s, const TableView& holder, const Eigen::Vector3d& x_m) {
+  const double error_s = shadows_.at(holder.self).sample_error_s(mission_, holder, x_m);
+  const double covered_s = static_cast<double>(last_tick_ + 1) * mission_.timing.dt_s;
+  if (error_s <= kShiftedRange * covered_s * rounding(last_tick_)) return;
+  violate(t_s, Invariant::kSamplesAreTrue, name_of(holder.self),
+          text("differs by ", error_s, " s at tick ", holder.answered));
 }
 
 void Invariants::check_steps(double t_s, const TableView& holder) {

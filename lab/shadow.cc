@@ -236,8 +236,7 @@ bool Shadow::gains_are_possible(const Mission& mission, const TableView& agent,
                                 const Block& block) const {
   if (agent.table->allows_shifts()) return true;
   const Part part = part_of(mission, block);
-  const double most_s =
-      static_cast<double>(part.gained_steps) * mission.timing.dt_s * (1 + kRoom);
+  const double most_s = static_cast<double>(part.gained_steps) * mission.timing.dt_s * (1 + kRoom);
   return std::ranges::all_of(part.gains,
                              [most_s](double gain_s) { return std::abs(gain_s) <= most_s; });
 }
@@ -344,8 +343,7 @@ void Shadow::add_shift(const Mission& mission, int block, Tick tick, double fact
                        std::vector<double>& numbers) const {
   if (targets_.empty()) return;
   const auto shift = block_of(shift_s(mission, tick),
-                              modes(mission)[static_cast<std::size_t>(block)],
-                              block_size(mission));
+                              modes(mission)[static_cast<std::size_t>(block)], block_size(mission));
   for (std::size_t k = 0; k < shift.size(); ++k) numbers[k] += factor * shift[k];
 }
 
@@ -356,6 +354,28 @@ void Shadow::correct_gains(const Mission& mission, int block, Tick tick, Part& p
     add_shift(mission, block, step, 1, part.gains);
     add_shift(mission, block, tick, -1, part.gains);
   }
+}
+
+// ---- the own row ----
+
+double Shadow::sample_error_s(const Mission& mission, const TableView& agent,
+                              const Eigen::Vector3d& x_m) {
+  const Contribution own = agent.table->block(agent.self, 0);
+  const RosterEntry* const entry = entry_of(*agent.roster, agent.self);
+  std::vector<double> sums_s = vector_of(own.sums, block_size(mission));
+  double error_s = 0;
+  if (own.steps == own_steps_ + 1 && own_steps_ > 0 && entry != nullptr) {
+    auto expected_s =
+        block_of(seen_at(mission, entry->kind, x_m), modes(mission)[0], block_size(mission));
+    add_shift(mission, 0, agent.counted, -1, expected_s);
+    for (std::size_t k = 0; k < sums_s.size(); ++k) {
+      const double sample_s = sums_s[k] - own_sums_s_[k];
+      error_s = std::max(error_s, std::abs(sample_s - expected_s[k]));
+    }
+  }
+  own_steps_ = own.steps;
+  own_sums_s_ = std::move(sums_s);
+  return error_s;
 }
 
 // ---- the equation ----
@@ -438,8 +458,8 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
     const RosterEntry* entry = entry_of(*agent.roster, author);
     if (entry != nullptr && is_forgotten(*entry, agent)) continue;
     const bool forecast = entry != nullptr && has_forecast(mission, agent, *entry);
-    team.push_back(parts_of(mission, row, entry,
-                            forecast ? std::optional(agent.counted) : std::nullopt));
+    team.push_back(
+        parts_of(mission, row, entry, forecast ? std::optional(agent.counted) : std::nullopt));
   }
   return team;
 }

@@ -39,6 +39,10 @@ class Shadow {
   /// The agent has answered a tick. Call it for each tick, because each adds places to the rows.
   void answer(const Mission& mission, const TableView& agent);
 
+  /// How far the newest sample of the first block of its own row is from (f(x) − (μ − μ₀)) dt [s];
+  /// 0 if the row has not gained exactly one step since the last call.
+  double sample_error_s(const Mission& mission, const TableView& agent, const Eigen::Vector3d& x_m);
+
   /// ĉ at the tick that the agent has answered.
   Coefficients foreseen(const Mission& mission, const TableView& agent) const;
 
@@ -97,6 +101,8 @@ class Shadow {
   Tick active_from_;
   /// By the number of the amendment: the counted tick from which a target holds, and μ − μ₀.
   std::map<std::int32_t, std::pair<Tick, Coefficients>> targets_;
+  std::int64_t own_steps_ = -1;     // of the own row at the last call of sample_error_s(), …
+  std::vector<double> own_sums_s_;  // … and the sums of its first block
   std::map<Author, Row> rows_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest are dropped
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // for the radio range, of the newest …

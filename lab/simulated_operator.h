@@ -45,7 +45,9 @@ class SimulatedOperator {
   /// When its pause ends; Instant::max(): it wants none.
   Instant next() const { return paused_until_.value_or(Instant::max()); }
   /// Whether it has wanted nothing yet, and wants nothing now.
-  bool idle() const { return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty(); }
+  bool idle() const {
+    return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty();
+  }
   /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
   std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
     std::vector<Amend> sent;

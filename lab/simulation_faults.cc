@@ -95,8 +95,8 @@ void Simulation::cut(const FaultEvent& event, bool join) {
   }
 }
 
-/// A target that no agent reaches: all is at one place, or, where modes are not cosines, between the
-/// plan's target and the uniform one.
+/// A target that no agent reaches: all is at one place, or, where modes are not cosines, between
+/// the plan's target and the uniform one.
 TargetChange Simulation::drawn_target(std::uint64_t word) const {
   RandomStream random(word, 0);
   TargetChange change;

@@ -138,7 +138,7 @@ void Trial::note_answer(NodeId node, const Command& command, const TableView& vi
   if (command.header.tick <= at(node).answered) return;
   at(node).answered = command.header.tick;
   ++figures_.agent_steps;
-  invariants_.answered(t_s(), view);
+  invariants_.answered(t_s(), view, command.position_m);
 }
 
 void Trial::arrives(NodeId node, const Message& message) {

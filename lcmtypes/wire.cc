@@ -41,8 +41,7 @@ std::string bounded(const std::string& text, int limit) {
 }
 
 /// A sum that was read with the same time is written as the same bits.
-void Writer::averages(const BlockSums& sums, double time_s, std::int32_t range,
-                      std::size_t count) {
+void Writer::averages(const BlockSums& sums, double time_s, std::int32_t range, std::size_t count) {
   const double most = units_of(range);
   std::byte* const at = room(count * sizeof(std::int16_t));
   const double scale = time_s > 0 ? most / (range * time_s) : 0;

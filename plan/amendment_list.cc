@@ -20,7 +20,7 @@ constexpr std::uint32_t kMostElements = kMaxModes;
 class ListWriter {
  public:
   template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void value(const T& number) {
     const auto* const at = reinterpret_cast<const std::byte*>(&number);
     bytes_.insert(bytes_.end(), at, at + sizeof number);
@@ -45,7 +45,7 @@ class ListReader {
   bool complete() const { return complete_ && bytes_.empty(); }
 
   template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void value(T& number) {
     complete_ = complete_ && sizeof number <= bytes_.size();
     if (!complete_) return;

@@ -224,8 +224,8 @@ bool within_limits(const Mission& mission) {
   EachWithinLimits each;
   list_fields(each, mission);
   return each.ok && fits(mission.domain) && fit_together(mission.basis, mission.domain) &&
-         is_target(mission.target_coefficients, mission.cosine_target, mission) && fits(mission.basis, mission) &&
-         fits(mission.law) && fits(mission.timing) &&
+         is_target(mission.target_coefficients, mission.cosine_target, mission) &&
+         fits(mission.basis, mission) && fits(mission.law) && fits(mission.timing) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
          is_team(mission) && are_kinds(mission) && bodies_fit(mission) &&

@@ -178,8 +178,8 @@ struct Stop {
   Signature signature{};
 };
 
-/// Asks for an amendment of the mission. Only the coordinator obeys, and only once: a recording names
-/// the number of an amendment that was already made, or an old tick.
+/// Asks for an amendment of the mission. Only the coordinator obeys, and only once: a recording
+/// names the number of an amendment that was already made, or an old tick.
 struct Amend {
   Header header;            ///< header.tick: the newest that the operator knows
   std::int32_t number = 0;  ///< that it will have: Amendments::named

@@ -33,7 +33,8 @@ class MissionFollower {
 
   /// Takes in one part, in any order. True if it completed a newer revision: all its parts have
   /// arrived, or older parts in place of the missing ones give its content_hash. A run has one
-  /// plan: a revision with another plan or with an impossible list of amendments only counts in foreign_plans().
+  /// plan: a revision with another plan or with an impossible list of amendments only counts in
+  /// foreign_plans().
   bool receive(const MissionPart& part);
 
   /// The mission, once a whole plan has arrived and decoded.

@@ -155,7 +155,7 @@ ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
   LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
 # The real `ergocast` with selectable bugs, whose files have the linker's names of the wrapped
 # functions.
-set(bugs checks_can_fail/coverage_bugs.cc checks_can_fail/motion_bugs.cc checks_can_fail/participant_bugs.cc)
+set(bugs checks_can_fail/amendment_bugs.cc checks_can_fail/coverage_bugs.cc checks_can_fail/motion_bugs.cc checks_can_fail/participant_bugs.cc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${bugs})
 set(wrapped)
 foreach(file ${bugs})

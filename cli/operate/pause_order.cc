@@ -54,10 +54,10 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
     return;
   }
   header_.tick = team.tick();
-  out.push_back({Bus::kSwarm, Amend{.header = header_,
-                                          .number = *number_,
-                                          .kind = pauses_ ? AmendmentKind::kPause
-                                                          : AmendmentKind::kResume}});
+  out.push_back(
+      {Bus::kSwarm, Amend{.header = header_,
+                          .number = *number_,
+                          .kind = pauses_ ? AmendmentKind::kPause : AmendmentKind::kResume}});
 }
 
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {

@@ -32,7 +32,9 @@ constexpr int kTurnsBetweenComparisons = 256;
 /// The simulation of a plan, as its recorder writes it.
 struct Repetition {
   Repetition(const Mission& mission, std::vector<Hold> holds)
-      : simulation({.plan = encode_plan(mission), .version = version(), .amendments = only_pauses(std::move(holds))},
+      : simulation({.plan = encode_plan(mission),
+                    .version = version(),
+                    .amendments = only_pauses(std::move(holds))},
                    trajectory, metrics) {}
 
   /// Runs until the first difference or the end of either trajectory.

@@ -20,8 +20,8 @@
 namespace ergocast {
 
 /// Whether an honest agent can have sent these sums and gains: the elapsed time is steps·dt, S_00
-/// is the elapsed time, and neither |S| nor a gain exceeds `range` times its time, all up to rounding
-/// (1e-9 and half an ulp a step).
+/// is the elapsed time, and neither |S| nor a gain exceeds `range` times its time, all up to
+/// rounding (1e-9 and half an ulp a step).
 /// @param range  1, or kShiftedRange once a target has changed
 bool is_possible(const Contribution& theirs, double dt_s, double range = 1);
 

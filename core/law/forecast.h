@@ -99,8 +99,7 @@ class Forecast {
   void add_steps(Tick newest, std::int64_t steps, double each_s, Correction& sum) const;
   void add_correction(const Term& term, const CoverageTable::BlockView& sent, Tick tick,
                       Correction& sum) const;
-  void correct(const Correction& correction, int block, double per_second,
-               double* coverage) const;
+  void correct(const Correction& correction, int block, double per_second, double* coverage) const;
   double weigh(Term& term, double horizon_s, Tick tick) const;
   void point_terms(const CoverageTable& table, int block);
   void point(Term& term, const CoverageTable& table, std::size_t row, int block) const;
@@ -112,7 +111,7 @@ class Forecast {
   std::size_t most_places_;
   std::int64_t revision_ = 0;
   const TargetShift* shift_ = nullptr;  // null: no target has changed
-  std::vector<Tick> rest_from_;  // by number, where any agent has a station
+  std::vector<Tick> rest_from_;         // by number, where any agent has a station
   std::map<AgentId, RowTrack> tracks_;
   std::uint64_t looks_ = 0;        // calls of look_ahead()
   std::vector<Outlook> outlooks_;  // per row of the table

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a new target changes: samples shift, nothing else.
 //
-// From the tick on from which a target μ holds, an agent adds (f(x) − (μ − μ₀)) dt to its row in the
-// place of f(x) dt; μ₀ is the plan's target. So c − μ₀ over all rows is the average of f − μ(t): each
-// moment counts against the target of its own time. Everybody goes on comparing c with μ₀, and rows
-// of any age remain right. docs/law.md has the figures.
+// From the tick on from which a target μ holds, an agent adds (f(x) − (μ − μ₀)) dt to its row in
+// the place of f(x) dt; μ₀ is the plan's target. So c − μ₀ over all rows is the average of f −
+// μ(t): each moment counts against the target of its own time. Everybody goes on comparing c with
+// μ₀, and rows of any age remain right. docs/law.md has the figures.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,8 @@ class TargetShift {
     Tick from;               ///< as numbered among those that count
     AlignedDoubles by_slot;  ///< μ − μ₀
   };
-  /// The most changes that are kept. A list has at most two targets; the older ones serve forecasts.
+  /// The most changes that are kept. A list has at most two targets; the older ones serve
+  /// forecasts.
   static constexpr std::size_t kMostChanges = 6;
 
   explicit TargetShift(const Mission& mission);

@@ -118,8 +118,7 @@ void name_target(Amendments& list, Tick tick, TargetChange change) {
   change.number = list.named;
   name(list, {.kind = AmendmentKind::kTarget, .from = change.from, .hash = target_hash(change)});
   // The second newest holds until the newest one does.
-  if (list.targets.size() > 1)
-    list.targets.erase(list.targets.begin(), list.targets.end() - 1);
+  if (list.targets.size() > 1) list.targets.erase(list.targets.begin(), list.targets.end() - 1);
   list.targets.push_back(std::move(change));
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What has changed in a mission since its plan: pauses, and new targets.
 //
-// The coordinator names each amendment: it gives it the next number, and the world's tick from which
-// it holds. All processes learn of an amendment before its tick, so all change at the same tick. The
-// list of one coordinator only grows.
+// The coordinator names each amendment: it gives it the next number, and the world's tick from
+// which it holds. All processes learn of an amendment before its tick, so all change at the same
+// tick. The list of one coordinator only grows.
 #pragma once
 
 #include <cstddef>
@@ -74,8 +74,8 @@ inline constexpr std::int32_t kMaxAmendments = 1'000'000;
 /// ascend, and each target is one of the mission's basis within limits (is_target()).
 bool are_amendments(const Amendments& list, const Mission& mission);
 
-/// Whether the numbers are a target of `mission`: as many as its basis has modes, finite, |μ| ≤ 1 up
-/// to rounding, and μ_00 = 1; and so in the basis (2), where the mission has one.
+/// Whether the numbers are a target of `mission`: as many as its basis has modes, finite, |μ| ≤ 1
+/// up to rounding, and μ_00 = 1; and so in the basis (2), where the mission has one.
 bool is_target(const Coefficients& target, const Coefficients& cosine, const Mission& mission);
 
 /// The list of a mission that had only these pauses. @pre are_holds(holds)

@@ -62,8 +62,7 @@ TEST(TargetShift, HoldsFromItsTickOnAmongThoseThatCount) {
   EXPECT_EQ(shift.at(19)->number, 0);
   EXPECT_EQ(shift.at(20)->number, 1);
   EXPECT_EQ(shift.at(20)->by_slot[0], 0) << "each sample still counts a step";
-  EXPECT_EQ(shift.at(20)->by_slot[3],
-            list.targets[1].target[3] - mission.target_coefficients[3]);
+  EXPECT_EQ(shift.at(20)->by_slot[3], list.targets[1].target[3] - mission.target_coefficients[3]);
 }
 
 TEST(TargetShift, ForgetsWhatANewerListReplaces) {
@@ -161,8 +160,8 @@ TEST_P(ShiftedForecast, GoesOnWithThePresentShift) {
     for (Tick tick = 0; tick <= known; ++tick) lacks_s += dt_s * shift_at(tick);
     LookAhead look_ahead(mission);
     const double known_s = dt_s * static_cast<double>(11 + known + 1);
-    const double weight_s = look_ahead.weight_s(look_ahead.horizon_s(2, 10), GetParam() ? 1 : 4,
-                                                10 - known, 4);
+    const double weight_s =
+        look_ahead.weight_s(look_ahead.horizon_s(2, 10), GetParam() ? 1 : 4, 10 - known, 4);
     const Coefficients expected =
         plain - (lacks_s + weight_s * shift_at(10)) / (known_s + weight_s);
     EXPECT_LT((shifted - expected).cwiseAbs().maxCoeff(), 1e-13) << change;

@@ -304,8 +304,8 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
   team.host.assign(kMaxHostLength, 'h');
   Amend amendment = amend();
   amendment.content.assign(kMaxPlanBytesPerMessage, std::byte{1});
-  for (const Message& message : {Message(part), Message(world), Message(status), Message(team),
-                                 Message(amendment)}) {
+  for (const Message& message :
+       {Message(part), Message(world), Message(status), Message(team), Message(amendment)}) {
     EXPECT_LE(encoded(message).size(), kMaxDatagramBytes);
     EXPECT_EQ(verdict(message), "accepted");
   }
