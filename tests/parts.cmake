@@ -137,6 +137,7 @@ ergocast_test(NAME runtime_tests LABELS unit
 
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
+    cli/amend_order_test.cc
     cli/control_desk_test.cc
     cli/rate_test.cc
     cli/team_monitor_test.cc
@@ -195,6 +196,7 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/free_domain_test.cc
     scenario/geojson_target_test.cc
     scenario/map_target_test.cc
+    scenario/new_target_test.cc
     scenario/plan_proto_test.cc
     scenario/scenario_to_plan_test.cc
     scenario/polygon_flaw_test.cc

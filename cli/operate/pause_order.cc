@@ -4,7 +4,6 @@
 #include "cli/operate/pause_order.h"
 
 #include <chrono>
-#include <cstdio>
 
 #include "runtime/bus/random_identity.h"
 
@@ -15,12 +14,6 @@ using namespace std::chrono_literals;
 using State = OrderReport::State;
 
 constexpr auto kAskPeriod = 100ms;
-
-std::string in_seconds(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, ", in %.1f s", seconds);
-  return text;
-}
 
 }  // namespace
 
@@ -43,16 +36,12 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   was_named_ = was_named_ || (number_ && is_named(team));
   if (was_named_ || now < next_) return;
   next_ = now + kAskPeriod;
-  ++header_.sequence;
-  header_.run = team.run();
   if (!number_) {
-    // The coordinator sends MISSION once a second; an agent repeats it at once.
-    Hello question;
-    question.header = header_;
-    question.header.tick = -1;
-    out.push_back({Bus::kSwarm, question});
+    out.push_back(mission_question(team, header_));
     return;
   }
+  ++header_.sequence;
+  header_.run = team.run();
   header_.tick = team.tick();
   out.push_back(
       {Bus::kSwarm, Amend{.header = header_,
@@ -98,13 +87,10 @@ OrderReport PauseOrder::resumed(const MonitoredRun& team) const {
 }
 
 std::string PauseOrder::why_not(const MonitoredRun& team) const {
-  if (!team.coordinator_seen())
-    return "no coordinator answers, and only a coordinator names the tick: start one with "
-           "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
-  if (team.holds().size() == kMaxHolds && pauses_)
+  if (team.coordinator_seen() && team.holds().size() == kMaxHolds && pauses_)
     return "a mission can be paused " + std::to_string(kMaxHolds) +
            " times, and this one has been: end it with ergocast stop";
-  return "the coordinator names no tick: it may have another key, or receive no world";
+  return why_no_tick(team);
 }
 
 }  // namespace ergocast::cli

@@ -4,6 +4,7 @@
 #include "cli/record/simulated_record.h"
 
 #include <chrono>
+#include <utility>
 
 #include "logger/summary.h"
 #include "plan/plan.h"
@@ -35,10 +36,12 @@ nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scen
 
 Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
                                       const std::function<void(lab::Simulation&)>& look,
-                                      SimulatedEvents* events) {
-  lab::Simulation simulation(
-      {.plan = encode_plan(scenario.mission()), .version = version(), .host = host_name()},
-      record.trajectory(), record.metrics(), events);
+                                      SimulatedEvents* events, Amendments amendments) {
+  lab::Simulation simulation({.plan = encode_plan(scenario.mission()),
+                              .version = version(),
+                              .host = host_name(),
+                              .amendments = std::move(amendments)},
+                             record.trajectory(), record.metrics(), events);
   const std::string started = wall_clock_text();
   const auto start = std::chrono::steady_clock::now();
   for (int turns = 1; simulation.step() && record.good(); ++turns) {
