@@ -129,6 +129,7 @@ target_compile_definitions(process_tests PRIVATE
 # The page in Chromium.
 ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
   SOURCES
+    page/amendment_test.cc
     page/layout_test.cc
     page/map_test.cc
     page/control_test.cc
@@ -139,7 +140,7 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     support/browser.cc
     support/http.cc
     support/tls.cc
-  LIBS ergocast::core OpenSSL::SSL)
+  LIBS ergocast_lab ergocast::plan ergocast::report ergocast::target OpenSSL::SSL)
 
 # A register of the findings of each check, as the programs report them.
 ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS

@@ -12,11 +12,9 @@ namespace ergocast {
 
 void AmendmentHistory::note(const Amendments& list) {
   for (const TargetChange& change : list.targets) keep(change);
-  if (list.recent.empty()) return;
+  const std::int32_t first = list.recent.empty() ? list.named : list.recent.front().number;
   std::vector<Amendment> all = amendments_;
-  std::erase_if(all, [first = list.recent.front().number](const Amendment& one) {
-    return one.number >= first;
-  });
+  std::erase_if(all, [first](const Amendment& one) { return one.number >= first; });
   all.insert(all.end(), list.recent.begin(), list.recent.end());
   if (all.size() > kMost) all.erase(all.begin(), all.end() - kMost);
   if (all == amendments_) return;
