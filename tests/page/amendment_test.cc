@@ -6,15 +6,19 @@
 #include "logger/run_data.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "plan/amendment_list.h"
 #include "plan/plan.h"
 #include "report/page.h"
 #include "report/report.h"
 #include "report/target_density.h"
 #include "target/target.h"
 #include "tests/page/page_in_a_browser.h"
+#include "tests/process/support/stranger.h"
 
 namespace ergocast::test {
 namespace {
+
+constexpr const char* kHome = "\uE011";
 
 class AmendedMissionInABrowser : public PageInABrowser {
  protected:
@@ -47,14 +51,14 @@ class AmendedMissionInABrowser : public PageInABrowser {
     show_report(fragment);
   }
 
-  /// How far the map's colour at a place is from that at the domain's corner, where no target is.
+  /// How far the map's colour at a place is from that at the north edge, where no target is.
   double strength_at(double x_m, double y_m) {
     const std::string at = std::to_string(x_m) + ", " + std::to_string(y_m);
     return js(
         "const { view } = ergocast, g = document.getElementById('shading').getContext('2d');"
         "const pixel = (x, y) => [...g.getImageData(Math.round(view.px(x) * devicePixelRatio),"
         "  Math.round(view.py(y) * devicePixelRatio), 1, 1).data];"
-        "const empty = pixel(1990, 1000);"
+        "const empty = pixel(1000, 1990);"
         "return Math.hypot(...pixel(" +
         at + ").map((v, i) => v - empty[i]))");
   }
@@ -159,6 +163,67 @@ TEST_F(AmendedMissionInABrowser, SaysThatItLacksATarget) {
   EXPECT_EQ(js("return ergocast.S.run.knowsTargets"), false);
   EXPECT_EQ(strength_at(1000, 1000), 0);
   expect_no_errors();
+}
+
+/// The parts of AMEND that ask for a target.
+std::vector<Amend> asking_for(const TargetChange& target, RunId run, Tick tick) {
+  const auto bytes = encode_target(target);
+  const std::span content(bytes);
+  constexpr std::size_t kSize = kMaxPlanBytesPerMessage;
+  std::vector<Amend> parts((content.size() - 1) / kSize + 1);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto share = content.subspan(i * kSize, std::min(kSize, content.size() - i * kSize));
+    parts[i] = {.header = {run, kOperator, 77, 0, tick},
+                .number = 0,
+                .kind = AmendmentKind::kTarget,
+                .part = static_cast<std::int32_t>(i),
+                .parts = static_cast<std::int32_t>(parts.size()),
+                .content = {share.begin(), share.end()}};
+  }
+  return parts;
+}
+
+TEST_F(AmendedMissionInABrowser, ShowsANewTargetOfARunningTeam) {
+  Child mission = launch_endless(scenario("pace: REALTIME realtime_factor: 10"),
+                                 {"--watch", "--port", "8817", "--lcm-url", kUrl});
+  browser_->open("http://127.0.0.1:8817/");
+  ASSERT_TRUE(browser_->becomes("return window.ergocast?.S.facts?.state?.world_tick > 50"));
+  const TargetChange target = gaussian(read_mission(out()).value(), 1000, 1000);
+  const RunId run = std::stoull(js("return ergocast.S.facts.run").get<std::string>(), nullptr, 16);
+  Stranger sender(kUrl);
+  EXPECT_TRUE(eventually([&] { return js("return ergocast.S.run.amendments.length") == 1; },
+                         [&] {
+                           const Tick tick = js("return ergocast.S.facts.state.world_tick");
+                           for (const Amend& part : asking_for(target, run, tick))
+                             sender.send(Bus::kSwarm, part);
+                         }));
+  EXPECT_TRUE(browser_->becomes("return !document.getElementById('targetText').hidden"));
+  EXPECT_TRUE(text("targetText").starts_with("amendment 0: target since t = "))
+      << text("targetText");
+  EXPECT_TRUE(
+      browser_->becomes("return [...document.querySelectorAll('#strip button')].some(mark => "
+                        "mark.title.startsWith('amendment 0: new target at '))"));
+  EXPECT_EQ(js("return /^new target at/.test(document.getElementById('spoken').textContent)"),
+            true);
+  // The page adds up the positions, the agents report the same sum.
+  EXPECT_TRUE(browser_->becomes(
+      "const { run, facts } = ergocast.S; return run.end > run.targets[1].from * run.mission.dt_s "
+      "+ "
+      "60 && Math.abs(run.metricAt(run.end) / facts.state.ergodic_metric - 1) < 0.05"));
+  screenshot("amended_live");
+  // A browser that connects later gets the same.
+  browser_->open("about:blank");
+  browser_->open("http://127.0.0.1:8817/");
+  EXPECT_TRUE(browser_->becomes(
+      "return window.ergocast?.S.run?.targets.length === 2 && ergocast.S.run.knowsTargets"));
+  browser_->press(kHome);
+  wait_for_frame();
+  EXPECT_EQ(js("return document.getElementById('targetText').hidden"), true);
+  expect_no_errors();
+  mission.send(SIGINT);
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
 }
 
 }  // namespace
