@@ -140,7 +140,7 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     support/browser.cc
     support/http.cc
     support/tls.cc
-  LIBS ergocast_lab ergocast::plan ergocast::report ergocast::target OpenSSL::SSL)
+  LIBS ergocast_lab ergocast_logger ergocast::plan ergocast::target OpenSSL::SSL)
 
 # A register of the findings of each check, as the programs report them.
 ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS

@@ -3,14 +3,11 @@
 // moment against the target of its time.
 #include "core/mission/amendments.h"
 #include "lab/simulation.h"
+#include "logger/amendments_file.h"
 #include "logger/run_data.h"
 #include "logger/run_record.h"
-#include "logger/summary.h"
 #include "plan/amendment_list.h"
 #include "plan/plan.h"
-#include "report/page.h"
-#include "report/report.h"
-#include "report/target_density.h"
 #include "target/target.h"
 #include "tests/page/page_in_a_browser.h"
 #include "tests/process/support/stranger.h"
@@ -45,9 +42,10 @@ class AmendedMissionInABrowser : public PageInABrowser {
       lab::Simulation({.plan = encode_plan(mission), .amendments = amendments}, trajectory, metrics)
           .run();
     }
-    std::ofstream(out() / kReportFile)
-        << report_page(read_run(out()).value(), mission, amendments, read_summary(out()).value(),
-                       read_target_density(out() / kTargetDensityFile).value(), nullptr);
+    HeardAmendments heard;
+    heard.note(amendments);
+    std::ofstream(out() / kAmendmentsFile) << amendments_text(heard, mission.timing.dt_s);
+    ASSERT_EQ(ergocast({"report", out()}), 0) << output();
     show_report(fragment);
   }
 
