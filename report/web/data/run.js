@@ -46,7 +46,7 @@ export class Run {
     this.summary = null;
     this.amendments = []; // {number, kind, from: tick, hash}, ascending, as far as the page knows them
     this.received = new Map(); // coefficients of new targets, by hash
-    this.targets = [plannedTarget(mission, mission.modes, this.size)]; // ascending by row
+    this.targets = [plannedTarget(mission)]; // ascending by row
     this.coverage = new Coverage(this);
   }
   get end() {
@@ -87,13 +87,7 @@ export class Run {
   get marks() {
     const marks = this.targets
       .slice(1)
-      .map(({ number, from }) => ({
-        t: from * this.mission.dt_s,
-        kind: 'target',
-        sign: '◎',
-        text: 'new target',
-        number,
-      }))
+      .map(({ from }) => ({ t: from * this.mission.dt_s, kind: 'target', sign: '◎', text: 'new target' }))
       .filter(({ t }) => t <= this.end + TOLERANCE_S);
     return marks.length ? [...this.incidents, ...marks].sort((a, b) => a.t - b.t) : this.incidents;
   }

@@ -20,15 +20,16 @@ export class Target {
   }
 }
 
-export const plannedTarget = (mission, [M, N], size) =>
-  new Target({
+export function plannedTarget({ target, density, modes: [M, N], size_m: size }) {
+  return new Target({
     number: null,
     from: 0,
     row: 0,
-    coefficients: mission.target,
+    coefficients: target,
     known: true,
-    density: () => decodeDensity(mission.density) ?? targetOfModes(mission.target, M, N, size),
+    density: () => decodeDensity(density) ?? targetOfModes(target, M, N, size),
   });
+}
 
 // The target of an amendment. Without coefficients it is one that the page never received: all zero.
 export function amendedTarget({ number, from, hash }, coefficients, run) {

@@ -9,7 +9,7 @@ import { redraw } from './screen.js';
 import { $, put } from '../text.js';
 import { meaningOf } from './words.js';
 
-let told = -1; // the target of which the legend was written
+let written = -1; // the target for which the legend was written
 
 // The end of the scale: it is that of the target that holds.
 function fullAt(row) {
@@ -29,7 +29,7 @@ function noteTarget({ number, from, known }) {
 // Follows the target that holds at the chosen time.
 export function followTarget() {
   const { id } = S.run.targetAt(S.run.rowAt(S.t));
-  if (id !== told) showLegend();
+  if (id !== written) showLegend();
 }
 
 export function showLegend() {
@@ -41,7 +41,7 @@ export function showLegend() {
   put($('scaleHigh'), difference ? `+${times(full / 2)} too much` : `≥ ${times(full)} average`);
   if (S.run) {
     const target = S.run.targetAt(row);
-    told = target.id;
+    written = target.id;
     noteTarget(target);
   }
   const ramp = $('ramp'),
