@@ -2,9 +2,12 @@
 // Makes the data of a run's page as JSON, and report.html with these data.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 
+#include "core/mission/amendments.h"
 #include "core/mission/mission.h"
 #include "logger/run_data.h"
 #include "report/target_density.h"
@@ -24,12 +27,22 @@ namespace ergocast {
 /// @param density  in multiples of the uniform density; if empty, the page draws the sum of the μ_k
 nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
 
+/// [{"number", "kind": "target", "from": the world's tick, "hash": of the target, in hexadecimal},
+/// …]
+nlohmann::ordered_json page_amendments(std::span<const Amendment> list);
+/// The name of a target in "targets": its hash in hexadecimal.
+std::string page_target_name(std::uint64_t hash);
+/// The coefficients with which the page draws a target, with a free domain those of cosines.
+nlohmann::ordered_json page_target(const TargetChange& change);
+
 /// Whether any agent's vehicle has a heading, so that the page gets them with the positions.
 bool any_that_turn(const Mission& mission);
 
-/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from"}: the record's
-/// data for the page. "home_from", {"0": tick, …}, is present only without `team`: the ticks at
-/// which agents with a station went home by the rule of core/motion/way_home.h.
+/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from", "amendments",
+/// "targets"}: the record's data for the page. "amendments" and "targets", {page_target_name():
+/// page_target(), …}, are present only if there are any. "home_from", {"0": tick, …}, is present
+/// only without `team`: the ticks at which agents with a station went home by the rule of
+/// core/motion/way_home.h.
 /// @param team  the agents' states over time (cli/team/recorded_team.h), or null
 nlohmann::ordered_json page_record(const RunData& run, const Mission& mission,
                                    const nlohmann::ordered_json& summary, const Field& density,
