@@ -62,11 +62,11 @@ std::optional<MissionOver> MissionRun::evicted(const Participant& me, Tick tick)
 /// Prepares here what depends on roster and amendments, because a control step must not allocate.
 void MissionRun::note_roster(const Participant& me) {
   const MissionFollower& known = me.follower();
-  motion_.bodies().note_roster(known.roster());
   const RosterEntry* const own = known.entry_of(me.incarnation());
   if (own != nullptr && own->recalled()) motion_.prepare_recall(me.mission());
   shift_.note(known.amendments());
   if (shift_.any()) exchange_.allow_shifts();
+  motion_.note_roster(known.roster());
   if (!known.holds().empty()) held_roster_ = in_counted_ticks(known.roster(), known.holds());
 }
 

@@ -91,7 +91,6 @@ void Invariants::check(double t_s, const WorldState& world) {
   last_tick_ = std::max(last_tick_, world.header.tick);
   if (keeps_distance(mission_)) check_distances(t_s, world);
   check_paused(t_s, world);
-  check_home(t_s, world);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     places_m_[vehicle.id] = vehicle.position_m;
     if (!mission_.walls.empty()) check_wall(t_s, vehicle);
@@ -99,6 +98,7 @@ void Invariants::check(double t_s, const WorldState& world) {
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
   }
+  check_home(t_s, world);
 }
 
 /// Uses the true places, once all places of a tick are known. Starts may be exactly at the least

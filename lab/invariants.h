@@ -160,9 +160,9 @@ class Invariants {
   /// from each wall as the mission requires; bodies are as far apart as required, in each tick; |u|
   /// ≤ u_max, or |v| ≤ the speed limit where a distance is kept or on the way home; in lockstep
   /// agents with a station are there from the reserve before the end on, or where others may be in
-  /// the way, at the last tick; |S| ≤ S_00 = steps · dt; while the mission is paused no body moves
-  /// once it has braked; a digest matches what its sender holds; each entry of a received digest
-  /// gets at most one answer.
+  /// the way, at the last tick, as near as vehicles that stand for good let them; |S| ≤ S_00 =
+  /// steps · dt; while the mission is paused no body moves once it has braked; a digest matches
+  /// what its sender holds; each entry of a received digest gets at most one answer.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has received a digest.
@@ -249,6 +249,7 @@ class Invariants {
   void note_positions(double t_s, const WorldState& world);
   void check_wall(double t_s, const Vehicle& vehicle);
   void check_home(double t_s, const WorldState& world);
+  double nearest_to_station_m(const Vehicle& vehicle) const;
   void check_recalled_home(double t_s, const TableView& holder);
   bool recalled_in_truth(const TableView& holder) const;
   void check_closed_numbers(double t_s);

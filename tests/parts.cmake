@@ -18,6 +18,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/control_in_space_test.cc
     core/control_test.cc
     core/coverage_table_test.cc
+    core/detour_test.cc
     core/forecast_order_test.cc
     core/forecast_test.cc
     core/geometry_test.cc
