@@ -9,9 +9,9 @@ namespace ergocast {
 namespace {
 
 /// The share of a disc that rounding may take.
-constexpr double kRounded = 1e-9;
+constexpr double kRoundedShare = 1e-9;
 /// An agent gets hardly further if it moves less than this share of its undisturbed way.
-constexpr double kHeldUpShare = 0.2;
+constexpr double kHardlyFurtherShare = 0.2;
 
 double across(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -28,9 +28,9 @@ const Detour::Disc* Detour::in_the_way(const Eigen::Vector2d& x_m, const Eigen::
   const double far_m = norm_of(way_m);
   for (const Disc& disc : discs_) {
     const Eigen::Vector2d to_m = disc.center_m - x_m;
-    const double kept_m = disc.kept_m * (1 - kRounded), ahead_m = direction.dot(to_m);
+    const double kept_m = disc.kept_m * (1 - kRoundedShare), ahead_m = direction.dot(to_m);
     if (norm_of(to_m - way_m) < disc.kept_m) continue;
-    if (ahead_m <= kRounded * norm_of(to_m)) continue;
+    if (ahead_m <= kRoundedShare * norm_of(to_m)) continue;
     if (straight ? ahead_m >= far_m : norm_of(to_m) - disc.kept_m >= far_m) continue;
     if (std::abs(across(direction, to_m)) < kept_m) return &disc;
   }
@@ -72,7 +72,7 @@ Eigen::Vector2d Detour::round(const Eigen::Vector2d& x_m, const Eigen::Vector2d&
   }
   if (ticks_ == patience_ticks_) {
     const double free_m = static_cast<double>(ticks_) * step_m_;
-    if (norm_of(x_m - from_m_) < kHeldUpShare * free_m) side_ = -side_;
+    if (norm_of(x_m - from_m_) < kHardlyFurtherShare * free_m) side_ = -side_;
     from_m_ = x_m;
     ticks_ = 0;
   }
