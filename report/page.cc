@@ -247,7 +247,7 @@ std::optional<Tick> home_from(const RunData& run, const Mission& mission, AgentI
                               const Track& track) {
   WayHome way(mission, id);
   const auto sends_home = [&](const TrackPoint& at) {
-    return !is_held(run.holds, at.tick) && way.begun(counted_ticks(run.holds, at.tick), at.x_m);
+    return !is_held(run.holds(), at.tick) && way.begun(counted_ticks(run.holds(), at.tick), at.x_m);
   };
   const auto first = std::ranges::find_if(track, sends_home);
   return first == track.end() ? std::nullopt : std::optional(first->tick);

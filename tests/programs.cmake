@@ -67,6 +67,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/commands/bad_input_test.cc
     process/bus_reader_test.cc
     process/by_hand_test.cc
+    process/changed_target_test.cc
     process/command_replay_test.cc
     process/datagram_filter_test.cc
     process/commands/deploy_test.cc

@@ -13,11 +13,14 @@
 #include "cli/record/trajectory_comparison.h"
 #include "cli/report_error.h"
 #include "core/base/ids.h"
+#include "core/mission/amendments.h"
 #include "lab/simulation.h"
+#include "logger/amendments_file.h"
 #include "logger/recorder.h"
 #include "logger/run_data.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "plan/amendment_list.h"
 #include "plan/plan.h"
 #include "runtime/process/program_options.h"
 
@@ -31,8 +34,10 @@ constexpr int kTurnsBetweenComparisons = 256;
 
 /// The simulation of a plan, as its recorder writes it.
 struct Repetition {
-  Repetition(const Mission& mission, std::vector<Hold> holds)
-      : simulation({.plan = encode_plan(mission), .version = version(), .amendments = only_pauses(std::move(holds))},
+  Repetition(const Mission& mission, Amendments amendments)
+      : simulation({.plan = encode_plan(mission),
+                    .version = version(),
+                    .amendments = std::move(amendments)},
                    trajectory, metrics) {}
 
   /// Runs until the first difference or the end of either trajectory.
@@ -48,6 +53,20 @@ struct Repetition {
   std::ostringstream trajectory, metrics;
   lab::Simulation simulation;
 };
+
+/// Why a simulation cannot be given the amendments from its beginning; nothing if it can.
+std::optional<std::string> why_not_amended(const fs::path& run_dir, const Mission& mission,
+                                           const Json& summary, const HeardAmendments& heard) {
+  if (auto problem = missing_target(run_dir, summary, heard)) return problem;
+  const Amendments list = heard.list();
+  if (!are_amendments(list, mission)) return std::string(kAmendmentsFile) + " is damaged";
+  constexpr std::size_t kMost = std::size_t{kMaxMissionParts} * kMaxPlanBytesPerMessage;
+  const std::size_t bytes = encode_plan(mission).size() + encode_amendments(list).size();
+  if (bytes <= kMost) return std::nullopt;
+  return "its " + std::to_string(list.targets.size()) + " targets have " + std::to_string(bytes) +
+         " bytes with the plan, and a simulation that knows them from its beginning has room for " +
+         std::to_string(kMost);
+}
 
 /// A recorder that received only the recorded rows, and the tables that it writes.
 struct Observer {
@@ -172,7 +191,8 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
 
 /// Compares everything else that follows from the compared trajectory.
 std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Mission& mission,
-                                             RunData rows, const Repetition& repetition,
+                                             RunData rows, const HeardAmendments& amendments,
+                                             const Repetition& repetition,
                                              const TrajectoryComparison& comparison,
                                              const Json& summary) {
   const Recorder& simulated = repetition.simulation.recorder();
@@ -181,6 +201,7 @@ std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Miss
   const Observer observer(std::move(rows), simulated.follower());
   const Expectation expectation{.recorder = whole ? simulated : observer.recorder,
                                 .metrics = (whole ? repetition.metrics : observer.metrics).str(),
+                                .amendments = amendments,
                                 .simulation = is_simulated(summary, simulated),
                                 .whole = whole,
                                 .complete = complete,
@@ -223,7 +244,11 @@ int verify(const fs::path& run_dir) {
   auto read = read_summary(run_dir);
   if (!read) return report_error(kExitBadInput, read.error());
   Json& summary = *read;
-  Repetition repetition(*mission, recorded_holds(run_dir, summary));
+  auto amendments = recorded_amendments(run_dir, summary, *mission);
+  if (!amendments) return report_error(kExitBadInput, amendments.error());
+  if (const auto reason = why_not_amended(run_dir, *mission, summary, *amendments))
+    return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + *reason);
+  Repetition repetition(*mission, amendments->list());
   if (!summary.is_object()) {
     print_message(run_dir.string() + ": no " + kSummaryFile +
                   ", so restarts are unknown; comparing anyway");
@@ -248,8 +273,8 @@ int verify(const fs::path& run_dir) {
   files.push_back({kTrajectoryFile, std::to_string(comparison.rows()) + " rows", "", ""});
   auto rows = read_tracks(run_dir);
   if (!rows) return report_difference(run_dir, rows.error() + '\n', summary);
-  auto rest =
-      compare_the_rest(run_dir, *mission, *std::move(rows), repetition, comparison, summary);
+  auto rest = compare_the_rest(run_dir, *mission, *std::move(rows), *amendments, repetition,
+                               comparison, summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, files);
 }

@@ -42,6 +42,8 @@ struct TargetChange {
   Coefficients target;      ///< μ in the mission's basis
   Coefficients cosine;      ///< with Basis::free_domain: μ in the basis (2), else empty
 
+  /// μ in the basis (2), in any mission.
+  const Coefficients& in_cosines() const { return cosine.size() > 0 ? cosine : target; }
   bool operator==(const TargetChange& other) const;
 };
 
