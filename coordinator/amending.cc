@@ -32,7 +32,15 @@ void Amending::replace(Amendments list) {
   bytes_ = encode_amendments(list_);
 }
 
-void Amending::plan(Amendments list) { replace(std::move(list)); }
+void Amending::plan(Amendments list) {
+  constexpr std::ptrdiff_t kListed = 2;
+  const auto& all = list.targets;
+  if (std::ssize(all) > kListed) {
+    planned_.assign(all.begin() + kListed, all.end());
+    list.targets.resize(kListed);
+  }
+  replace(std::move(list));
+}
 
 void Amending::adopt(const Amendments& known) {
   if (known.named > list_.named) replace(known);
@@ -41,7 +49,7 @@ void Amending::adopt(const Amendments& known) {
 /// Whether the next amendment may be of this kind and number.
 bool Amending::may_name(const Amend& amend, const TickWatch& ticks) const {
   if (stand_by_revision_ >= 0 || amend.number != list_.named) return false;
-  if (list_.named >= kMaxAmendments) return false;
+  if (list_.named >= kMaxAmendments || !planned_.empty()) return false;
   if (amend.kind == AmendmentKind::kPause)
     return !is_open(list_.holds) && list_.holds.size() < kMaxHolds;
   if (amend.kind == AmendmentKind::kResume) return is_open(list_.holds);
@@ -87,14 +95,34 @@ void Amending::obey(const Amend& amend, const Mission& mission, const TickWatch&
     return;
   }
   wish_ = std::move(wish);
+  stand_by(announcement);
+}
+
+void Amending::stand_by(Announcement& announcement) {
   announcement.change();
   stand_by_revision_ = announcement.revision();
 }
 
 void Amending::note_world(const TickWatch& ticks, Announcement& announcement) {
-  if (!wish_ || ticks.world_revision() < stand_by_revision_) return;
+  if (stand_by_revision_ < 0) {
+    const bool last_holds = !planned_.empty() && list_.targets.back().from <= ticks.newest();
+    if (last_holds) stand_by(announcement);
+    return;
+  }
+  if (ticks.world_revision() < stand_by_revision_) return;
+  if (!wish_) return list_next(announcement);
   // The world goes on once it knows the named tick. No agent answers the next tick before that.
   name(ticks.tick() + 2, *std::exchange(wish_, std::nullopt), announcement);
+}
+
+/// Lists the next planned target in the place of one that holds no longer.
+void Amending::list_next(Announcement& announcement) {
+  stand_by_revision_ = -1;
+  list_.targets.erase(list_.targets.begin());
+  list_.targets.push_back(std::move(planned_.front()));
+  planned_.pop_front();
+  bytes_ = encode_amendments(list_);
+  announcement.change();
 }
 
 void Amending::name(Tick tick, Wish wish, Announcement& announcement) {

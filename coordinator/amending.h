@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -29,7 +30,9 @@ class Amending {
   /// See MissionPart.
   std::int64_t stand_by_revision() const { return stand_by_revision_; }
 
-  /// The amendments that are known from the beginning. @pre are_amendments(list)
+  /// The amendments that are known from the beginning. In lockstep there may be any number of
+  /// targets: the list has two at a time, as if an operator had sent each once the last one holds.
+  /// @pre are_amendments(list)
   void plan(Amendments list);
   /// Takes in the list of another coordinator, if it has named more amendments than we know. Agents
   /// may have gone by them. @pre are_amendments(known)
@@ -41,7 +44,7 @@ class Amending {
   void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks,
             const SignsOfLife& signs, Announcement& announcement);
 
-  /// Lockstep: names a tick if the world stands by.
+  /// Lockstep: names a tick, or lists the next planned target, if the world stands by.
   void note_world(const TickWatch& ticks, Announcement& announcement);
 
  private:
@@ -60,7 +63,9 @@ class Amending {
 
   bool may_name(const Amend& amend, const TickWatch& ticks) const;
   std::optional<std::vector<std::byte>> completed(const Amend& amend);
+  void stand_by(Announcement& announcement);
   void name(Tick tick, Wish wish, Announcement& announcement);
+  void list_next(Announcement& announcement);
   void replace(Amendments list);
 
   Amendments list_;
@@ -68,6 +73,7 @@ class Amending {
   std::vector<Collected> collected_;     // of the operators that asked last
   std::int64_t stand_by_revision_ = -1;  // lockstep: the tick of wish_ is to be named
   std::optional<Wish> wish_;
+  std::deque<TargetChange> planned_;  // the targets that the list does not have yet
 };
 
 }  // namespace ergocast

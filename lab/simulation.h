@@ -43,7 +43,7 @@ struct SimulationOptions {
       kSubscriptions;  ///< without a subscription a process receives nothing; tests remove some
   std::string host = "laboratory";
   PacingClock::duration latency{};  ///< of a message without faults
-  Amendments amendments{};          ///< known from the beginning; are_amendments()
+  Amendments amendments{};          ///< known from the beginning; see Amending::plan()
   PhysicsMaker physics{};           ///< what moves the bodies of the world; sim/physics.h
   /// For tests: whether a message that `to` subscribes to is dropped. Healing does not end the
   /// drops.

@@ -37,9 +37,12 @@ void HeardAmendments::compare(const Amendments& list) {
 
 /// Adds an amendment that is not known. Others of its number are then void.
 void HeardAmendments::add(const Amendment& amendment) {
-  const auto [begin, end] = std::ranges::equal_range(
-      all_, amendment.number, {}, [](const HeardAmendment& one) { return one.amendment.number; });
-  for (auto& one : std::ranges::subrange(begin, end)) one.is_void = one.amendment != amendment;
+  const auto precedes = [](const HeardAmendment& one, const HeardAmendment& other) {
+    return one.amendment.number < other.amendment.number;
+  };
+  const auto [begin, end] =
+      std::equal_range(all_.begin(), all_.end(), HeardAmendment{amendment}, precedes);
+  std::for_each(begin, end, [&](HeardAmendment& one) { one.is_void = one.amendment != amendment; });
   const bool known = std::any_of(begin, end, [](const auto& one) { return !one.is_void; });
   if (!known) all_.insert(end, HeardAmendment{amendment});
 }

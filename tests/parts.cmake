@@ -259,5 +259,6 @@ ergocast_test(NAME lab_tests LABELS lab
     lab/large_team_test.cc
     lab/message_loss_test.cc
     lab/pause_test.cc
+    lab/planned_targets_test.cc
     lab/recall_test.cc
   LIBS ergocast_lab ergocast::scenario)

@@ -403,10 +403,13 @@ TEST_F(ChangedTarget, AResumedRecordCountsItsRowsAgainstTheirTargetsAgain) {
   std::ofstream(own.path() / "metrics.csv") << std::string(kMetricsHeader) << '\n';
   std::ofstream(own.path() / "amendments.json")
       << amendments_text(lived.recorder.amendments(), 0.1);
-  Record resumed(mission, read_run(own.path(), mission).value());
-  give(resumed.recorder, amended(1, lists[2]), at(0s));
-  EXPECT_EQ(resumed.metrics_rows(), lived.metrics_rows());
-  const auto &again = resumed.recorder.facts().targets, &before = lived.recorder.facts().targets;
+  std::ostringstream trajectory, metrics;
+  announce(mission);
+  Recorder resumed(kRun, kLoggerLife, trajectory, metrics);
+  resumed.resume(read_run(own.path(), mission).value());
+  give(resumed, amended(1, lists[2]), at(0s));
+  EXPECT_EQ(rows_of(metrics.str()), lived.metrics_rows());
+  const auto &again = resumed.facts().targets, &before = lived.recorder.facts().targets;
   ASSERT_EQ(again.size(), before.size());
   for (std::size_t i = 0; i < again.size(); ++i)
     EXPECT_EQ(again[i].ergodic_metric, before[i].ergodic_metric) << i;
@@ -414,7 +417,6 @@ TEST_F(ChangedTarget, AResumedRecordCountsItsRowsAgainstTheirTargetsAgain) {
 
 TEST(ChangedTargetInAFreeDomain, CountsInBothBases) {
   Mission mission = small_mission(2);
-  mission.walls = {{{500, 500}, {700, 500}, {700, 900}, {500, 900}}};
   mission.cosine_target = mission.target_coefficients;
   mission.basis.free_domain = true;
   mission.basis.table_hash = table_of(mission).value()->hash;
