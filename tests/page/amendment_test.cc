@@ -15,7 +15,7 @@
 namespace ergocast::test {
 namespace {
 
-constexpr const char* kHome = "\uE011";
+constexpr const char* kHomeKey = "\uE011";
 
 class AmendedMissionInABrowser : public PageInABrowser {
  protected:
@@ -23,7 +23,9 @@ class AmendedMissionInABrowser : public PageInABrowser {
   static TargetChange gaussian(const Mission& mission, double x_m, double y_m) {
     const TargetDensity target{
         {plane_gaussian(1, {x_m, y_m}, Eigen::Matrix2d::Identity() * 150 * 150)}};
-    return {.target = target_coefficients(target, mission.domain, mission.basis).values};
+    TargetChange change;
+    change.target = target_coefficients(target, mission.domain, mission.basis).values;
+    return change;
   }
 
   /// A minute in which the target changes after 20 s to the domain's middle, and after 40 s to its
@@ -214,7 +216,7 @@ TEST_F(AmendedMissionInABrowser, ShowsANewTargetOfARunningTeam) {
   browser_->open("http://127.0.0.1:8817/");
   EXPECT_TRUE(browser_->becomes(
       "return window.ergocast?.S.run?.targets.length === 2 && ergocast.S.run.knowsTargets"));
-  browser_->press(kHome);
+  browser_->press(kHomeKey);
   wait_for_frame();
   EXPECT_EQ(js("return document.getElementById('targetText').hidden"), true);
   expect_no_errors();
