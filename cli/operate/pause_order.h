@@ -30,7 +30,7 @@ class PauseOrder final : public Order {
   Header header_;
   Instant since_, next_{};
   std::optional<std::int32_t> number_;  // of the next amendment when the mission was first known
-  bool obsolete_ = false;                // the mission was already in the wanted state
+  bool obsolete_ = false;               // the mission was already in the wanted state
   bool was_named_ = false;
 };
 
