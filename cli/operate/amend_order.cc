@@ -12,10 +12,8 @@
 namespace ergocast::cli {
 namespace {
 
-using namespace std::chrono_literals;
 using State = OrderReport::State;
 
-constexpr auto kShortestPeriod = 100ms;
 /// As many parts are sent in one period; more parts are sent less often.
 constexpr std::size_t kPartsInPeriod = 4;
 /// The order does not fail before it was sent as often: the process may have been stopped.
@@ -59,8 +57,9 @@ AmendOrder::AmendOrder(const TargetChange& target, Tick delay, Instant now)
       since_(now) {}
 
 Instant::duration AmendOrder::period() const {
-  return kShortestPeriod * std::max<std::int64_t>(1, static_cast<std::int64_t>(
-                                                    part_count(content_.size()) / kPartsInPeriod));
+  return kRepeatPeriod *
+         std::max<std::int64_t>(
+             1, static_cast<std::int64_t>(part_count(content_.size()) / kPartsInPeriod));
 }
 
 void AmendOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
@@ -76,7 +75,7 @@ void AmendOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
       if (one.number == *number_) amendment_ = one;
   }
   if (amendment_ || problem_ || now < next_) return;
-  next_ = now + (number_ ? period() : kShortestPeriod);
+  next_ = now + (number_ ? period() : kRepeatPeriod);
   number_ ? send_parts(team, out) : out.push_back(mission_question(team, header_));
 }
 

@@ -33,6 +33,8 @@ struct OrderReport {
 
 class Order {
  public:
+  /// How often an order is repeated.
+  static constexpr std::chrono::milliseconds kRepeatPeriod{100};
   /// How long to wait for the first process of a team, and for a coordinator.
   static constexpr std::chrono::seconds kListeningTime{3};
   /// How long to wait for a coordinator's answer.

@@ -10,10 +10,7 @@
 namespace ergocast::cli {
 namespace {
 
-using namespace std::chrono_literals;
 using State = OrderReport::State;
-
-constexpr auto kAskPeriod = 100ms;
 
 }  // namespace
 
@@ -35,7 +32,7 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   }
   was_named_ = was_named_ || (number_ && is_named(team));
   if (was_named_ || now < next_) return;
-  next_ = now + kAskPeriod;
+  next_ = now + kRepeatPeriod;
   if (!number_) {
     out.push_back(mission_question(team, header_));
     return;
