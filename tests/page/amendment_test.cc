@@ -15,8 +15,6 @@
 namespace ergocast::test {
 namespace {
 
-constexpr const char* kHomeKey = "\uE011";
-
 class AmendedMissionInABrowser : public PageInABrowser {
  protected:
   /// One Gaussian as the mission's target.
@@ -216,7 +214,7 @@ TEST_F(AmendedMissionInABrowser, ShowsANewTargetOfARunningTeam) {
   browser_->open("http://127.0.0.1:8817/");
   EXPECT_TRUE(browser_->becomes(
       "return window.ergocast?.S.run?.targets.length === 2 && ergocast.S.run.knowsTargets"));
-  browser_->press(kHomeKey);
+  js("ergocast.seek(0)");
   wait_for_frame();
   EXPECT_EQ(js("return document.getElementById('targetText').hidden"), true);
   expect_no_errors();

@@ -156,7 +156,7 @@ class CommandReplay : public ByHand {
 TEST_F(CommandReplay, APauseThatNoCoordinatorObeyedDoesNotPauseLater) {
   start_mission();
   Tape tape(kUrl);
-  hold_next("ERGOCAST_PAUSE", 0);  // the operator's command, once it knows the mission
+  hold_next("ERGOCAST_AMEND", 0);  // the operator's command, once it knows the mission
   Program& pause = hand("ergocast", {"pause", "--key-file", coordinator_key_});
   hold_none();
   ASSERT_TRUE(eventually([&] { return stopped({pause.child.pid()}); })) << pause.printed();
