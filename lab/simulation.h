@@ -14,6 +14,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "agent/agent.h"
@@ -92,6 +93,8 @@ class Simulation {
   void run(PacingClock::duration limit = PacingClock::duration::max());
   /// Has the coordinator end the mission in order.
   void end(std::string reason);
+  /// Has an operator give the team another target.
+  void change_target(TargetChange target) { operator_.want_target(std::move(target)); }
 
   // ---- processes ----
 
