@@ -21,7 +21,9 @@ class AmendedMissionInABrowser : public PageInABrowser {
   static TargetChange gaussian(const Mission& mission, double x_m, double y_m) {
     const TargetDensity target{
         {plane_gaussian(1, {x_m, y_m}, Eigen::Matrix2d::Identity() * 150 * 150)}};
-    return {.target = target_coefficients(target, mission.domain, mission.basis).values};
+    TargetChange change;
+    change.target = target_coefficients(target, mission.domain, mission.basis).values;
+    return change;
   }
 
   /// A minute in which the target changes after 20 s to the domain's middle, and after 40 s to its
