@@ -125,7 +125,8 @@ TEST_F(LiveTeamFrames, KeepAllTargetsAndSendEachOnce) {
                : nlohmann::json::parse(text.substr(begin + 6, text.find('\n', begin) - begin - 6));
   };
   const auto frame_after = [&](Tick tick, double second_number) {
-    TargetChange change{.target = mission.target_coefficients};
+    TargetChange change;
+    change.target = mission.target_coefficients;
     change.target[1] = second_number;
     name_target(list, tick, change);
     MissionPart part = test::mission_part(++revision, MissionState::kRunning, test::roster_of(2));
