@@ -45,7 +45,7 @@ void SafeMotion::note_roster(const std::vector<RosterEntry>& roster) {
   undriven_.clear();
   for (const RosterEntry& entry : roster) undriven_.push_back(entry.author.agent);
   std::ranges::sort(undriven_);
-  undriven_.erase(std::ranges::unique(undriven_).begin(), undriven_.end());
+  undriven_.erase(std::unique(undriven_.begin(), undriven_.end()), undriven_.end());
   std::erase_if(undriven_, [&](AgentId id) {
     return std::ranges::any_of(roster, [&](const RosterEntry& entry) {
       return entry.author.agent == id && entry.active_until < 0;

@@ -92,8 +92,8 @@ double Invariants::nearest_to_station_m(const Vehicle& vehicle) const {
   if (!keeps_distance(mission_) || !mission_.domain.planar()) return 0;
   std::vector<Eigen::Vector2d> standing_m;
   for (const auto& [id, place_m] : places_m_) {
-    const bool stands = std::ranges::any_of(truth_.roster(), [&](const RosterEntry& entry) {
-      return entry.author.agent == id && entry.leaves;
+    const bool stands = std::ranges::any_of(truth_.roster(), [gone = id](const RosterEntry& entry) {
+      return entry.author.agent == gone && entry.leaves;
     });
     if (stands && id != vehicle.id) standing_m.push_back(place_m.head<2>());
   }
