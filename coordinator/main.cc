@@ -106,12 +106,18 @@ class MissionLog {
   void look_at_amendments(const Coordinator& coordinator) {
     for (const Amendment& one : coordinator.amendments().recent) {
       if (one.number < logged_amendments_) continue;
-      spdlog::info("amendment {}: {} from tick {} on", one.number, to_string(one.kind), one.from);
+      spdlog::info("mission {} from tick {} on (amendment {})", effect_of(one.kind), one.from,
+                   one.number);
     }
     logged_amendments_ = coordinator.amendments().named;
   }
 
   MissionState state_ = MissionState::kWaiting;
+  static const char* effect_of(AmendmentKind kind) {
+    constexpr const char* kEffects[] = {"is paused", "counts", "has another target"};
+    return kEffects[static_cast<int>(kind)];
+  }
+
   std::int32_t logged_amendments_ = 0;
   bool announced_ = false;
 };

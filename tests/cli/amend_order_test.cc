@@ -117,6 +117,14 @@ TEST_F(Amended, FailsWithTheCauseIfNoTickIsNamed) {
   AmendOrder order(target(0.5), 0, now_);
   OrderReport report = turn(order, 20s);
   EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("no coordinator answers"), std::string::npos) << report.text;
+
+  TeamStatus status;
+  status.header = {kRun, kCoordinator, kCoordinatorLife, next_sequence(), 0};
+  give(team_, status, now_);
+  AmendOrder first(target(0.5), 0, now_);
+  report = turn(first, 20s);
+  EXPECT_EQ(report.state, State::kFailed);
   EXPECT_NE(report.text.find("the coordinator names no tick"), std::string::npos) << report.text;
 
   name_target(list_, 50, target(0.1));

@@ -32,14 +32,17 @@ class Amender {
   /// coordinator never names it.
   std::optional<Tick> change(const TargetChange& target) {
     const std::vector<std::byte> content = encode_target(target);
-    const std::int32_t number = follower_.amendments().named;
-    const bool named = eventually([&] { return follower_.amendments().named > number; },
+    const auto& recent = follower_.amendments().recent;
+    const auto ours = [&] {
+      return std::ranges::find(recent, target_hash(target), &Amendment::hash);
+    };
+    const bool named = eventually([&] { return ours() != recent.end(); },
                                   [&] {
-                                    send(number, content);
+                                    send(follower_.amendments().named, content);
                                     listen();
                                   });
     if (!named) return std::nullopt;
-    return follower_.amendments().targets.back().from;
+    return ours()->from;
   }
 
  private:

@@ -19,7 +19,7 @@ class Tape {
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
       ears_.push_back({bus, std::make_unique<lcm::LCM>(buses.of(bus)), &recorded_});
       Ear& ear = ears_.back();
-      ear.lcm->subscribe("ERGOCAST_(PAUSE|STOP)", &Ear::receive, &ear)->setQueueCapacity(0);
+      ear.lcm->subscribe("ERGOCAST_(AMEND|STOP)", &Ear::receive, &ear)->setQueueCapacity(0);
     }
   }
   /// Reads the arrived messages; returns the number of all recorded ones.

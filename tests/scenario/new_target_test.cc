@@ -82,7 +82,7 @@ TEST_F(NewTarget, OfGeoJsonNeedsThePlaceOnTheEarth) {
   EXPECT_TRUE(has(problem_of("elsewhere.textproto",
                              "target { uniform_weight: 1 } origin { latitude_deg: 51 "
                              "longitude_deg: 10 }"),
-                  "elsewhere.textproto:1:31: origin: is not that of the running mission"));
+                  "elsewhere.textproto:1:30: origin: is not that of the running mission"));
 }
 
 TEST_F(NewTarget, ChangesOnlyFieldsOfTheTarget) {
