@@ -18,7 +18,8 @@ const MAP = {
     'Where the target wants the team to spend its time. ' +
     'While a team runs, the command “ergocast amend --target FILE” gives it another target.',
   amendment:
-    'The target at the chosen time is no longer that of the plan. Each moment counts against the target of its time.',
+    'The target at the chosen time is no longer that of the plan. ' +
+    'Each moment counts against the target of its time.',
   Achieved: 'Where the team has spent its time up to the chosen time.',
   Difference: 'Where the team has been too little or too much: this is what φ² adds up.',
   scale: 'A colour shows how many times denser a place is than the average of the domain.',
