@@ -4,8 +4,11 @@
 #include "cli/record/simulated_record.h"
 
 #include <chrono>
+#include <optional>
+#include <string>
 #include <utility>
 
+#include "logger/amendments_file.h"
 #include "logger/summary.h"
 #include "plan/plan.h"
 #include "runtime/process/program_options.h"
@@ -32,6 +35,14 @@ nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scen
   return summarize(recorder, context);
 }
 
+/// The numbers of new targets stand in no other file.
+std::optional<std::string> write_amendments(const Recorder& recorder, const Scenario& scenario,
+                                            const RunRecord& record) {
+  if (recorder.amendments().all().empty()) return std::nullopt;
+  return write_file(record.folder() / kAmendmentsFile,
+                    amendments_text(recorder.amendments(), scenario.mission().timing.dt_s));
+}
+
 }  // namespace
 
 Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
@@ -55,6 +66,7 @@ Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenari
                              simulation.recorder().facts().no_metric_from.has_value()};
   auto error = record.flush();
   if (!error && events) error = events->flush();
+  if (!error) error = write_amendments(simulation.recorder(), scenario, record);
   if (!error) error = write_file(record.folder() / kSummaryFile, to_text(result.summary));
   if (error) return failure(*error + "; the record is incomplete");
   return result;

@@ -54,14 +54,6 @@ struct Repetition {
   lab::Simulation simulation;
 };
 
-/// Why a simulation cannot be given the amendments from its beginning; nothing if it can.
-std::optional<std::string> why_not_amended(const fs::path& run_dir, const Mission& mission,
-                                           const Json& summary, const HeardAmendments& heard) {
-  if (auto problem = missing_target(run_dir, summary, heard)) return problem;
-  if (are_amendments(heard.list(), mission)) return std::nullopt;
-  return "the amendments of its " + std::string(kAmendmentsFile) + " do not follow each other";
-}
-
 /// A recorder that received only the recorded rows, and the tables that it writes.
 struct Observer {
   Observer(RunData rows, const MissionFollower& heard) : recorder(0, 1, trajectory, metrics) {
@@ -241,7 +233,7 @@ int verify(const fs::path& run_dir) {
   Json& summary = *read;
   auto amendments = recorded_amendments(run_dir, summary, *mission);
   if (!amendments) return report_error(kExitBadInput, amendments.error());
-  if (const auto reason = why_not_amended(run_dir, *mission, summary, *amendments))
+  if (const auto reason = missing_target(run_dir, summary, *amendments))
     return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + *reason);
   Repetition repetition(*mission, amendments->list());
   if (!summary.is_object()) {

@@ -183,6 +183,7 @@ TEST_F(AmendCommand, IsRehearsedInASimulation) {
             0)
       << output();
   EXPECT_GT(share_in_the_east(1100), 0.8);
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   for (const auto& [wrong, why] : {std::pair("60", "is not T:FILE"),
                                    std::pair("300:lake_search", "the mission has ended then"),
                                    std::pair("60:lake_search", "domain: has ")}) {
