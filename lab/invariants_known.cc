@@ -22,8 +22,7 @@ void Invariants::received(const TableView& listener, const Message& message) {
     const RosterEntry* own = entry_of(*listener.roster, listener.self);
     if (own == nullptr) return;
     const auto shadow = shadows_.try_emplace(listener.self, own->active_from).first;
-    if (listener.amendments != nullptr)
-      shadow->second.note_targets(mission_, *listener.amendments);
+    if (listener.amendments != nullptr) shadow->second.note_targets(mission_, *listener.amendments);
     return;
   }
   if (mission_.law.anticipation <= 0) return;
