@@ -135,8 +135,8 @@ bool MissionFollower::commit(const MissionPart& newest, std::vector<MissionPart>
     ++foreign_plans_;
     return false;
   }
+  if (first && !read_first) plan_problem_ = read_first.error();
   if (read_first) mission_ = *std::move(read_first);
-  if (first && !mission_) plan_problem_ = read_first.error();
   plan_ = std::move(plan);
   revision_ = newest.revision;
   state_ = newest.state;

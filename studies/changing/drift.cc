@@ -45,7 +45,8 @@ double mean_metric(const std::vector<Coefficients>& targets, std::uint64_t seed)
     for (std::size_t i = 0; i < team.size(); ++i) judge.see(team.x_m(i), target);
     team.step();
   }
-  return (sum + judge.metric()) / static_cast<double>((kEnd - kFirstWindow) / kWindow);
+  constexpr Tick kWindows = (kEnd - kFirstWindow) / kWindow;
+  return (sum + judge.metric()) / static_cast<double>(kWindows);
 }
 
 }  // namespace
