@@ -81,7 +81,8 @@ std::optional<std::vector<std::byte>> Amending::completed(const Amend& amend) {
 
 void Amending::obey(const Amend& amend, const Mission& mission, const TickWatch& ticks,
                     const SignsOfLife& signs, Announcement& announcement) {
-  if (!may_name(amend, ticks)) return;
+  const Tick end = tick_after(list_.holds, mission.timing.tick_count);
+  if (!may_name(amend, ticks) || ticks.newest() + amend.delay_ticks >= end) return;
   Wish wish{.kind = amend.kind, .delay_ticks = amend.delay_ticks};
   if (wish.kind == AmendmentKind::kTarget) {
     const auto content = completed(amend);

@@ -39,7 +39,8 @@ class Amending {
   void adopt(const Amendments& known);
   /// Obeys a wish of the operator, once all its parts have arrived. It has no effect if it does not
   /// follow the newest amendment, or another one waits for its tick, or the list is full, or the
-  /// content is no target of `mission`, or the tick of the world is unknown in real time.
+  /// content is no target of `mission`, or it would hold after the mission's end, or the tick of
+  /// the world is unknown in real time.
   /// @pre the mission runs
   void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks,
             const SignsOfLife& signs, Announcement& announcement);

@@ -34,12 +34,6 @@ std::vector<std::byte> share(std::span<const std::byte> bytes, std::size_t first
 
 }  // namespace
 
-Tick notice_ticks(const Timing& timing) {
-  constexpr double kNotice_s = 2;
-  if (timing.pace == Pace::kLockstep) return 0;
-  return static_cast<Tick>(kNotice_s * timing.realtime_factor / timing.dt_s);
-}
-
 void Announcement::note_silence() {
   ++revision_;
   next_ = Instant{};

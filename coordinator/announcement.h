@@ -20,10 +20,6 @@
 
 namespace ergocast {
 
-/// How many ticks before it takes effect a change is announced. Lockstep needs no notice: an agent
-/// answers a tick only once it knows whether that tick counts.
-Tick notice_ticks(const Timing& timing);
-
 /// The content of MISSION. See MissionPart.
 struct MissionContent {
   MissionState state;

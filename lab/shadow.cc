@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "core/law/forecast.h"
-#include "core/law/target_shift.h"
 
 namespace ergocast::lab {
 namespace {
@@ -315,34 +314,10 @@ void Shadow::dead_reckon(const RosterEntry& entry, Row& row) const {
 
 // ---- targets that have changed ----
 
-/// Targets that a newer list has no more still count for earlier ticks, as core/law/target_shift.h
-/// says.
-void Shadow::note_targets(const Mission& mission, const Amendments& list) {
-  if (list.targets.empty()) return;
-  const TargetChange& first = list.targets.front();
-  std::erase_if(targets_, [&](const auto& known) {
-    return known.first >= first.number ||
-           known.second.first >= counted_ticks(list.holds, first.from);
-  });
-  for (const TargetChange& change : list.targets) {
-    targets_[change.number] = {counted_ticks(list.holds, change.from),
-                               change.target - mission.target_coefficients};
-  }
-  while (targets_.size() > TargetShift::kMostChanges) targets_.erase(targets_.begin());
-}
-
-/// (μ − μ₀) dt at a tick.
-Coefficients Shadow::shift_s(const Mission& mission, Tick tick) const {
-  Coefficients shift = Coefficients::Zero(mission.basis.mode_count());
-  for (const auto& [number, target] : targets_)
-    if (target.first <= tick) shift = mission.timing.dt_s * target.second;
-  return shift;
-}
-
 void Shadow::add_shift(const Mission& mission, int block, Tick tick, double factor,
                        std::vector<double>& numbers) const {
   if (targets_.empty()) return;
-  const auto shift = block_of(shift_s(mission, tick),
+  const auto shift = block_of(targets_.shift_s(mission, tick),
                               modes(mission)[static_cast<std::size_t>(block)], block_size(mission));
   for (std::size_t k = 0; k < shift.size(); ++k) numbers[k] += factor * shift[k];
 }

@@ -18,6 +18,7 @@
 #include "core/basis/basis.h"
 #include "core/mission/mission.h"
 #include "lab/table_view.h"
+#include "lab/target_memory.h"
 #include "lab/wire_modes.h"
 #include "team/messages.h"
 
@@ -31,7 +32,9 @@ class Shadow {
   Tick active_from() const { return active_from_; }
 
   /// The agent has received this list.
-  void note_targets(const Mission& mission, const Amendments& list);
+  void note_targets(const Mission& mission, const Amendments& list) {
+    targets_.note(mission, list);
+  }
 
   /// A message has reached the agent, whose state is now `agent`.
   void receive(const Mission& mission, const TableView& agent, const Message& message);
@@ -84,7 +87,6 @@ class Shadow {
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void dead_reckon(const RosterEntry& entry, Row& row) const;
   Part part_of(const Mission& mission, const Block& block) const;
-  Coefficients shift_s(const Mission& mission, Tick tick) const;
   /// Adds `factor` times the shift of a tick.
   void add_shift(const Mission& mission, int block, Tick tick, double factor,
                  std::vector<double>& numbers) const;
@@ -99,8 +101,7 @@ class Shadow {
   mutable WireModes modes_;
   mutable std::optional<Eigen::Matrix3d> covariance_m2_;  // of the target
   Tick active_from_;
-  /// By the number of the amendment: the counted tick from which a target holds, and μ − μ₀.
-  std::map<std::int32_t, std::pair<Tick, Coefficients>> targets_;
+  TargetMemory targets_;
   std::int64_t own_steps_ = -1;     // of the own row at the last call of sample_error_s(), …
   std::vector<double> own_sums_s_;  // … and the sums of its first block
   std::map<Author, Row> rows_;

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <optional>
 #include <set>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "core/base/ids.h"
 #include "core/mission/amendments.h"
 #include "plan/amendment_list.h"
+#include "team/amend_parts.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {
@@ -50,25 +50,17 @@ class SimulatedOperator {
   }
   /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
   std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
-    std::vector<Amend> sent;
     const Amendments& list = coordinator.amendments();
     const auto is_ours = [this](const Amendment& one) { return one.hash == target_hash_; };
     if (std::ranges::any_of(list.recent, is_ours)) target_.clear();
-    if (target_.empty() || now < next_target_) return sent;
+    if (target_.empty() || now < next_target_) return {};
     next_target_ = now + kPeriod;
-    constexpr auto kPart = static_cast<std::size_t>(kMaxPlanBytesPerMessage);
-    const auto parts = static_cast<std::int32_t>((target_.size() + kPart - 1) / kPart);
-    for (std::int32_t part = 0; part < parts; ++part) {
-      const auto rest = std::span(target_).subspan(static_cast<std::size_t>(part) * kPart);
-      const auto share = rest.first(std::min(kPart, rest.size()));
-      sent.push_back({.header = {run, kOperator, 1, ++messages_, coordinator.tick()},
-                      .number = list.named,
-                      .kind = AmendmentKind::kTarget,
-                      .part = part,
-                      .parts = parts,
-                      .content = {share.begin(), share.end()}});
-    }
-    return sent;
+    auto parts = in_parts({.header = {run, kOperator, 1, messages_ + 1, coordinator.tick()},
+                           .number = list.named,
+                           .kind = AmendmentKind::kTarget},
+                          target_);
+    messages_ += std::ssize(parts);
+    return parts;
   }
 
   /// The message that it sends now. It repeats its wish until a tick is named.

@@ -26,7 +26,7 @@ constexpr std::size_t kMostAmendmentBytes = std::size_t{64} << 20;
 /// refuse the record.
 constexpr std::size_t kMostAmendmentValues = 2'500'000;
 
-Json without_numbers(const HeardAmendment& one, double dt_s) {
+Json without_numbers(const ReceivedAmendment& one, double dt_s) {
   const Amendment& amendment = one.amendment;
   Json json = {{"number", amendment.number},
                {"kind", to_string(amendment.kind)},
@@ -105,14 +105,14 @@ Result<TargetChange> target_in(const Json& entry, const Amendment& amendment,
   return change;
 }
 
-Result<HeardAmendment> amendment_in(const Json& entry, const Mission& mission) {
+Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission) {
   const std::string none = "is not an amendment";
   if (!entry.is_object()) return failure(none);
   const auto number = count_in(entry, "number", kMaxAmendments - 1);
   const auto from = count_in(entry, "from_tick", kMostTicks);
   const auto kind = kind_in(entry);
   if (!number || !from || !kind) return failure(none);
-  HeardAmendment one{{static_cast<std::int32_t>(*number), *kind, *from, 0}, {}, false};
+  ReceivedAmendment one{{static_cast<std::int32_t>(*number), *kind, *from, 0}, {}, false};
   one.is_void = value_in(entry, "void") == true;
   if (*kind != AmendmentKind::kTarget) return one;
   const auto hash = hash_in(entry);
@@ -138,7 +138,7 @@ std::optional<std::vector<Hold>> holds_in(const Json& list) {
 }
 
 /// Whether numbers ascend, and of those that are not void also the ticks of targets.
-bool follow(const std::vector<HeardAmendment>& all) {
+bool follow(const std::vector<ReceivedAmendment>& all) {
   if (!std::ranges::is_sorted(all, {}, [](const auto& one) { return one.amendment.number; }))
     return false;
   std::int32_t number = -1;
@@ -152,19 +152,19 @@ bool follow(const std::vector<HeardAmendment>& all) {
   return true;
 }
 
-Result<HeardAmendments> all_in(const Json& content, const Mission& mission) {
+Result<ReceivedAmendments> all_in(const Json& content, const Mission& mission) {
   if (!content.is_object()) return failure("is not an object");
   const Json& entries = value_in(content, "amendments");
   auto holds = holds_in(value_in(content, "holds"));
   if (!holds || !entries.is_array()) return failure("has no list of amendments, or no holds");
-  std::vector<HeardAmendment> all;
+  std::vector<ReceivedAmendment> all;
   for (const Json& entry : entries) {
     auto one = amendment_in(entry, mission);
     if (!one) return failure("entry " + std::to_string(all.size()) + ": " + one.error());
     all.push_back(*std::move(one));
   }
   if (!follow(all)) return failure("its amendments are not in their order");
-  return HeardAmendments(std::move(all), *std::move(holds));
+  return ReceivedAmendments(std::move(all), *std::move(holds));
 }
 
 }  // namespace
@@ -176,16 +176,16 @@ Json holds_json(std::span<const Hold> holds) {
   return list;
 }
 
-Json amendments_json(const HeardAmendments& heard, double dt_s) {
+Json amendments_json(const ReceivedAmendments& heard, double dt_s) {
   Json list = Json::array();
-  for (const HeardAmendment& one : heard.all()) list.push_back(without_numbers(one, dt_s));
+  for (const ReceivedAmendment& one : heard.all()) list.push_back(without_numbers(one, dt_s));
   return list;
 }
 
-std::string amendments_text(const HeardAmendments& heard, double dt_s) {
+std::string amendments_text(const ReceivedAmendments& heard, double dt_s) {
   std::string text = "{\"holds\": " + holds_json(heard.holds()).dump() + ",\n\"amendments\": [";
   const char* separator = "\n";
-  for (const HeardAmendment& one : heard.all()) {
+  for (const ReceivedAmendment& one : heard.all()) {
     Json json = without_numbers(one, dt_s);
     if (one.target) {
       json["target"] = list_of(one.target->target);
@@ -196,14 +196,14 @@ std::string amendments_text(const HeardAmendments& heard, double dt_s) {
   return text + "]}\n";
 }
 
-Result<HeardAmendments> recorded_amendments(const std::filesystem::path& run_dir,
-                                            const Json& summary, const Mission& mission) {
+Result<ReceivedAmendments> recorded_amendments(const std::filesystem::path& run_dir,
+                                               const Json& summary, const Mission& mission) {
   const auto file = run_dir / kAmendmentsFile;
   const auto content = read_json(file, {kMostAmendmentBytes, kMostAmendmentValues});
   if (!content) return failure(content.error());
   if (content->is_null()) {
     auto holds = summary.is_object() ? holds_in(value_in(summary, "holds")) : std::nullopt;
-    HeardAmendments heard;
+    ReceivedAmendments heard;
     if (holds) heard.note(only_pauses(*std::move(holds)));
     return heard;
   }
@@ -213,8 +213,8 @@ Result<HeardAmendments> recorded_amendments(const std::filesystem::path& run_dir
 }
 
 std::optional<std::string> missing_target(const std::filesystem::path& run_dir, const Json& summary,
-                                          const HeardAmendments& heard) {
-  if (const HeardAmendment* const unknown = heard.unknown_target())
+                                          const ReceivedAmendments& heard) {
+  if (const ReceivedAmendment* const unknown = heard.unknown_target())
     return "its logger did not receive the target of amendment " +
            std::to_string(unknown->amendment.number);
   const Json listed = summary.is_object() ? value_in(summary, "amendments") : Json();

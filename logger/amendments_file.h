@@ -11,7 +11,7 @@
 
 #include "core/base/result.h"
 #include "core/mission/mission.h"
-#include "logger/heard_amendments.h"
+#include "logger/received_amendments.h"
 
 namespace ergocast {
 
@@ -20,20 +20,20 @@ namespace ergocast {
 nlohmann::ordered_json holds_json(std::span<const Hold> holds);
 
 /// What the summary lists, without the numbers of targets.
-nlohmann::ordered_json amendments_json(const HeardAmendments& heard, double dt_s);
+nlohmann::ordered_json amendments_json(const ReceivedAmendments& heard, double dt_s);
 
 /// The text of amendments.json.
-std::string amendments_text(const HeardAmendments& heard, double dt_s);
+std::string amendments_text(const ReceivedAmendments& heard, double dt_s);
 
 /// The amendments of a run directory: from amendments.json; without that file the pauses that
 /// `summary` lists. An error if the file is damaged, or has a target that is none of `mission`.
-Result<HeardAmendments> recorded_amendments(const std::filesystem::path& run_dir,
-                                            const nlohmann::ordered_json& summary,
-                                            const Mission& mission);
+Result<ReceivedAmendments> recorded_amendments(const std::filesystem::path& run_dir,
+                                               const nlohmann::ordered_json& summary,
+                                               const Mission& mission);
 
 /// Why the targets of a run directory are not all known; nothing if they are.
 std::optional<std::string> missing_target(const std::filesystem::path& run_dir,
                                           const nlohmann::ordered_json& summary,
-                                          const HeardAmendments& heard);
+                                          const ReceivedAmendments& heard);
 
 }  // namespace ergocast

@@ -202,7 +202,7 @@ void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vect
 
 /// Has the observers count against the target that holds at the row's tick.
 void RecordTables::begin_row(const Context& context) {
-  const HeardAmendment* const change = context.known.amendments.target_at(context.row.tick);
+  const ReceivedAmendment* const change = context.known.amendments.target_at(context.row.tick);
   const std::optional<Amendment> wanted =
       change != nullptr ? std::optional(change->amendment) : std::nullopt;
   const std::optional<Amendment> present =
@@ -211,7 +211,7 @@ void RecordTables::begin_row(const Context& context) {
 }
 
 /// @param change  null: the plan's target, because the change that held is void
-void RecordTables::begin_target(const Context& context, const HeardAmendment* change) {
+void RecordTables::begin_target(const Context& context, const ReceivedAmendment* change) {
   const Mission& mission = context.mission();
   if (facts_.targets.empty()) facts_.targets.emplace_back();
   const Tick named = change != nullptr ? change->amendment.from : context.row.tick;

@@ -13,8 +13,8 @@
 
 #include "core/base/ids.h"
 #include "logger/agent_reports.h"
-#include "logger/heard_amendments.h"
 #include "logger/observer.h"
+#include "logger/received_amendments.h"
 #include "logger/run_data.h"
 #include "logger/waiting_states.h"
 #include "team/mission_follower.h"
@@ -81,7 +81,7 @@ struct RowTick {
 struct MissionKnowledge {
   const MissionFollower& follower;
   const AgentReports& reports;
-  const HeardAmendments& amendments;
+  const ReceivedAmendments& amendments;
 };
 
 /// The header lines of the two files.
@@ -132,7 +132,7 @@ class RecordTables {
   bool is_recalled(const Context& context, AgentId id);
   void observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m);
   void begin_row(const Context& context);
-  void begin_target(const Context& context, const HeardAmendment* change);
+  void begin_target(const Context& context, const ReceivedAmendment* change);
   void note_target(const Mission& mission, Tick until);
   void end_row(const Context& context);
   void write_due_metrics(const Context& context);

@@ -27,7 +27,7 @@
 
 #include "core/base/ids.h"
 #include "logger/agent_reports.h"
-#include "logger/heard_amendments.h"
+#include "logger/received_amendments.h"
 #include "logger/record_tables.h"
 #include "logger/run_data.h"
 #include "logger/waiting_states.h"
@@ -75,7 +75,7 @@ class Recorder {
   const std::string& reason() const { return ending_.reason; }
   const RunFacts& facts() const { return tables_.facts(); }
   /// All amendments of the mission that this recorder or a former one has received.
-  const HeardAmendments& amendments() const { return amendments_; }
+  const ReceivedAmendments& amendments() const { return amendments_; }
   /// The newest status of each incarnation that Liveness holds, with the worst loop lag of all its
   /// statuses.
   const std::map<Author, AgentStatus>& statuses() const { return reports_.statuses(); }
@@ -129,7 +129,7 @@ class Recorder {
   Participant me_;
   RecordTables tables_;
   AgentReports reports_;
-  HeardAmendments amendments_;
+  ReceivedAmendments amendments_;
   WaitingStates states_;
   RowTick row_;                                  // the next one
   Instant progress_{};                           // last row, or first message of a new world

@@ -15,7 +15,7 @@
 #include "core/basis/basis.h"
 #include "core/mission/hold.h"
 #include "core/mission/mission.h"
-#include "logger/heard_amendments.h"
+#include "logger/received_amendments.h"
 #include "logger/slope.h"
 
 namespace ergocast {
@@ -44,7 +44,7 @@ struct RunData {
   std::map<AgentId, Track> tracks;  ///< without empty ones
   std::vector<MetricsRow> metrics;
   /// What has changed since the plan, from amendments.json; pauses also from summary.json.
-  HeardAmendments amendments;
+  ReceivedAmendments amendments;
   /// From which tick on a recalled agent rests, from recalls.json or summary.json.
   std::map<AgentId, Tick> recalls;
 

@@ -141,9 +141,9 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
       return id == agent && tick >= from && tick < until;
     });
   };
-  const HeardAmendment* target = nullptr;
+  const ReceivedAmendment* target = nullptr;
   const auto aim_at = [&](Tick tick) {
-    const HeardAmendment* const now = record.rows.amendments.target_at(tick);
+    const ReceivedAmendment* const now = record.rows.amendments.target_at(tick);
     if (now != target) observer.begin_target(mission, now->target->target);
     target = now;
   };

@@ -263,11 +263,11 @@ Json homes_from(const RunData& run, const Mission& mission) {
 }
 
 /// The amendments of the record, and the targets that it has.
-void add_amendments(const HeardAmendments& heard, Json& record) {
+void add_amendments(const ReceivedAmendments& heard, Json& record) {
   if (heard.empty()) return;
   std::vector<Amendment> list;
   Json targets = Json::object();
-  for (const HeardAmendment& one : heard.all()) {
+  for (const ReceivedAmendment& one : heard.all()) {
     if (one.is_void) continue;
     list.push_back(one.amendment);
     if (one.target) targets[page_target_name(one.amendment.hash)] = page_target(*one.target);

@@ -19,8 +19,6 @@
 namespace ergocast::cli {
 namespace {
 
-/// Real time: how far ahead a coordinator names a tick [s of wall time].
-constexpr double kNotice_s = 2;
 /// Limit (Commands): time that `amend --at` counts from now [s]. Beyond it: it is refused.
 constexpr double kMostDelay_s = 1e7;
 
@@ -97,9 +95,8 @@ class Amending : public TeamCommand {
   /// The earliest tick that a coordinator can name now, as far as this command knows.
   Tick earliest() const {
     const Timing& timing = team().mission().timing;
-    const bool announced = timing.pace == Pace::kRealtime;
-    const double notice = announced ? kNotice_s * timing.realtime_factor / timing.dt_s : 1;
-    return team().tick() + 1 + static_cast<Tick>(notice) + delay();
+    const Tick notice = timing.pace == Pace::kRealtime ? notice_ticks(timing) : 1;
+    return team().tick() + 1 + notice + delay();
   }
 
   int order(const TargetChange& change) {

@@ -4,24 +4,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <span>
+#include <utility>
 
 #include "plan/amendment_list.h"
 #include "runtime/bus/random_identity.h"
+#include "team/amend_parts.h"
 
 namespace ergocast::cli {
 namespace {
 
 using State = OrderReport::State;
 
-/// As many parts are sent in one period; more parts are sent less often.
-constexpr std::size_t kPartsInPeriod = 4;
+/// As many bytes are sent in one period; more are sent less often.
+constexpr std::size_t kBytesInPeriod = std::size_t{4} * kMaxPlanBytesPerMessage;
 /// The order does not fail before it was sent as often: the process may have been stopped.
 constexpr int kLeastSent = 20;
-
-std::size_t part_count(std::size_t bytes) {
-  return (bytes + kMaxPlanBytesPerMessage - 1) / kMaxPlanBytesPerMessage;
-}
 
 /// "target 5f0c…".
 std::string kind_text(const Amendment& amendment) {
@@ -57,9 +54,7 @@ AmendOrder::AmendOrder(const TargetChange& target, Tick delay, Instant now)
       since_(now) {}
 
 Instant::duration AmendOrder::period() const {
-  return kRepeatPeriod *
-         std::max<std::int64_t>(
-             1, static_cast<std::int64_t>(part_count(content_.size()) / kPartsInPeriod));
+  return kRepeatPeriod * std::max<std::size_t>(1, content_.size() / kBytesInPeriod);
 }
 
 void AmendOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
@@ -81,21 +76,14 @@ void AmendOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
 
 void AmendOrder::send_parts(const MonitoredRun& team, Outbox& out) {
   ++sent_;
-  const std::size_t parts = part_count(content_.size());
-  std::span<const std::byte> rest = content_;
+  ++header_.sequence;
   header_.run = team.run();
   header_.tick = team.tick();
-  for (std::size_t part = 0; part < parts; ++part) {
-    const auto share = rest.first(std::min<std::size_t>(rest.size(), kMaxPlanBytesPerMessage));
-    rest = rest.subspan(share.size());
-    ++header_.sequence;
-    out.push_back({Bus::kSwarm, Amend{.header = header_,
-                                      .number = *number_,
-                                      .kind = AmendmentKind::kTarget,
-                                      .delay_ticks = delay_,
-                                      .part = static_cast<std::int32_t>(part),
-                                      .parts = static_cast<std::int32_t>(parts),
-                                      .content = {share.begin(), share.end()}}});
+  const Amend wish{
+      .header = header_, .number = *number_, .kind = AmendmentKind::kTarget, .delay_ticks = delay_};
+  for (Amend& part : in_parts(wish, content_)) {
+    header_.sequence = part.header.sequence;
+    out.push_back({Bus::kSwarm, std::move(part)});
   }
 }
 

@@ -177,7 +177,7 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
 
 /// Compares everything else that follows from the compared trajectory.
 std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Mission& mission,
-                                             RunData rows, const HeardAmendments& amendments,
+                                             RunData rows, const ReceivedAmendments& amendments,
                                              const Repetition& repetition,
                                              const TrajectoryComparison& comparison,
                                              const Json& summary) {

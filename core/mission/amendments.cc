@@ -101,6 +101,12 @@ const TargetChange* target_at(std::span<const TargetChange> targets, Tick tick) 
   return found == targets.rend() ? nullptr : &*found;
 }
 
+Tick notice_ticks(const Timing& timing) {
+  constexpr double kNotice_s = 2;
+  if (timing.pace == Pace::kLockstep) return 0;
+  return static_cast<Tick>(kNotice_s * timing.realtime_factor / timing.dt_s);
+}
+
 void name_pause(Amendments& list, Tick tick) {
   if (is_open(list.holds)) {
     // Real time: the operator may resume before the hold has begun.

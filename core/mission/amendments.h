@@ -88,6 +88,10 @@ const TargetChange* target_at(std::span<const TargetChange> targets, Tick tick);
 
 // ---- for a coordinator ----
 
+/// How many ticks before it takes effect a change is announced. Lockstep needs no notice: an agent
+/// answers a tick only once it knows whether that tick counts.
+Tick notice_ticks(const Timing& timing);
+
 /// Names the next amendment, which pauses the mission or, if it is paused, resumes it.
 /// @pre the list has room: named < kMaxAmendments, and holds.size() < kMaxHolds for a pause
 void name_pause(Amendments& list, Tick tick);

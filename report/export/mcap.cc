@@ -86,7 +86,7 @@ class McapExport {
     };
     show(0, record_.target);
     const auto [columns, rows] = coverage_cells(mission_);
-    for (const HeardAmendment& one : record_.run.amendments.all()) {
+    for (const ReceivedAmendment& one : record_.run.amendments.all()) {
       if (one.is_void || !one.target) continue;
       show(static_cast<double>(one.amendment.from) * mission_.timing.dt_s,
            density_of(one.target->in_cosines(), mission_, columns, rows));

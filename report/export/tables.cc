@@ -81,7 +81,7 @@ class Tables {
   DensityCells last_target() const {
     Tick last = 0;
     for (const auto& [agent, track] : record_.run.tracks) last = std::max(last, track.back().tick);
-    const HeardAmendment* const change = record_.run.amendments.target_at(last);
+    const ReceivedAmendment* const change = record_.run.amendments.target_at(last);
     if (change == nullptr) return record_.target;
     return density_of(change->target->in_cosines(), record_.mission, record_.target.rows(),
                       record_.target.cols());

@@ -2,6 +2,7 @@
 // A new target: it is named once all its parts have come, and only if it follows the newest one.
 #include <gtest/gtest.h>
 
+#include "team/amend_parts.h"
 #include "tests/coordinator/driven_coordinator.h"
 #include "tests/coordinator/successor.h"
 
@@ -28,19 +29,10 @@ TargetChange target(double first) {
 
 /// The parts of an AMEND by one operator.
 std::vector<Amend> wish(double first, std::int32_t number, Incarnation by = 1) {
-  const auto bytes = encode_target(target(first));
-  std::vector<Amend> parts;
-  for (std::size_t at = 0; at < bytes.size(); at += kMaxPlanBytesPerMessage) {
-    const auto share = std::span(bytes).subspan(
-        at, std::min<std::size_t>(kMaxPlanBytesPerMessage, bytes.size() - at));
-    parts.push_back({.header = {kRun, kOperator, by, next_sequence(), 0},
-                     .number = number,
-                     .kind = AmendmentKind::kTarget,
-                     .part = static_cast<std::int32_t>(parts.size()),
-                     .parts = 4,
-                     .content = {share.begin(), share.end()}});
-  }
-  return parts;
+  return in_parts({.header = {kRun, kOperator, by, next_sequence(), 0},
+                   .number = number,
+                   .kind = AmendmentKind::kTarget},
+                  encode_target(target(first)));
 }
 
 /// Lockstep: the world stands by, and the coordinator names the tick.
@@ -126,6 +118,20 @@ TEST(Amending, NamesNoTargetWhileAnotherOneWaitsForItsTick) {
   for (const Amend& part : wish(0.75, 1)) give(coordinator, part, at(1s));
   let_world_stand_by(coordinator, 114);
   EXPECT_EQ(coordinator.amendments().named, 2);
+}
+
+// Until it holds, no other target can be named.
+TEST(Amending, NamesNoTargetAfterTheMissionsEnd) {
+  for (const Tick delay : {989, 990}) {
+    Coordinator coordinator = running_coordinator(wide_mission());
+    give(coordinator, world_where(10, {9, 9}), at(1s));
+    for (Amend part : wish(0.5, 0)) {
+      part.delay_ticks = delay;
+      give(coordinator, part, at(1s));
+    }
+    let_world_stand_by(coordinator, 11);
+    EXPECT_EQ(coordinator.amendments().named, 10 + delay < 1000 ? 1 : 0);
+  }
 }
 
 TEST(Amending, ASuccessorKnowsTheTargets) {

@@ -36,22 +36,22 @@ TargetChange target_of(std::uint64_t seed, bool free_domain = false) {
   return change;
 }
 
-std::vector<bool> voids_of(const HeardAmendments& heard) {
+std::vector<bool> voids_of(const ReceivedAmendments& heard) {
   std::vector<bool> voids;
-  for (const HeardAmendment& one : heard.all()) voids.push_back(one.is_void);
+  for (const ReceivedAmendment& one : heard.all()) voids.push_back(one.is_void);
   return voids;
 }
 
 /// The number of the target at a tick; −1: the plan's.
-std::int32_t target_at(const HeardAmendments& heard, Tick tick) {
-  const HeardAmendment* const found = heard.target_at(tick);
+std::int32_t target_at(const ReceivedAmendments& heard, Tick tick) {
+  const ReceivedAmendment* const found = heard.target_at(tick);
   return found == nullptr ? -1 : found->amendment.number;
 }
 
 // ---- what was heard ----
 
-TEST(HeardAmendments, AllTargetsAreKeptThoughAListHasTwo) {
-  HeardAmendments heard;
+TEST(ReceivedAmendments, AllTargetsAreKeptThoughAListHasTwo) {
+  ReceivedAmendments heard;
   Amendments list;
   for (int i = 0; i < 5; ++i) {
     name_target(list, 10 * (i + 1), target_of(static_cast<std::uint64_t>(i)));
@@ -68,8 +68,8 @@ TEST(HeardAmendments, AllTargetsAreKeptThoughAListHasTwo) {
   EXPECT_EQ(heard.unknown_target(), nullptr);
 }
 
-TEST(HeardAmendments, AnAmendmentThatALaterListLacksIsVoid) {
-  HeardAmendments heard;
+TEST(ReceivedAmendments, AnAmendmentThatALaterListLacksIsVoid) {
+  ReceivedAmendments heard;
   Amendments common;
   name_target(common, 10, target_of(1));
   Amendments lost = common, kept = common;
@@ -90,8 +90,8 @@ TEST(HeardAmendments, AnAmendmentThatALaterListLacksIsVoid) {
   EXPECT_EQ(voids_of(heard), (std::vector<bool>{false, false, true})) << "another one wins";
 }
 
-TEST(HeardAmendments, NoListVoidsWhatItNoLongerNames) {
-  HeardAmendments heard;
+TEST(ReceivedAmendments, NoListVoidsWhatItNoLongerNames) {
+  ReceivedAmendments heard;
   Amendments list;
   for (Tick i = 0; i < 2 * static_cast<Tick>(kMaxRecentAmendments); ++i) {
     name_target(list, 10 * (i + 1), target_of(static_cast<std::uint64_t>(i)));
@@ -103,8 +103,8 @@ TEST(HeardAmendments, NoListVoidsWhatItNoLongerNames) {
   EXPECT_EQ(heard.list().named, list.named);
 }
 
-TEST(HeardAmendments, ATargetWithoutNumbersIsNamed) {
-  HeardAmendments heard;
+TEST(ReceivedAmendments, ATargetWithoutNumbersIsNamed) {
+  ReceivedAmendments heard;
   Amendments list;
   for (int i = 0; i < 3; ++i)
     name_target(list, 10 * (i + 1), target_of(static_cast<std::uint64_t>(i)));
@@ -119,15 +119,15 @@ TEST(HeardAmendments, ATargetWithoutNumbersIsNamed) {
 
 class AmendmentsFile : public testing::Test {
  protected:
-  Result<HeardAmendments> read(const nlohmann::ordered_json& summary = nullptr) const {
+  Result<ReceivedAmendments> read(const nlohmann::ordered_json& summary = nullptr) const {
     return recorded_amendments(own.path(), summary, mission);
   }
   void write(const std::string& text) const {
     std::ofstream(own.path() / "amendments.json", std::ios::binary) << text;
   }
   /// Three targets, of which one is void, and a pause.
-  HeardAmendments sample(bool free_domain = false) const {
-    HeardAmendments heard;
+  ReceivedAmendments sample(bool free_domain = false) const {
+    ReceivedAmendments heard;
     Amendments list;
     name_target(list, 10, target_of(1, free_domain));
     Amendments lost = list;
@@ -147,7 +147,7 @@ class AmendmentsFile : public testing::Test {
 TEST_F(AmendmentsFile, ReadsBackBitForBit) {
   for (const bool free_domain : {false, true}) {
     mission.basis.free_domain = free_domain;
-    const HeardAmendments heard = sample(free_domain);
+    const ReceivedAmendments heard = sample(free_domain);
     write(amendments_text(heard, 0.1));
     const auto read_again = read();
     ASSERT_TRUE(read_again) << read_again.error();
@@ -159,7 +159,7 @@ TEST_F(AmendmentsFile, ReadsBackBitForBit) {
 }
 
 TEST_F(AmendmentsFile, HasWhatTheSummaryListsAndTheNumbers) {
-  const HeardAmendments heard = sample();
+  const ReceivedAmendments heard = sample();
   const auto file = nlohmann::json::parse(amendments_text(heard, 0.1));
   EXPECT_EQ(file["holds"], (nlohmann::json{{30, 40}}));
   ASSERT_EQ(file["amendments"].size(), 5U);
@@ -218,13 +218,13 @@ TEST_F(AmendmentsFile, IsRefusedWithItsNameIfItIsDamaged) {
 }
 
 TEST_F(AmendmentsFile, AMissingTargetIsNamed) {
-  const HeardAmendments heard = sample();
+  const ReceivedAmendments heard = sample();
   const nlohmann::ordered_json summary{{"amendments", amendments_json(heard, 0.1)}};
   EXPECT_TRUE(missing_target(own.path(), summary, {}));
   write(amendments_text(heard, 0.1));
   EXPECT_FALSE(missing_target(own.path(), summary, heard));
   EXPECT_FALSE(missing_target(own.path(), nullptr, {}));
-  HeardAmendments late;
+  ReceivedAmendments late;
   Amendments list;
   for (int i = 0; i < 3; ++i) name_target(list, 10 * i, target_of(7));
   late.note(list);

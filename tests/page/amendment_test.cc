@@ -9,6 +9,7 @@
 #include "plan/amendment_list.h"
 #include "plan/plan.h"
 #include "target/target.h"
+#include "team/amend_parts.h"
 #include "tests/page/page_in_a_browser.h"
 #include "tests/process/support/stranger.h"
 
@@ -42,7 +43,7 @@ class AmendedMissionInABrowser : public PageInABrowser {
       lab::Simulation({.plan = encode_plan(mission), .amendments = amendments}, trajectory, metrics)
           .run();
     }
-    HeardAmendments heard;
+    ReceivedAmendments heard;
     heard.note(amendments);
     std::ofstream(out() / kAmendmentsFile) << amendments_text(heard, mission.timing.dt_s);
     ASSERT_EQ(ergocast({"report", out()}), 0) << output();
@@ -165,20 +166,8 @@ TEST_F(AmendedMissionInABrowser, SaysThatItLacksATarget) {
 
 /// The parts of AMEND that ask for a target.
 std::vector<Amend> asking_for(const TargetChange& target, RunId run, Tick tick) {
-  const auto bytes = encode_target(target);
-  const std::span content(bytes);
-  constexpr std::size_t kSize = kMaxPlanBytesPerMessage;
-  std::vector<Amend> parts((content.size() - 1) / kSize + 1);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto share = content.subspan(i * kSize, std::min(kSize, content.size() - i * kSize));
-    parts[i] = {.header = {run, kOperator, 77, 0, tick},
-                .number = 0,
-                .kind = AmendmentKind::kTarget,
-                .part = static_cast<std::int32_t>(i),
-                .parts = static_cast<std::int32_t>(parts.size()),
-                .content = {share.begin(), share.end()}};
-  }
-  return parts;
+  return in_parts({.header = {run, kOperator, 77, 1, tick}, .kind = AmendmentKind::kTarget},
+                  encode_target(target));
 }
 
 TEST_F(AmendedMissionInABrowser, ShowsANewTargetOfARunningTeam) {

@@ -7,6 +7,7 @@
 #include "plan/amendment_list.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/transport.h"
+#include "team/amend_parts.h"
 #include "team/mission_follower.h"
 #include "tests/process/support/mission.h"
 
@@ -54,18 +55,12 @@ class Amender {
     tick_ = std::max(tick_, header_of(message).tick);
   }
   void send(std::int32_t number, const std::vector<std::byte>& content) {
-    constexpr std::size_t kShare = kMaxPlanBytesPerMessage;
-    const std::size_t parts = (content.size() + kShare - 1) / kShare;
-    for (std::size_t p = 0; p < parts; ++p) {
-      const auto first = content.begin() + static_cast<std::ptrdiff_t>(p * kShare);
-      const auto size = std::min(kShare, content.size() - p * kShare);
-      Amend amend{.header = {run_, kOperator, 77, ++sequence_, tick_},
-                  .number = number,
-                  .kind = AmendmentKind::kTarget,
-                  .part = static_cast<std::int32_t>(p),
-                  .parts = static_cast<std::int32_t>(parts)};
-      amend.content.assign(first, first + static_cast<std::ptrdiff_t>(size));
-      transport_->publish({Bus::kSwarm, amend});
+    const Amend wish{.header = {run_, kOperator, 77, ++sequence_, tick_},
+                     .number = number,
+                     .kind = AmendmentKind::kTarget};
+    for (const Amend& part : in_parts(wish, content)) {
+      sequence_ = part.header.sequence;
+      transport_->publish({Bus::kSwarm, part});
     }
   }
 
