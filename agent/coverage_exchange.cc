@@ -38,8 +38,8 @@ void note_gains(const Contribution& before, const HalfLife& half_life, Contribut
   double scale = 1;
   if (half_life.any()) {
     const double gained_share = 1 - before.elapsed_s * kept / block.elapsed_s;
-    scale = static_cast<double>(block.gained_steps) /
-            (static_cast<double>(block.steps) * gained_share);
+    scale =
+        static_cast<double>(block.gained_steps) / (static_cast<double>(block.steps) * gained_share);
   }
   for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = (now[k] - kept * then[k]) * scale;
 }
@@ -49,6 +49,7 @@ void note_gains(const Contribution& before, const HalfLife& half_life, Contribut
 CoverageExchange::CoverageExchange(const Mission& mission, const RosterEntry& self, Tick joined)
     : self_(self.author),
       kind_(self.kind),
+      realtime_(mission.timing.pace == Pace::kRealtime),
       sensors_(mission),
       table_(mission.basis, mission.timing.dt_s, joined),
       anti_entropy_(self.author, mission.seed, mission.timing.dt_s),
@@ -68,8 +69,10 @@ const Coefficients& CoverageExchange::team_coverage() const {
 
 // ---- the own coverage ----
 
-void CoverageExchange::add_sample(const AgentStep& step) {
+void CoverageExchange::add_sample(const AgentStep& step, const TargetShift& shift) {
   table_.add_sample(self_, *step.basis_at, sensors_.of(kind_).footprint());
+  const TargetShift::Change* const change = shift.at(step.counted);
+  if (change != nullptr) table_.shift_sample(self_, change->by_slot.data());
 }
 
 /// An agent that learns late of a pause has counted too many ticks. The tick that it announced is
@@ -115,6 +118,10 @@ std::optional<Refusal> CoverageExchange::merge(const Contribution& theirs, int k
                                                std::int64_t max_steps, Tick counted) {
   switch (table_.merge(theirs, max_steps)) {
     case Merge::kRefusedRange:
+      return Refusal::kRange;
+    case Merge::kRefusedShift:
+      // In real time its author may know of a new target first. It sends the block again.
+      if (realtime_) return std::nullopt;
       return Refusal::kRange;
     case Merge::kRefusedLimit:
       return Refusal::kLimit;

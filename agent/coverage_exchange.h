@@ -12,6 +12,7 @@
 #include "agent/anti_entropy.h"
 #include "core/base/ids.h"
 #include "core/law/coverage_table.h"
+#include "core/law/target_shift.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
@@ -37,7 +38,10 @@ class CoverageExchange {
   void set_now(Tick counted) { table_.set_now(counted); }
 
   // ---- the own coverage ----
-  void add_sample(const AgentStep& step);
+  /// @param shift  the changes of the target
+  void add_sample(const AgentStep& step, const TargetShift& shift);
+  /// A target has changed: from now on rows may be shifted.
+  void allow_shifts() { table_.allow_shifts(); }
   /// Broadcasts the own blocks that are due at `step`, or all. A recalled agent sends each block
   /// once more when it is due, and then nothing till the end.
   void broadcast(bool all, const AgentStep& step, Participant& me, Outbox& out);
@@ -78,6 +82,7 @@ class CoverageExchange {
  private:
   Author self_;
   int kind_;
+  bool realtime_;
   Sensors sensors_;
   CoverageTable table_;
   AntiEntropy anti_entropy_;

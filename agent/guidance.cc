@@ -47,8 +47,9 @@ bool Guidance::has_state_of(Tick tick) const {
 
 Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,
                                      const std::vector<RosterEntry>& roster,
-                                     const AgentStep& step) {
+                                     const TargetShift& shift, const AgentStep& step) {
   if (forecast_) {
+    forecast_->note_shift(shift);
     forecast_->note_revision(step.roster_revision);
     forecast_->look_ahead(table, roster, step.counted, foreseen_);
   } else {

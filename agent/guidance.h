@@ -12,6 +12,7 @@
 #include "core/law/control.h"
 #include "core/law/coverage_table.h"
 #include "core/law/forecast.h"
+#include "core/law/target_shift.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 #include "team/messages.h"
@@ -37,8 +38,9 @@ class Guidance {
 
   /// The velocity that the law wants at a tick that counts.
   /// @param roster  in ticks that count
+  /// @param shift  the changes of the target
   Eigen::Vector3d wanted_mps(const CoverageTable& table, const std::vector<RosterEntry>& roster,
-                             const AgentStep& step);
+                             const TargetShift& shift, const AgentStep& step);
   /// The coverage that wanted_mps() answered to.
   const Coefficients& foreseen() const { return foreseen_; }
 

@@ -41,6 +41,7 @@ MissionRun::MissionRun(const Participant& me, const RosterEntry& self)
     : active_from_(self.active_from),
       radio_(me.mission().radio_range_m),
       exchange_(me.mission(), self, me.counted(self.active_from)),
+      shift_(me.mission()),
       guidance_(me.mission(), self),
       motion_(me.mission(), self.author, me.follower().revision()) {
   last_command_.header.tick = command_before_.header.tick = -1;
@@ -58,12 +59,14 @@ std::optional<MissionOver> MissionRun::evicted(const Participant& me, Tick tick)
 
 // ---- what the agent learns ----
 
-/// Prepares here what depends on the roster, because a control step must not allocate.
+/// Prepares here what depends on roster and amendments, because a control step must not allocate.
 void MissionRun::note_roster(const Participant& me) {
   const MissionFollower& known = me.follower();
-  motion_.bodies().note_roster(known.roster());
   const RosterEntry* const own = known.entry_of(me.incarnation());
   if (own != nullptr && own->recalled()) motion_.prepare_recall(me.mission());
+  shift_.note(known.amendments());
+  if (shift_.any()) exchange_.allow_shifts();
+  motion_.note_roster(known.roster());
   if (!known.holds().empty()) held_roster_ = in_counted_ticks(known.roster(), known.holds());
 }
 
@@ -204,7 +207,7 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   // A restarted world may be a tick behind the roster. Our predecessor has covered that tick.
   if (step_.tick < active_from_ || step_.held) return std::nullopt;
   const bool covers = !step_.recalled && !rests(mission, me.id(), step_.counted);
-  if (covers) exchange_.add_sample(step_);
+  if (covers) exchange_.add_sample(step_, shift_);
   exchange_.broadcast(false, step_, me, out);
   return std::nullopt;
 }
@@ -223,7 +226,8 @@ void MissionRun::answer(Participant& me, Outbox& out) {
   command_before_ = last_command_;
   exchange_.forget_silent(step_, me);
   Eigen::Vector3d wanted_mps{0, 0, 0};
-  if (!step_.held) wanted_mps = guidance_.wanted_mps(exchange_.table(), counted_roster(me), step_);
+  if (!step_.held)
+    wanted_mps = guidance_.wanted_mps(exchange_.table(), counted_roster(me), shift_, step_);
   last_command_.header.tick = answered_ = step_.tick;
   last_command_.position_m = step_.x_m;
   last_command_.velocity_mps = motion_.command_mps(wanted_mps, step_, me);

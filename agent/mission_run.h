@@ -23,6 +23,7 @@
 #include "agent/safe_motion.h"
 #include "core/base/ids.h"
 #include "core/law/coverage_table.h"
+#include "core/law/target_shift.h"
 #include "core/mission/roster.h"
 #include "team/beacon_book.h"
 #include "team/deadline.h"
@@ -112,6 +113,7 @@ class MissionRun {
   Tick active_from_;  // from the roster
   RadioRange radio_;
   CoverageExchange exchange_;
+  TargetShift shift_;
   Guidance guidance_;
   SafeMotion motion_;
   std::vector<RosterEntry> held_roster_;  // for counted_roster(), once there are holds

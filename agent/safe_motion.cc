@@ -40,9 +40,23 @@ void SafeMotion::on(const WorldState& world) {
   if (separation_) bodies_.on(world);
 }
 
+void SafeMotion::note_roster(const std::vector<RosterEntry>& roster) {
+  bodies_.note_roster(roster);
+  undriven_.clear();
+  for (const RosterEntry& entry : roster) undriven_.push_back(entry.author.agent);
+  std::ranges::sort(undriven_);
+  undriven_.erase(std::unique(undriven_.begin(), undriven_.end()), undriven_.end());
+  std::erase_if(undriven_, [&](AgentId id) {
+    return std::ranges::any_of(roster, [&](const RosterEntry& entry) {
+      return entry.author.agent == id && entry.active_until < 0;
+    });
+  });
+  if (way_home_) way_home_->detour().begin(undriven_.size());
+}
+
 Eigen::Vector3d SafeMotion::command_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
                                         const Participant& me) {
-  const Eigen::Vector3d aim = aim_mps(wanted_mps, step);
+  const Eigen::Vector3d aim = aim_mps(wanted_mps, step, me);
   if (!separation_) return aim;
   const SafeVelocity command = safe(aim, step, me);
   if (wall_follower_) wall_follower_->note(command.wall);
@@ -56,20 +70,44 @@ bool SafeMotion::goes_home(const AgentStep& step) {
 }
 
 /// The velocity to ask the filter for: that of the way home, or `wanted_mps`, or along a wall.
-Eigen::Vector3d SafeMotion::aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step) {
-  if (goes_home(step)) return way_home_->velocity_mps(step.body_m, step.body_mps);
+Eigen::Vector3d SafeMotion::aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
+                                    const Participant& me) {
+  if (goes_home(step)) {
+    note_standing_bodies(mover(step, me), step, me);
+    return way_home_->velocity_mps(step.body_m, step.body_mps);
+  }
   if (step.recalled) return {0, 0, 0};
   if (!wall_follower_ || returns()) return wanted_mps;
   return wall_follower_->aim(step.tick, step.body_m, wanted_mps);
+}
+
+/// The filter goes slowly between two bodies if their uncertainties leave no gap: each counts
+/// twice.
+void SafeMotion::note_standing_bodies(const Mover& self, const AgentStep& step,
+                                      const Participant& me) {
+  if (undriven_.empty() || !keeps_distance(me.mission())) return;
+  way_home_->detour().begin(undriven_.size());
+  const auto others = bodies_.neighbours(step, me);
+  if (!others) return;
+  for (const Neighbour& other : *others) {
+    if (!other.known || !std::ranges::binary_search(undriven_, other.id)) continue;
+    const Eigen::Vector3d center_m =
+        anchor_m(motion_of(me.mission(), other.id), other.position_m, other.velocity_mps);
+    way_home_->detour().add(center_m.head<2>(), separation_->contact_m(id_, other.id) +
+                                                    2 * separation_->uncertainty_m(self, other));
+  }
+}
+
+Mover SafeMotion::mover(const AgentStep& step, const Participant& me) const {
+  const double limit_mps = motion_of(me.mission(), id_).speed_limit_mps;
+  return {id_, step.tick, step.body_m, limit_mps, step.body_mps};
 }
 
 SafeVelocity SafeMotion::safe(const Eigen::Vector3d& aim_mps, const AgentStep& step,
                               const Participant& me) {
   const auto others = bodies_.neighbours(step, me);
   if (!others) return {.blocked = true, .blind = true};
-  const double limit_mps = motion_of(me.mission(), id_).speed_limit_mps;
-  const Mover self{id_, step.tick, step.body_m, limit_mps, step.body_mps};
-  return separation_->safe(self, aim_mps, *others);
+  return separation_->safe(mover(step, me), aim_mps, *others);
 }
 
 }  // namespace ergocast

@@ -2,7 +2,8 @@
 // From the velocity that the law wants to the command of the vehicle, in four steps:
 //
 // 1. the way home takes the law's place, once it has begun (core/motion/way_home.h), also for an
-//    agent that was recalled; one that has no home stays where it is;
+//    agent that was recalled; one that has no home stays where it is. The way leads round bodies
+//    that no agent drives, as those of agents that were sent out;
 // 2. an agent that walls hold up goes along the wall, but not on its way home
 //    (core/motion/wall_following.h);
 // 3. the filter keeps the vehicle apart from walls, edges and the bodies of TeamBodies
@@ -15,11 +16,13 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "agent/agent_step.h"
 #include "agent/team_bodies.h"
 #include "core/base/ids.h"
 #include "core/mission/mission.h"
+#include "core/mission/roster.h"
 #include "core/motion/separation.h"
 #include "core/motion/wall_following.h"
 #include "core/motion/way_home.h"
@@ -43,6 +46,8 @@ class SafeMotion {
   SafeMotion(const Mission& mission, const Author& self, std::int64_t revision);
 
   void on(const WorldState& world);
+  /// Takes in which bodies an agent drives. No other call allocates memory for it.
+  void note_roster(const std::vector<RosterEntry>& roster);
   TeamBodies& bodies() { return bodies_; }
   const TeamBodies& bodies() const { return bodies_; }
 
@@ -67,7 +72,10 @@ class SafeMotion {
 
  private:
   bool goes_home(const AgentStep& step);
-  Eigen::Vector3d aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step);
+  Eigen::Vector3d aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
+                          const Participant& me);
+  void note_standing_bodies(const Mover& self, const AgentStep& step, const Participant& me);
+  Mover mover(const AgentStep& step, const Participant& me) const;
   SafeVelocity safe(const Eigen::Vector3d& aim_mps, const AgentStep& step, const Participant& me);
 
   AgentId id_;
@@ -76,6 +84,7 @@ class SafeMotion {
   std::optional<WallFollower> wall_follower_;  // where there are walls
   bool has_station_;
   std::optional<WayHome> way_home_;  // if it has a station, or was recalled and has a home
+  std::vector<AgentId> undriven_;    // bodies without an agent, ascending
   BlockedTicks blocked_;
 };
 

@@ -41,6 +41,8 @@ void add_export(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);
 /// `pause` and `resume`: stop the vehicles of a mission for a while, and continue.
 void add_pause(CLI::App& app, Action& action);
+/// `amend`: gives a running team a new target.
+void add_amend(CLI::App& app, Action& action);
 /// `recall`: sends agents home, or out of the mission.
 void add_recall(CLI::App& app, Action& action);
 /// `stop`: ends a mission that another command started, in order or at once.

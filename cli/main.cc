@@ -11,14 +11,14 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 verify, status or doctor found something; 2 bad scenario, arguments or\n"
     "run directory; 3 LCM cannot be used on this machine; 4 the mission failed or its record "
     "broke\n"
-    "off, some of many missions failed, or stop, pause, resume or recall did not see the team\n"
-    "obey.";
+    "off, some of many missions failed, or stop, pause, resume, amend or recall did not see the\n"
+    "team obey.";
 
 /// In the order of --help.
 constexpr void (*kCommands[])(CLI::App&, Action&) = {
     add_run,    add_simulate, add_study,  add_check, add_report,   add_verify, add_keygen,
     add_deploy, add_list,     add_status, add_watch, add_run_page, add_export, add_replay,
-    add_pause,  add_recall,   add_stop,   add_spy,   add_doctor};
+    add_pause,  add_amend,    add_recall, add_stop,  add_spy,      add_doctor};
 
 int parse_and_do(int argc, char** argv) {
   CLI::App app("Ergocast: teams of robots that spread their time over a region as a map demands.",

@@ -15,23 +15,24 @@ using namespace std::chrono_literals;
 constexpr auto kMissionPeriod = 1s;
 constexpr auto kMissionGap = 100ms;
 
-static_assert(kMaxHoldsPerMessage == 1, "parts_of() puts one hold into a part");
-
 /// How many parts a mission has.
 std::size_t part_count(const MissionContent& mission) {
   const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
-  return std::max({std::size_t{1}, ceil_div(mission.plan.size(), kMaxPlanBytesPerMessage),
-                   ceil_div(mission.members.roster().size(), kMaxRosterEntriesPerMessage),
-                   ceil_div(mission.holds.size(), kMaxHoldsPerMessage)});
+  return std::max(
+      {std::size_t{1},
+       ceil_div(mission.plan.size() + mission.amendments.size(), kMaxPlanBytesPerMessage),
+       ceil_div(mission.members.roster().size(), kMaxRosterEntriesPerMessage)});
+}
+
+/// The bytes from `first` on, at most `most`, as far as there are any.
+std::vector<std::byte> share(std::span<const std::byte> bytes, std::size_t first,
+                             std::size_t most) {
+  const auto rest = bytes.subspan(std::min(first, bytes.size()));
+  const auto taken = rest.first(std::min(most, rest.size()));
+  return {taken.begin(), taken.end()};
 }
 
 }  // namespace
-
-Tick notice_ticks(const Timing& timing) {
-  constexpr double kNotice_s = 2;
-  if (timing.pace == Pace::kLockstep) return 0;
-  return static_cast<Tick>(kNotice_s * timing.realtime_factor / timing.dt_s);
-}
 
 void Announcement::note_silence() {
   ++revision_;
@@ -77,12 +78,11 @@ std::vector<MissionPart> Announcement::parts_of(const MissionContent& mission) c
     part.parts = static_cast<std::int32_t>(parts);
     part.reason = mission.reason;
     part.stand_by_revision = mission.stand_by_revision;
-    if (p < mission.holds.size()) part.holds = {mission.holds[p]};
-    const auto& plan = mission.plan;
-    const std::size_t first = std::min(p * kMaxPlanBytesPerMessage, plan.size());
-    const std::size_t last = std::min(first + kMaxPlanBytesPerMessage, plan.size());
-    part.plan.assign(plan.begin() + static_cast<std::ptrdiff_t>(first),
-                     plan.begin() + static_cast<std::ptrdiff_t>(last));
+    // The list follows the plan, so an amendment changes no part of the plan but the last.
+    const std::size_t first = p * kMaxPlanBytesPerMessage, size = mission.plan.size();
+    part.plan = share(mission.plan, first, kMaxPlanBytesPerMessage);
+    part.amendments = share(mission.amendments, std::max(first, size) - size,
+                            kMaxPlanBytesPerMessage - part.plan.size());
   }
   // Entries stay in the order of admission, so that a newcomer changes only one part.
   for (const RosterEntry& entry : mission.members.roster()) {

@@ -14,16 +14,11 @@
 #include "coordinator/members.h"
 #include "coordinator/part_schedule.h"
 #include "core/base/ids.h"
-#include "core/mission/hold.h"
 #include "core/mission/mission.h"
 #include "team/messages.h"
 #include "team/participant.h"
 
 namespace ergocast {
-
-/// How many ticks before it takes effect a change is announced. Lockstep needs no notice: an agent
-/// answers a tick only once it knows whether that tick counts.
-Tick notice_ticks(const Timing& timing);
 
 /// The content of MISSION. See MissionPart.
 struct MissionContent {
@@ -31,7 +26,7 @@ struct MissionContent {
   const std::string& reason;
   const std::vector<std::byte>& plan;
   const Members& members;
-  std::span<const Hold> holds;
+  const std::vector<std::byte>& amendments;  ///< as encoded
   std::int64_t stand_by_revision;
 };
 

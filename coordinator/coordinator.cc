@@ -111,7 +111,7 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
   // An agent repeated a revision of a coordinator that is gone. The team must accept our revisions
   // again.
   if (arrival.mission_changed) {
-    pausing_.adopt(me_.follower().holds());
+    amending_.adopt(me_.follower().amendments());
     adopt_recalls(me_.follower().roster(), members_);
   }
   announcement_.exceed(part.revision);
@@ -123,7 +123,7 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   if (looking()) return ticks_.note_world(world.header.tick);
   if (arrival.fresh) ending_.note_world(world.last);
   if (!ticks_.receive(world, now)) return;
-  pausing_.note_world(ticks_, announcement_);
+  amending_.note_world(ticks_, announcement_);
   if (tick() >= end_tick()) end(false, "mission complete", now);
 }
 
@@ -142,9 +142,9 @@ void Coordinator::on(const Stop& stop, const Arrival& arrival) {
   end(stop.failed, stop.reason, arrival.now);
 }
 
-void Coordinator::on(const Pause& pause, const Arrival& arrival) {
+void Coordinator::on(const Amend& amend, const Arrival& arrival) {
   if (looking() || state_ != MissionState::kRunning) return;
-  pausing_.obey(pause, timing(), ticks_, signs_at(arrival.now), announcement_);
+  amending_.obey(amend, *mission_, ticks_, signs_at(arrival.now), announcement_);
 }
 
 void Coordinator::on(const Recall& recall, const Arrival&) {
@@ -202,13 +202,12 @@ void Coordinator::take_over(Instant now) {
   plan_ = known.plan();
   state_ = known.state();
   ending_.take_over(known, now);
-  pausing_.plan({known.holds().begin(), known.holds().end()});
+  // What an operator wants and no tick was named for lapses: the operator repeats it.
+  amending_.plan(known.amendments());
   // The world may have stopped, too. Then the tick of the predecessor or of the agents counts.
   for (const MissionPart& part : known.parts()) ticks_.note_world(part.header.tick);
   ticks_.take_over(end_tick(), now);
   announcement_.continue_from(first_revision(known, tick()));
-  // The world stands by for us at its next tick, the first under our revision.
-  if (known.stand_by_revision() >= 0) pausing_.stand_by(announcement_.revision());
   for (const RosterEntry& entry : known.roster()) {
     members_.add(entry);
     me_.presume_alive(entry.author, now);
@@ -314,8 +313,8 @@ void Coordinator::publish_due(Instant now, Outbox& out) {
 }
 
 void Coordinator::publish_mission(Outbox& out) {
-  const MissionContent content{state_,   reason(), plan_,
-                               members_, holds(),  pausing_.stand_by_revision()};
+  const MissionContent content{state_,   reason(),          plan_,
+                               members_, amending_.bytes(), amending_.stand_by_revision()};
   announcement_.publish(content, me_, tick(), out);
 }
 

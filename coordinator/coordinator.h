@@ -16,16 +16,16 @@
 #include <vector>
 
 #include "coordinator/admission.h"
+#include "coordinator/amending.h"
 #include "coordinator/announcement.h"
 #include "coordinator/members.h"
 #include "coordinator/mission_end.h"
 #include "coordinator/other_coordinator.h"
-#include "coordinator/pausing.h"
 #include "coordinator/silence_watch.h"
 #include "coordinator/takeover.h"
 #include "coordinator/tick_watch.h"
 #include "core/base/ids.h"
-#include "core/mission/hold.h"
+#include "core/mission/amendments.h"
 #include "core/mission/mission.h"
 #include "team/messages.h"
 #include "team/participant.h"
@@ -58,11 +58,11 @@ class Coordinator {
   /// Ends the mission in order; `failed` makes it a failure with that reason.
   void end(bool failed, std::string reason, Instant now);
 
-  /// Plans the pauses of the mission from its beginning on. A simulation repeats recorded pauses
-  /// so.
-  /// @pre are_holds(holds), and it has not advanced
-  void plan_holds(std::vector<Hold> holds) { pausing_.plan(std::move(holds)); }
-  const std::vector<Hold>& holds() const { return pausing_.holds(); }
+  /// Plans amendments of the mission from its beginning on. A simulation repeats recorded ones so.
+  /// @pre are_amendments(list), and it has not advanced
+  void plan_amendments(Amendments list) { amending_.plan(std::move(list)); }
+  const Amendments& amendments() const { return amending_.list(); }
+  const std::vector<Hold>& holds() const { return amendments().holds; }
   /// Whether the newest tick that it knows is held.
   bool paused() const { return is_held(holds(), tick()); }
 
@@ -105,7 +105,7 @@ class Coordinator {
   void on(const RecordAck& ack, const Arrival& arrival);
   void on(const TeamStatus& theirs, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
-  void on(const Pause& pause, const Arrival& arrival);
+  void on(const Amend& amend, const Arrival& arrival);
   void on(const Recall& recall, const Arrival& arrival);
 
   const Timing& timing() const { return mission_->timing; }
@@ -139,7 +139,7 @@ class Coordinator {
   Admission admission_;
   TickWatch ticks_;
   CoverageReview coverage_review_;
-  Pausing pausing_;
+  Amending amending_;
   MissionEnd ending_;
   Announcement announcement_;
   std::optional<Instant> leads_since_;

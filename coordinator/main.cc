@@ -92,7 +92,7 @@ class MissionLog {
       spdlog::info("run {} of scenario {}{}: quorum of {} agents", to_hex(coordinator.run()),
                    mission->name, coordinator.took_over() ? ", taken over" : "", mission->quorum);
     }
-    look_at_holds(coordinator);
+    look_at_amendments(coordinator);
     if (coordinator.state() == state_) return;
     state_ = coordinator.state();
     const std::string& reason = coordinator.reason();
@@ -103,18 +103,22 @@ class MissionLog {
   }
 
  private:
-  void look_at_holds(const Coordinator& coordinator) {
-    const int changes = named_changes(coordinator.holds());
-    if (changes == changes_) return;
-    changes_ = changes;
-    if (changes == 0) return;
-    const Hold& newest = coordinator.holds().back();
-    spdlog::info("mission {} from tick {} on", newest.open() ? "is paused" : "counts",
-                 newest.open() ? newest.from : newest.until);
+  void look_at_amendments(const Coordinator& coordinator) {
+    for (const Amendment& one : coordinator.amendments().recent) {
+      if (one.number < logged_amendments_) continue;
+      spdlog::info("mission {} from tick {} on (amendment {})", effect_of(one.kind), one.from,
+                   one.number);
+    }
+    logged_amendments_ = coordinator.amendments().named;
   }
 
   MissionState state_ = MissionState::kWaiting;
-  int changes_ = 0;  // of the holds, that were logged
+  static const char* effect_of(AmendmentKind kind) {
+    constexpr const char* kEffects[] = {"is paused", "counts", "has another target"};
+    return kEffects[static_cast<int>(kind)];
+  }
+
+  std::int32_t logged_amendments_ = 0;
   bool announced_ = false;
 };
 

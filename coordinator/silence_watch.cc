@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/mission/amendments.h"
+
 namespace ergocast {
 namespace {
 

@@ -31,6 +31,7 @@ constexpr FaultField kFields[] = {
     {"world_crashes_per_s", &Faults::world_crashes_per_s, 1},
     {"pauses_per_s", &Faults::pauses_per_s, 1},
     {"pause_max_s", &Faults::pause_max_s, 60},
+    {"targets_per_s", &Faults::targets_per_s, 1},
     {"recalls_per_s", &Faults::recalls_per_s, 1},
     {"departure_share", &Faults::departure_share, 1},
     {"downtime_max_s", &Faults::downtime_max_s, 60},
@@ -48,7 +49,8 @@ enum Stream : std::uint32_t {
   kCoordinator,
   kWorldProcess,
   kOperator,
-  kRecalls
+  kRecalls,
+  kTargets
 };
 
 }  // namespace
@@ -100,6 +102,7 @@ Faults drawn(std::uint64_t seed) {
     faults.recalls_per_s = random.log_uniform(0.02, 0.1);
     faults.departure_share = random.uniform();
   }
+  if (random.coin()) faults.targets_per_s = random.log_uniform(0.03, 0.3);
   return faults;
 }
 
@@ -150,6 +153,8 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
     const auto kind = random.uniform() < faults.departure_share ? kDeparture : kRecall;
     return std::pair(kind, random.word() % static_cast<std::uint64_t>(agents));
   });
+  draw(kTargets, faults.targets_per_s, 0,
+       [](RandomStream& random) { return std::pair(kTarget, random.word()); });
   std::stable_sort(all.begin(), all.end(),
                    [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;

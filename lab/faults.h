@@ -33,6 +33,7 @@ struct Faults {
   double world_crashes_per_s = 0;
   double pauses_per_s = 0;        ///< an operator pauses the mission, …
   double pause_max_s = 0;         ///< … and resumes it after up to so long, uniform
+  double targets_per_s = 0;       ///< an operator gives the team another target
   double recalls_per_s = 0;       ///< an operator sends an agent home, …
   double departure_share = 0;     ///< … or, with this share of recalls, out of the mission
   double downtime_max_s = 0;      ///< until a crashed process is started again, uniform
@@ -72,13 +73,14 @@ struct FaultEvent {
     kWorldCrash,
     kPause,
     kRecall,
-    kDeparture
+    kDeparture,
+    kTarget
   };
   Kind kind;
   double at_s;  ///< after the start of the mission
   double lasts_s;
-  std::uint64_t
-      who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall: which agent
+  std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall:
+                      ///< which agent; target: which one
 };
 
 /// The events of `horizon_s` seconds, by time.

@@ -13,6 +13,15 @@
 #include "core/motion/vehicle.h"
 
 namespace ergocast::lab {
+namespace {
+
+/// The mission with its modes in the order of the basis also in blocks, as they are here.
+Mission in_basis_order(Mission mission) {
+  mission.timing.high_mode_period_factor = 1;
+  return mission;
+}
+
+}  // namespace
 
 IdealTeam::IdealTeam(Mission mission, Edges edges)
     : mission_(std::move(mission)),
@@ -21,6 +30,7 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
       look_ahead_(mission_),
       coverage_(Coefficients::Zero(mission_.basis.mode_count())),
       earlier_(static_cast<std::size_t>(mission_.basis.mode_count())),
+      shift_(in_basis_order(mission_)),
       sensors_(mission_) {
   table_.set_half_life(HalfLife(mission_));
   controllers_.emplace_back(mission_);
@@ -59,6 +69,11 @@ bool IdealTeam::stands_for(const Mission& mission) {
          (all_is_sent || all_is_known) && !any_station(mission);
 }
 
+void IdealTeam::note(const Amendments& list) {
+  shift_.note(list);
+  if (shift_.any()) table_.allow_shifts();
+}
+
 void IdealTeam::step() {
   sample();
   if (look_ahead_.any()) {
@@ -72,6 +87,7 @@ void IdealTeam::step() {
     Controller& controller = controllers_[static_cast<std::size_t>(agent.kind)];
     if (look_ahead_.any()) {
       foresee(agent);
+      correct();
       controller.set_coverage(coverage_);
     }
     const Eigen::Vector3d wanted_mps =
@@ -114,10 +130,12 @@ void IdealTeam::sample() {
   table_.set_now(tick_);
   const double kept = HalfLife::factor(halvings, table_.halvings());
   const double before_steps = table_.view(0, 0).remembered_steps;
+  const TargetShift::Change* const change = shift_.at(tick_);
   for (Agent& agent : agents_) {
     agent.at.emplace(agent.x_m, mission_.domain, mission_.basis);
     const double* const footprint = sensors_.of(agent.kind).footprint();
     table_.add_sample(agent.author, *agent.at, footprint);
+    if (change != nullptr) table_.shift_sample(agent.author, change->by_slot.data());
     if (!look_ahead_.any()) continue;
     if (mission_.dead_reckoning) {
       set_basis(*agent.at, mission_.basis, mission_.timing.dt_s, agent.gain.data());
@@ -160,10 +178,22 @@ void IdealTeam::weigh(const Agent& agent) {
   const double remembered_steps = table_.view(0, 0).remembered_steps;
   for (const Agent& each : agents_) steps += quality(each) * remembered_steps;
   double covered_s = steps * mission_.timing.dt_s;
+  unshifted_s_ = 0;
   for (const Agent& other : agents_) {
-    if (other.author != agent.author) covered_s += quality(other) * weight_s_;
+    if (other.author == agent.author) continue;
+    covered_s += quality(other) * weight_s_;
+    unshifted_s_ += share_ * (quality(other) * mission_.timing.dt_s);
   }
   per_second_ = 1 / covered_s;
+}
+
+/// With dead reckoning a gain is f at a place, without the shift: what the forecast lacks.
+void IdealTeam::correct() {
+  const TargetShift::Change* const change = mission_.dead_reckoning ? shift_.at(tick_) : nullptr;
+  if (change == nullptr) return;
+  const double share = unshifted_s_ * per_second_;
+  for (std::size_t k = 0; k < earlier_.size(); ++k)
+    coverage_[static_cast<Eigen::Index>(k)] -= change->by_slot[k] * share;
 }
 
 /// Sets ĉ for the next agent in the order of the team.

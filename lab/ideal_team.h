@@ -13,6 +13,8 @@
 #include "core/law/control.h"
 #include "core/law/coverage_table.h"
 #include "core/law/look_ahead.h"
+#include "core/law/target_shift.h"
+#include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
 #include "core/motion/separation.h"
@@ -36,6 +38,11 @@ class IdealTeam {
   /// reckoning, without rounding.
   static bool stands_for(const Mission& mission);
 
+  /// Takes in the newest list of amendments, of which only the targets count: its ticks are those
+  /// that count. A change of the target is for the ticks to come. A distributed team computes the
+  /// same bits if it also broadcasts all coverage each tick, else the same up to rounding.
+  void note(const Amendments& list);
+
   /// One tick: samples, commands from the common c_k, motion. Does not allocate.
   void step();
 
@@ -54,7 +61,8 @@ class IdealTeam {
   const Eigen::Vector3d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
   /// B of (6) in the last step.
   const Eigen::Vector3d& b(std::size_t agent) const { return agents_[agent].b; }
-  /// c_k of the last step, and its φ².
+  /// c_k of the last step, and its φ². With amendments each moment counts against the target of its
+  /// own time (core/law/target_shift.h).
   Coefficients coverage() const;
   double metric() const { return controllers_.front().metric(coverage()); }
   /// Steps of single agents that a teammate or an edge has blocked, and the longest run of such
@@ -81,6 +89,7 @@ class IdealTeam {
   void look_ahead();
   void foresee(const Agent& agent);
   void weigh(const Agent& agent);
+  void correct();
   double quality(const Agent& agent) const { return sensors_.of(agent.kind).quality; }
   void see_bodies();
   Eigen::Vector3d kept_apart(Agent& agent, const Eigen::Vector3d& v_mps);
@@ -94,6 +103,8 @@ class IdealTeam {
   std::vector<double> earlier_;                       // what all earlier agents will have covered
   double gained_steps_ = 1;                           // the time that all gains cover
   double weight_s_ = 0, share_ = 0, per_second_ = 0;  // of gains, share of gains, and factor of all
+  double unshifted_s_ = 0;                            // of the forecast gains
+  TargetShift shift_;
   Sensors sensors_;
   std::vector<Controller> controllers_;  // by kind
   std::vector<Agent> agents_;

@@ -69,8 +69,11 @@ void Invariants::started(const Author& author) {
 
 void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
-  if (const auto* part = std::get_if<MissionPart>(&outgoing.message))
-    return truth_.receive(*part) ? check_closed_numbers(t_s) : void();
+  if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) {
+    if (!truth_.receive(*part)) return;
+    shifted_ = shifted_ || !truth_.amendments().targets.empty();
+    return check_closed_numbers(t_s);
+  }
   if (const auto* command = std::get_if<Command>(&outgoing.message)) {
     // A repeated command was checked before.
     const bool answers = speaker != nullptr && command->header.tick == speaker->answered;
@@ -88,7 +91,6 @@ void Invariants::check(double t_s, const WorldState& world) {
   last_tick_ = std::max(last_tick_, world.header.tick);
   if (keeps_distance(mission_)) check_distances(t_s, world);
   check_paused(t_s, world);
-  check_home(t_s, world);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     places_m_[vehicle.id] = vehicle.position_m;
     if (!mission_.walls.empty()) check_wall(t_s, vehicle);
@@ -96,6 +98,7 @@ void Invariants::check(double t_s, const WorldState& world) {
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
   }
+  check_home(t_s, world);
 }
 
 /// Uses the true places, once all places of a tick are known. Starts may be exactly at the least
@@ -172,15 +175,17 @@ void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
   const double covered_s = mission_.law.memory_half_life_s > 0
                                ? block.elapsed_s
                                : static_cast<double>(block.steps) * mission_.timing.dt_s;
-  const double most_s = covered_s * (1 + 1e-9 + rounding(block.steps));
+  // Samples are shifted once the team has had another target.
+  const double range = shifted_ ? kShiftedRange : 1;
+  const double most_s = range * covered_s * (1 + 1e-9 + rounding(block.steps));
   double largest_s = 0;
   for (const double sum_s : block.sums) largest_s = std::max(largest_s, std::abs(sum_s));
   const bool zeroth_is_off =
       block.block == 0 && std::abs(block.sums[0] - covered_s) > covered_s * rounding(block.steps);
   if (!(largest_s <= most_s) || zeroth_is_off) {
     violate(t_s, Invariant::kSumsBounded, name_of(block.author()),
-            text("largest |S| = ", largest_s, " s, S_00 = ", block.sums[0],
-                 " s, time covered ", covered_s, " s, block ", block.block));
+            text("largest |S| = ", largest_s, " s, S_00 = ", block.sums[0], " s, time covered ",
+                 covered_s, " s, block ", block.block));
   }
   if (relayer == kUnassigned || speaker == nullptr) return;
   ++relayed_;
@@ -303,7 +308,8 @@ void Invariants::ended(double t_s, const std::string& still_running, const std::
   }
   const bool recalled =
       std::ranges::any_of(truth_.roster(), [](const auto& entry) { return entry.recalled(); });
-  const double goal = recalled ? 0 : mission_.goal_ergodic_metric;  // fewer agents may miss it
+  // Fewer agents may miss it, and it was for the plan's target.
+  const double goal = recalled || shifted_ ? 0 : mission_.goal_ergodic_metric;
   if (goal > 0 && !(facts.ergodic_metric_last <= goal)) {
     violate(t_s, Invariant::kGoalReached, "the team",
             text("phi^2 = ", facts.ergodic_metric_last, " > ", goal,

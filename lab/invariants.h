@@ -49,6 +49,7 @@ enum class Invariant : std::uint8_t {
   kWhatIsNotPausedCounts,
   kNobodyMovesWhilePaused,
   kAverageOfWhatIsHeld,
+  kSamplesAreTrue,
   kForecastOfWhatIsKnown,
   kZerothIsOne,
   kHonestMessagesAccepted,
@@ -80,7 +81,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kWallsKept, "bodies keep out of walls"},
         {Invariant::kHomeInTime, "agents are home in time"},
         {Invariant::kRecalledComeHome, "recalled agents come home"},
-        {Invariant::kSumsBounded, "|S_mn| <= S_00 = time covered"},
+        {Invariant::kSumsBounded, "S_00 = steps dt, |S_mn| <= S_00, or 3 S_00 after a change"},
         {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
         {Invariant::kDigestsSayWhatIsHeld, "a digest lists what is held"},
         {Invariant::kWholeMessagesAccepted, "no whole message is refused"},
@@ -91,6 +92,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kWhatIsNotPausedCounts, "every tick counts unless paused or at rest"},
         {Invariant::kNobodyMovesWhilePaused, "no vehicle moves while the mission is paused"},
         {Invariant::kAverageOfWhatIsHeld, "c_k = sum S / sum elapsed of what is held"},
+        {Invariant::kSamplesAreTrue,
+         "each sample is f at its place against the target of its tick"},
         {Invariant::kForecastOfWhatIsKnown, "forecast of what is known"},
         {Invariant::kZerothIsOne, "c_00 = 1"},
         {Invariant::kHonestMessagesAccepted, "no honest message is refused"},
@@ -157,10 +160,10 @@ class Invariants {
   /// from each wall as the mission requires; bodies are as far apart as required, in each tick; |u|
   /// ≤ u_max, or |v| ≤ the speed limit where a distance is kept or on the way home; in lockstep
   /// agents with a station are there from the reserve before the end on, or where others may be in
-  /// the way, at the last tick; |S| ≤ S_00 = steps · dt, or with a half-life the time that is
-  /// remembered, which is halved at its ticks; while the mission is paused no body moves
-  /// once it has braked; a digest matches what its sender holds; each entry of a received digest
-  /// gets at most one answer.
+  /// the way, at the last tick, as near as vehicles that stand for good let them; |S| ≤ S_00 =
+  /// steps · dt, or with a half-life the time that is remembered, which is halved at its ticks;
+  /// while the mission is paused no body moves once it has braked; a digest matches what its sender
+  /// holds; each entry of a received digest gets at most one answer.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has received a digest.
@@ -179,7 +182,9 @@ class Invariants {
   /// so far that count; c_k is Σ S / Σ elapsed of what it holds; c_00 = 1. Where its law looks
   /// ahead, ĉ_k follows by the equation of core/law/forecast.h from what has reached it
   /// (lab/shadow.h).
-  void answered(double t_s, const TableView& holder);
+  /// @param x_m  where it was at that tick; nothing: its sample is not checked
+  void answered(double t_s, const TableView& holder,
+                const std::optional<Eigen::Vector3d>& x_m = std::nullopt);
   /// An agent's core has refused `counts` messages, none of them damaged.
   void refused(double t_s, const Author& who, const RefusalCounts& counts);
   /// An agent has ended by itself.
@@ -241,6 +246,7 @@ class Invariants {
   void check(double t_s, const Digest& digest, const TableView& speaker);
   void check_steps(double t_s, const TableView& holder);
   void check_average(double t_s, const TableView& holder);
+  void check_sample(double t_s, const TableView& holder, const Eigen::Vector3d& x_m);
   void check_forecast(double t_s, const TableView& holder);
   std::map<Author, std::vector<Best>> best_of(const std::vector<TableView>& living) const;
   double quality_of(const Author& author) const;
@@ -255,6 +261,7 @@ class Invariants {
   void note_positions(double t_s, const WorldState& world);
   void check_wall(double t_s, const Vehicle& vehicle);
   void check_home(double t_s, const WorldState& world);
+  double nearest_to_station_m(const Vehicle& vehicle) const;
   void check_recalled_home(double t_s, const TableView& holder);
   bool recalled_in_truth(const TableView& holder) const;
   void check_closed_numbers(double t_s);
@@ -274,6 +281,7 @@ class Invariants {
   std::vector<Author> authors_;
   std::map<AgentId, int> incarnation_count_;
   MissionFollower truth_;                                  // follows all messages about the mission
+  bool shifted_ = false;                                   // a target has been named
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, std::int64_t> own_steps_;               // after the tick begun last
   std::map<std::pair<Author, int>, Sent> sent_;            // of each block, with a half-life

@@ -20,7 +20,9 @@ void Invariants::received(const TableView& listener, const Message& message) {
   if (listener.table == nullptr) return;
   if (std::holds_alternative<MissionPart>(message)) {
     const RosterEntry* own = entry_of(*listener.roster, listener.self);
-    if (own != nullptr) shadows_.try_emplace(listener.self, own->active_from);
+    if (own == nullptr) return;
+    const auto shadow = shadows_.try_emplace(listener.self, own->active_from).first;
+    if (listener.amendments != nullptr) shadow->second.note_targets(mission_, *listener.amendments);
     return;
   }
   if (mission_.law.anticipation <= 0) return;
@@ -29,8 +31,10 @@ void Invariants::received(const TableView& listener, const Message& message) {
   shadows_.at(listener.self).receive(mission_, listener, message);
 }
 
-void Invariants::answered(double t_s, const TableView& holder) {
+void Invariants::answered(double t_s, const TableView& holder,
+                          const std::optional<Eigen::Vector3d>& x_m) {
   check_steps(t_s, holder);
+  if (x_m) check_sample(t_s, holder, *x_m);
   const bool looks_ahead =
       mission_.law.anticipation > 0 && holder.foreseen != nullptr && !holder.held;
   if (looks_ahead) shadows_.at(holder.self).answer(mission_, holder);
@@ -39,6 +43,14 @@ void Invariants::answered(double t_s, const TableView& holder) {
   if (holder.answered % kTicksBetweenAverages != 0) return;
   check_average(t_s, holder);
   if (looks_ahead) check_forecast(t_s, holder);
+}
+
+void Invariants::check_sample(double t_s, const TableView& holder, const Eigen::Vector3d& x_m) {
+  const double error_s = shadows_.at(holder.self).sample_error_s(mission_, holder, x_m);
+  const double covered_s = static_cast<double>(last_tick_ + 1) * mission_.timing.dt_s;
+  if (error_s <= kShiftedRange * covered_s * rounding(last_tick_)) return;
+  violate(t_s, Invariant::kSamplesAreTrue, name_of(holder.self),
+          text("differs by ", error_s, " s at tick ", holder.answered));
 }
 
 void Invariants::check_steps(double t_s, const TableView& holder) {
@@ -115,8 +127,7 @@ std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
         const Contribution held = holder.table->block(author, b);
         Best& known = blocks[static_cast<std::size_t>(b)];
         if (held.steps > known.steps)
-          known = {held.steps, held.sums, held.elapsed_s,
-                   halvings_at(mission_, held.header.tick)};
+          known = {held.steps, held.sums, held.elapsed_s, halvings_at(mission_, held.header.tick)};
       }
     }
   }
@@ -226,8 +237,10 @@ void Invariants::check_view(double t_s, const TableView& holder,
   const double error = (c - c_true).cwiseAbs().maxCoeff();
   if (covered_s <= stale_s) return;
   // One holder may have the author's own sums of a row, and another the sums that have travelled.
-  const double most = 2 * stale_s / (covered_s - stale_s) +
-                      2 * rounding_of(mission_.timing.contribution_encoding) + rounding(last_tick_);
+  const double range = holder.table->allows_shifts() ? kShiftedRange : 1;
+  const double most =
+      range * (2 * stale_s / (covered_s - stale_s) +
+               2 * rounding_of(mission_.timing.contribution_encoding) + rounding(last_tick_));
   if (error <= most) return;
   violate(t_s, Invariant::kViewsAgree, name_of(holder.self),
           text("|c - c_true| = ", error, " > ", most, " with ", stale_s, " s of ", covered_s,

@@ -7,11 +7,15 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "core/law/forecast.h"
 
 namespace ergocast::lab {
 namespace {
+
+/// Room for rounding where a gain is compared with its time.
+constexpr double kRoom = 1e-6;
 
 /// A teammate that has been silent for this many announced periods has no forecast any more.
 constexpr Tick kPeriodsUntilDead = 8;
@@ -214,13 +218,13 @@ bool has_forecast(const Mission& mission, const TableView& agent, const RosterEn
 // ---- what was received ----
 
 void Shadow::receive(const Mission& mission, const TableView& agent, const Message& message) {
-  if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);
+  if (const auto* block = std::get_if<Contribution>(&message)) take(mission, agent, *block);
   if (const auto* world = std::get_if<WorldState>(&message)) note_places(mission, agent, *world);
 }
 
 /// Takes a block's content from the message itself. Only whether the block is held now comes from
 /// the table.
-void Shadow::take(const TableView& agent, const Contribution& theirs) {
+void Shadow::take(const Mission& mission, const TableView& agent, const Contribution& theirs) {
   if (theirs.author() == agent.self) return;
   Row& row = rows_[theirs.author()];
   row.blocks.resize(static_cast<std::size_t>(agent.table->block_count()));
@@ -230,6 +234,17 @@ void Shadow::take(const TableView& agent, const Contribution& theirs) {
   block.before = block.held;
   block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick, theirs.elapsed_s,
                 theirs.sums,  theirs.gains,       theirs.gained_steps};
+  block.gains_possible = gains_are_possible(mission, agent, block);
+}
+
+/// A teammate may know of a new target first. What its block gains may then seem impossible.
+bool Shadow::gains_are_possible(const Mission& mission, const TableView& agent,
+                                const Block& block) const {
+  if (agent.table->allows_shifts()) return true;
+  const Part part = part_of(mission, block, halvings_at(mission, block.held.tick));
+  const double most_s = part.gained_s * (1 + kRoom);
+  return std::ranges::all_of(part.gains,
+                             [most_s](double gain_s) { return std::abs(gain_s) <= most_s; });
 }
 
 void Shadow::note_places(const Mission& mission, const TableView& agent, const WorldState& world) {
@@ -304,6 +319,55 @@ void Shadow::dead_reckon(const RosterEntry& entry, Row& row) const {
   if (entry.active_at(places.back().tick)) row.newest = places.back();
 }
 
+// ---- targets that have changed ----
+
+void Shadow::add_shift(const Mission& mission, int block, Tick tick, double factor,
+                       std::vector<double>& numbers) const {
+  if (targets_.empty()) return;
+  const auto shift = block_of(targets_.shift_s(mission, tick),
+                              modes(mission)[static_cast<std::size_t>(block)], block_size(mission));
+  for (std::size_t k = 0; k < shift.size(); ++k) numbers[k] += factor * shift[k];
+}
+
+/// A teammate will gain with the shift of `tick`, and has gained with those of its steps, each as
+/// far as it was remembered at the last of them.
+void Shadow::correct_gains(const Mission& mission, int block, Tick tick, Part& part) const {
+  if (targets_.empty()) return;
+  const Tick first = part.tick - part.gained_steps + 1, halvings = halvings_at(mission, part.tick);
+  const auto left = [&](Tick step) { return left_after(halvings - halvings_at(mission, step)); };
+  double steps = 0;
+  for (Tick step = first; step <= part.tick; ++step) steps += left(step);
+  const double gained = part.gained_s / mission.timing.dt_s;
+  for (Tick step = first; step <= part.tick; ++step)
+    add_shift(mission, block, step, left(step) / steps * gained, part.gains);
+  add_shift(mission, block, tick, -gained, part.gains);
+}
+
+// ---- the own row ----
+
+double Shadow::sample_error_s(const Mission& mission, const TableView& agent,
+                              const Eigen::Vector3d& x_m) {
+  const Contribution own = agent.table->block(agent.self, 0);
+  const RosterEntry* const entry = entry_of(*agent.roster, agent.self);
+  std::vector<double> sums_s = vector_of(own.sums, block_size(mission));
+  double error_s = 0;
+  // The row's tick is that of its last halving.
+  const Tick halvings = halvings_at(mission, own.header.tick);
+  const double left = left_after(halvings - std::exchange(own_halvings_, halvings));
+  if (own.steps == own_steps_ + 1 && own_steps_ > 0 && entry != nullptr) {
+    auto expected_s =
+        block_of(seen_at(mission, entry->kind, x_m), modes(mission)[0], block_size(mission));
+    add_shift(mission, 0, agent.counted, -1, expected_s);
+    for (std::size_t k = 0; k < sums_s.size(); ++k) {
+      const double sample_s = sums_s[k] - left * own_sums_s_[k];
+      error_s = std::max(error_s, std::abs(sample_s - expected_s[k]));
+    }
+  }
+  own_steps_ = own.steps;
+  own_sums_s_ = std::move(sums_s);
+  return error_s;
+}
+
 // ---- the equation ----
 
 /// The part of a block without dead reckoning, as remembered after so many halvings.
@@ -330,8 +394,7 @@ Shadow::Part Shadow::part_of(const Mission& mission, const Block& block, Tick ha
   for (double& sum : part.sums) sum *= left;
   if (mission.timing.contribution_encoding == ContributionEncoding::kFixed16) return part;
   part.gained_steps = held.steps - before.steps;
-  part.gained_s =
-      part.time_s - left_before * covered_s(mission, before.steps, before.elapsed_s);
+  part.gained_s = part.time_s - left_before * covered_s(mission, before.steps, before.elapsed_s);
   const std::vector<double> sums_before = vector_of(before.sums, size);
   for (std::size_t k = 0; k < part.gains.size(); ++k) {
     part.gains[k] = part.sums[k] - left_before * sums_before[k];
@@ -340,9 +403,10 @@ Shadow::Part Shadow::part_of(const Mission& mission, const Block& block, Tick ha
 }
 
 /// What each block of a row adds to ĉ.
+/// @param forecast_tick  of the forecast, if the row has one
 std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& row,
-                                           const RosterEntry* entry, bool has_forecast,
-                                           Tick halvings) const {
+                                           const RosterEntry* entry,
+                                           std::optional<Tick> forecast_tick, Tick halvings) const {
   std::map<Tick, Coefficients> gains;
   const auto gain = [&](const Place& place, int b) {
     auto found = gains.find(place.tick);
@@ -357,15 +421,25 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
     Part& part = parts.emplace_back(part_of(mission, block, halvings));
     part.quality = quality_of(mission, entry);
     if (entry != nullptr) part.until = covers_until(mission, entry->author.agent);
-    if (!has_forecast) part.gained_steps = 0;
-    if (part.gained_steps == 0 || !row.newest || row.newest->tick < block.held.tick) continue;
+    if (!forecast_tick) part.gained_steps = 0;
+    if (part.gained_steps == 0) continue;
+    if (!row.newest || row.newest->tick < block.held.tick) {
+      correct_gains(mission, b, *forecast_tick, part);
+      if (!block.gains_possible) part.gained_steps = 0;
+      continue;
+    }
+    // Places may be missing; the steps at them count as the last ones up to the newest.
+    Tick step = row.newest->tick - std::ssize(block.since);
     for (const Place& place : block.since) {
       const auto more = gain(place, b);
       const double left = left_after(halvings - halvings_at(mission, place.tick));
       for (std::size_t k = 0; k < more.size(); ++k) part.sums[k] += left * more[k];
       part.time_s += left * mission.timing.dt_s;
+      ++step;
+      add_shift(mission, b, step, -left_after(halvings - halvings_at(mission, step)), part.sums);
     }
     part.gains = gain(*row.newest, b);
+    add_shift(mission, b, *forecast_tick, -1, part.gains);
     part.gained_steps = 1;
     part.gained_s = mission.timing.dt_s;
     part.tick = row.newest->tick;
@@ -377,8 +451,8 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
                                                     const TableView& agent) const {
   std::vector<std::vector<Part>> team(1);
   // An agent that has learned late of a pause has halved its sums too early, and they stay so.
-  const Tick halvings = halvings_at(
-      mission, std::max(agent.counted, agent.table->block(agent.self, 0).header.tick));
+  const Tick halvings =
+      halvings_at(mission, std::max(agent.counted, agent.table->block(agent.self, 0).header.tick));
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const Contribution own = agent.table->block(agent.self, b);
     const int size = block_size(mission);
@@ -390,8 +464,9 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
   for (const auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
     if (entry != nullptr && is_forgotten(*entry, agent)) continue;
+    const bool forecast = entry != nullptr && has_forecast(mission, agent, *entry);
     team.push_back(parts_of(mission, row, entry,
-                            entry != nullptr && has_forecast(mission, agent, *entry), halvings));
+                            forecast ? std::optional(agent.counted) : std::nullopt, halvings));
   }
   return team;
 }

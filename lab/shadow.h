@@ -18,6 +18,7 @@
 #include "core/basis/basis.h"
 #include "core/mission/mission.h"
 #include "lab/table_view.h"
+#include "lab/target_memory.h"
 #include "lab/wire_modes.h"
 #include "team/messages.h"
 
@@ -30,11 +31,20 @@ class Shadow {
   explicit Shadow(Tick active_from) : active_from_(active_from) {}
   Tick active_from() const { return active_from_; }
 
+  /// The agent has received this list.
+  void note_targets(const Mission& mission, const Amendments& list) {
+    targets_.note(mission, list);
+  }
+
   /// A message has reached the agent, whose state is now `agent`.
   void receive(const Mission& mission, const TableView& agent, const Message& message);
 
   /// The agent has answered a tick. Call it for each tick, because each adds places to the rows.
   void answer(const Mission& mission, const TableView& agent);
+
+  /// How far the newest sample of the first block of its own row is from (f(x) − (μ − μ₀)) dt [s];
+  /// 0 if the row has not gained exactly one step since the last call.
+  double sample_error_s(const Mission& mission, const TableView& agent, const Eigen::Vector3d& x_m);
 
   /// ĉ at the tick that the agent has answered.
   Coefficients foreseen(const Mission& mission, const TableView& agent) const;
@@ -52,6 +62,7 @@ class Shadow {
     std::int64_t gained_steps = 0;
   };
   struct Block {
+    bool gains_possible = true;  ///< by the targets that the agent knew when `held` arrived
     Snapshot held,
         before;  ///< `before` is the previous one by steps, even if older blocks arrived later
     std::vector<Place> since;              ///< where its author was after `held`, as it was known
@@ -72,13 +83,18 @@ class Shadow {
     Tick until = std::numeric_limits<Tick>::max();  ///< its author rests from then on
   };
 
-  void take(const TableView& agent, const Contribution& theirs);
+  void take(const Mission& mission, const TableView& agent, const Contribution& theirs);
+  bool gains_are_possible(const Mission& mission, const TableView& agent, const Block& block) const;
   void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void dead_reckon(const RosterEntry& entry, Row& row) const;
   Part part_of(const Mission& mission, const Block& block, Tick halvings) const;
+  /// Adds `factor` times the shift of a tick.
+  void add_shift(const Mission& mission, int block, Tick tick, double factor,
+                 std::vector<double>& numbers) const;
+  void correct_gains(const Mission& mission, int block, Tick tick, Part& part) const;
   std::vector<Part> parts_of(const Mission& mission, const Row& row, const RosterEntry* entry,
-                             bool has_forecast, Tick halvings) const;
+                             std::optional<Tick> forecast_tick, Tick halvings) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
   /// The modes of the one mission that this shadow follows.
@@ -87,6 +103,10 @@ class Shadow {
   mutable WireModes modes_;
   mutable std::optional<Eigen::Matrix3d> covariance_m2_;  // of the target
   Tick active_from_;
+  TargetMemory targets_;
+  std::int64_t own_steps_ = -1;     // of the own row at the last call of sample_error_s(), …
+  std::vector<double> own_sums_s_;  // … the sums of its first block, …
+  Tick own_halvings_ = 0;           // … and how often they had been halved
   std::map<Author, Row> rows_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest are dropped
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // for the radio range, of the newest …

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A simulated operator: it pauses a mission and resumes it, and sends agents home or out of it.
+// A simulated operator: it pauses a mission and resumes it, gives the team other targets, and sends
+// agents home or out of the mission.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -12,7 +14,9 @@
 
 #include "coordinator/coordinator.h"
 #include "core/base/ids.h"
-#include "core/mission/hold.h"
+#include "core/mission/amendments.h"
+#include "plan/amendment_list.h"
+#include "team/amend_parts.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {
@@ -27,6 +31,11 @@ class SimulatedOperator {
   void end_pause(Instant now) {
     if (paused_until_ && *paused_until_ <= now) paused_until_.reset();
   }
+  /// Wants the team to cover another target. It then wants no earlier one any more.
+  void want_target(TargetChange target) {
+    target_hash_ = target_hash(target);
+    target_ = encode_target(target);
+  }
   /// Wants an agent to go home, or out of the mission if it `leaves`.
   void want_recall(AgentId id, bool leaves) { recalls_.push_back({{}, id, leaves, {}}); }
   /// Wants the mission to go on.
@@ -36,10 +45,26 @@ class SimulatedOperator {
   /// When its pause ends; Instant::max(): it wants none.
   Instant next() const { return paused_until_.value_or(Instant::max()); }
   /// Whether it has wanted nothing yet, and wants nothing now.
-  bool idle() const { return messages_ == 0 && !paused_until_ && recalls_.empty(); }
+  bool idle() const {
+    return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty();
+  }
+  /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
+  std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
+    const Amendments& list = coordinator.amendments();
+    const auto is_ours = [this](const Amendment& one) { return one.hash == target_hash_; };
+    if (std::ranges::any_of(list.recent, is_ours)) target_.clear();
+    if (target_.empty() || now < next_target_) return {};
+    next_target_ = now + kPeriod;
+    auto parts = in_parts({.header = {run, kOperator, 1, messages_ + 1, coordinator.tick()},
+                           .number = list.named,
+                           .kind = AmendmentKind::kTarget},
+                          target_);
+    messages_ += std::ssize(parts);
+    return parts;
+  }
 
   /// The message that it sends now. It repeats its wish until a tick is named.
-  std::optional<Pause> message(Instant now, RunId run, const Coordinator& coordinator) {
+  std::optional<Amend> message(Instant now, RunId run, const Coordinator& coordinator) {
     const auto& holds = coordinator.holds();
     if (is_open(holds) == paused_until_.has_value()) {
       next_message_ = now;
@@ -47,7 +72,9 @@ class SimulatedOperator {
     }
     if (now < next_message_) return {};
     next_message_ = now + kPeriod;
-    return Pause{{run, kOperator, 1, ++messages_, coordinator.tick()}, named_changes(holds), {}};
+    return Amend{.header = {run, kOperator, 1, ++messages_, coordinator.tick()},
+                 .number = coordinator.amendments().named,
+                 .kind = is_open(holds) ? AmendmentKind::kResume : AmendmentKind::kPause};
   }
   /// The recalls that it sends now: those that the coordinator does not know. The coordinator
   /// receives each of them at once. It may be lost with this coordinator; then it is sent again.
@@ -85,6 +112,9 @@ class SimulatedOperator {
   std::optional<Instant> paused_until_;
   Instant next_message_;  // until its wish is obeyed
   std::int64_t messages_ = 0;
+  std::vector<std::byte> target_;  // that it wants, as AMEND carries it
+  std::uint64_t target_hash_ = 0;
+  Instant next_target_;
   std::vector<Recall> recalls_;  // that it wants
   std::set<AgentId> sent_out_;
 };

@@ -54,7 +54,8 @@ void Simulation::start(NodeId id) {
         CoordinatorIdentity{run_, incarnation, options_.host, options_.version},
         again ? std::vector<std::byte>() : options_.plan,
         again ? Takeover::kMust : Takeover::kNever);
-    if (!again) std::get<std::unique_ptr<Coordinator>>(node.core)->plan_holds(options_.holds);
+    if (!again)
+      std::get<std::unique_ptr<Coordinator>>(node.core)->plan_amendments(options_.amendments);
   } else if (id == world_node()) {
     node.core = std::make_unique<World>(run_, incarnation, options_.physics);
   } else {

@@ -14,6 +14,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "agent/agent.h"
@@ -43,7 +44,7 @@ struct SimulationOptions {
       kSubscriptions;  ///< without a subscription a process receives nothing; tests remove some
   std::string host = "laboratory";
   PacingClock::duration latency{};  ///< of a message without faults
-  std::vector<Hold> holds{};        ///< ticks in which the mission is paused; are_holds()
+  Amendments amendments{};          ///< known from the beginning; see Amending::plan()
   PhysicsMaker physics{};           ///< what moves the bodies of the world; sim/physics.h
   /// For tests: whether a message that `to` subscribes to is dropped. Healing does not end the
   /// drops.
@@ -56,7 +57,7 @@ struct SimulationCounts {
   MessageFaults faults;
   std::int64_t splits = 0, one_way_cuts = 0;
   std::int64_t agent_crashes = 0, coordinator_crashes = 0, world_crashes = 0, skewed_clocks = 0;
-  std::int64_t pauses = 0, recalls = 0;
+  std::int64_t pauses = 0, recalls = 0, targets = 0;
 };
 
 /// Is called at once for each event of a simulation.
@@ -92,6 +93,8 @@ class Simulation {
   void run(PacingClock::duration limit = PacingClock::duration::max());
   /// Has the coordinator end the mission in order.
   void end(std::string reason);
+  /// Has an operator give the team another target.
+  void change_target(TargetChange target) { operator_.want_target(std::move(target)); }
 
   // ---- processes ----
 
@@ -159,6 +162,7 @@ class Simulation {
   bool crash(NodeId node, double lasts_s);
   void heal();
   void supervise_coordinator();
+  TargetChange drawn_target(std::uint64_t word) const;
   void send_to_coordinator();
 
   SimulationOptions options_;

@@ -71,6 +71,10 @@ void Simulation::begin(const FaultEvent& event) {
       ++counts_.pauses;
       operator_.want_pause(now_, event.lasts_s);
       return;
+    case kTarget:
+      ++counts_.targets;
+      operator_.want_target(drawn_target(event.who));
+      return;
     case kRecall:
     case kDeparture:
       ++counts_.recalls;
@@ -91,6 +95,24 @@ void Simulation::cut(const FaultEvent& event, bool join) {
   }
 }
 
+/// A target that no agent reaches: all is at one place, or, where modes are not cosines, between
+/// the plan's target and the uniform one.
+TargetChange Simulation::drawn_target(std::uint64_t word) const {
+  RandomStream random(word, 0);
+  TargetChange change;
+  if (mission_.basis.free_domain) {
+    const double share = random.uniform();
+    change.target = share * mission_.target_coefficients;
+    change.cosine = share * mission_.cosine_target;
+    change.target[0] = change.cosine[0] = 1;
+    return change;
+  }
+  Eigen::Vector3d x_m = mission_.domain.origin_m;
+  for (int axis = 0; axis < 3; ++axis) x_m[axis] += random.uniform() * mission_.domain.size_m[axis];
+  change.target = basis_values(x_m, mission_.domain, mission_.basis);
+  return change;
+}
+
 void Simulation::send_to_coordinator() {
   const NodeId node = coordinator_node();
   if (operator_.idle()) return;
@@ -98,6 +120,8 @@ void Simulation::send_to_coordinator() {
   const auto pause = operator_.message(now_, run_, coordinator());
   const Delivery by_operator{Bus::kSwarm, kOperator, {}, nullptr};
   if (pause) deliver(node, *pause, by_operator);
+  for (const Amend& part : operator_.targets(now_, run_, coordinator()))
+    deliver(node, part, by_operator);
   // The operator repeats it; only the first one has an effect.
   const std::vector<Recall> recalls = operator_.recalls(run_, coordinator());
   for (const Recall& recall : recalls) {

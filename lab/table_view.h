@@ -28,6 +28,7 @@ struct TableView {
   std::int64_t roster_revision = 0;        ///< the revision that the world uses for this tick
   const Coefficients* foreseen = nullptr;  ///< its ĉ_k, as of `answered`, where its law looks ahead
   std::span<const Hold> holds{};           ///< the holds that the agent knows
+  const Amendments* amendments = nullptr;  ///< the list that the agent knows; null: empty
   Tick counted = -1;                       ///< the number of `answered` among ticks that count
   bool held = false;                       ///< whether `answered` does not count
 };

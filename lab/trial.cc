@@ -129,6 +129,7 @@ void Trial::note_tick(NodeId node) {
   view.answered = agent.tick();
   view.roster_revision = agent.roster_revision();
   view.holds = agent.follower().holds();
+  view.amendments = &agent.follower().amendments();
   invariants_.began(t_s(), view);
 }
 
@@ -137,7 +138,7 @@ void Trial::note_answer(NodeId node, const Command& command, const TableView& vi
   if (command.header.tick <= at(node).answered) return;
   at(node).answered = command.header.tick;
   ++figures_.agent_steps;
-  invariants_.answered(t_s(), view);
+  invariants_.answered(t_s(), view, command.position_m);
 }
 
 void Trial::arrives(NodeId node, const Message& message) {
@@ -153,6 +154,7 @@ void Trial::received(NodeId node, const Message& message) {
   if (digest != nullptr) invariants_.digest_received(agent.author(), *digest);
   TableView view{agent.author(), agent.coverage(), nullptr, &agent.counted_roster()};
   view.holds = agent.follower().holds();
+  view.amendments = &agent.follower().amendments();
   invariants_.received(view, message);
 }
 
@@ -225,6 +227,7 @@ TableView Trial::view_of(NodeId node) const {
           agent.roster_revision(),
           &agent.foreseen_coverage(),
           agent.follower().holds(),
+          &agent.follower().amendments(),
           agent.counted_tick(),
           agent.held()};
 }

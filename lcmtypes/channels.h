@@ -14,7 +14,7 @@ namespace ergocast {
 
 /// The channel of `message`, sent by its author or relayed by another agent; valid until the
 /// program ends. Names: ERGOCAST_HELLO, _MISSION, _TEAM_STATUS, _STOP, _WORLD_STATE, _RECORD_ACK,
-/// _PAUSE, _RECALL, and one per agent for _CONTRIBUTION_<id>, _DIGEST_<id>, _AGENT_STATUS_<id>,
+/// _AMEND, _RECALL, and one per agent for _CONTRIBUTION_<id>, _DIGEST_<id>, _AGENT_STATUS_<id>,
 /// _COMMAND_<id>, _BEACON_<id>.
 const std::string& channel_of(const Message& message, AgentId relayer = kUnassigned);
 

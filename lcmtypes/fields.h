@@ -7,6 +7,7 @@
 #pragma once
 
 #include <ergocast/agent_status_t.hpp>
+#include <ergocast/amend_t.hpp>
 #include <ergocast/averages_t.hpp>
 #include <ergocast/beacon_t.hpp>
 #include <ergocast/command_t.hpp>
@@ -16,7 +17,6 @@
 #include <ergocast/low_averages_t.hpp>
 #include <ergocast/low_sums_t.hpp>
 #include <ergocast/mission_t.hpp>
-#include <ergocast/pause_t.hpp>
 #include <ergocast/recall_t.hpp>
 #include <ergocast/record_ack_t.hpp>
 #include <ergocast/stop_t.hpp>
@@ -76,11 +76,9 @@ struct Fields<MissionPart> {
     }
     io.bytes(m.plan);
     io.count_or_none(m.stand_by_revision);
-    io.length(m.holds, kMaxHoldsPerMessage);
-    for (auto& hold : m.holds) {
-      io.count(hold.from);
-      io.count_or_none(hold.until);
-    }
+    io.length(m.amendments, kMaxPlanBytesPerMessage);
+    io.holds(m.plan.size() + m.amendments.size() <= std::size_t{kMaxPlanBytesPerMessage});
+    io.bytes(m.amendments);
     io.text(m.reason, kMaxReasonLength);
   }
 };
@@ -122,11 +120,13 @@ struct Fields<Averages> {
     io.count(m.next_broadcast_tick);
     io.finite(m.elapsed_s);
     io.count(m.gained_steps);
+    io.small(m.range, kShiftedRange);
+    io.holds(m.range == 1 || m.range == kShiftedRange);
     io.number(m.block);
     io.number(m.mode_count);
-    io.averages(m.sums, m.elapsed_s, count);
+    io.averages(m.sums, m.elapsed_s, m.range, count);
     const double step_s = m.steps > 0 ? m.elapsed_s / static_cast<double>(m.steps) : 0;
-    io.averages(m.gains, static_cast<double>(m.gained_steps) * step_s, count);
+    io.averages(m.gains, static_cast<double>(m.gained_steps) * step_s, m.range, count);
   }
 };
 
@@ -200,11 +200,18 @@ struct Fields<Stop> {
 };
 
 template <>
-struct Fields<Pause> {
-  using Generated = pause_t;
+struct Fields<Amend> {
+  using Generated = amend_t;
   static void list(auto& io, auto& m) {
     io.bytes(m.signature);
-    io.within(m.changes, 0, 2 * static_cast<int>(kMaxHolds));
+    io.within(m.number, 0, kMaxAmendments);
+    io.enumerator(m.kind, AmendmentKind::kTarget);
+    io.count(m.delay_ticks);
+    io.within(m.part, 0, kMaxAmendParts - 1);
+    io.within(m.parts, 1, kMaxAmendParts);
+    io.holds(m.part < m.parts);
+    io.length(m.content, kMaxPlanBytesPerMessage);
+    io.bytes(m.content);
   }
 };
 

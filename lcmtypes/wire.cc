@@ -9,7 +9,9 @@ namespace ergocast {
 namespace {
 
 /// An average of 1 in 16 bits.
-constexpr double kUnits = 32767;
+/// The units of a range. 1 is a whole number of them, so that c_00 = 1 stays exact.
+constexpr double units_of(std::int32_t range) { return range == 1 ? 32767 : 32766; }
+static_assert(32766 % kShiftedRange == 0);
 
 /// The first control character for terminals: C0, DEL, or C1 in UTF-8.
 std::string_view find_control(std::string_view text) {
@@ -39,29 +41,31 @@ std::string bounded(const std::string& text, int limit) {
 }
 
 /// A sum that was read with the same time is written as the same bits.
-void Writer::averages(const BlockSums& sums, double time_s, std::size_t count) {
+void Writer::averages(const BlockSums& sums, double time_s, std::int32_t range, std::size_t count) {
+  const double most = units_of(range);
   std::byte* const at = room(count * sizeof(std::int16_t));
-  const double scale = time_s > 0 ? kUnits / time_s : 0;
+  const double scale = time_s > 0 ? most / (range * time_s) : 0;
   const double* const values = sums.data();
   for (std::size_t k = 0; k < count; ++k) {
-    const double units = k < sums.size() ? std::clamp(values[k] * scale, -kUnits, kUnits) : 0;
+    const double units = k < sums.size() ? std::clamp(values[k] * scale, -most, most) : 0;
     const auto rounded = static_cast<std::int32_t>(units + (units < 0 ? -0.5 : 0.5));
     const auto bits = __builtin_bswap16(static_cast<std::uint16_t>(rounded));
     std::memcpy(at + 2 * k, &bits, sizeof bits);
   }
 }
 
-void Reader::averages(BlockSums& sums, double time_s, std::size_t count) {
+void Reader::averages(BlockSums& sums, double time_s, std::int32_t range, std::size_t count) {
+  const double most = units_of(range);
   const std::byte* const at = take(count * sizeof(std::int16_t));
   if (at == nullptr) return;
-  const double unit = time_s / kUnits;
+  const double unit = range * time_s / most;
   double* const values = sums.set_all(count).data();
   bool possible = true;
   for (std::size_t k = 0; k < count; ++k) {
     std::uint16_t bits;
     std::memcpy(&bits, at + 2 * k, sizeof bits);
     const auto units = static_cast<std::int16_t>(__builtin_bswap16(bits));
-    possible &= units >= -kUnits;
+    possible &= std::abs(units) <= most;
     values[k] = units * unit;
   }
   holds(possible);

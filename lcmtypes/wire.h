@@ -66,8 +66,8 @@ class Writer {
     ERGOCAST_REQUIRE(values.size() == count);
     numbers({values.data(), count});
   }
-  /// Sums over `time_s` as averages of 16 bits each.
-  void averages(const BlockSums& sums, double time_s, std::size_t count);
+  /// Sums over `time_s` as averages of 16 bits each, which are parts of `range`.
+  void averages(const BlockSums& sums, double time_s, std::int32_t range, std::size_t count);
   void count(std::int64_t value) { number(value); }
   void counts(std::span<const std::int64_t> values) {
     for (const std::int64_t value : values) count(value);
@@ -142,7 +142,7 @@ class Reader {
     }
   }
   void sums(BlockSums& values, std::size_t count) { numbers(values.set_all(count)); }
-  void averages(BlockSums& sums, double time_s, std::size_t count);
+  void averages(BlockSums& sums, double time_s, std::int32_t range, std::size_t count);
   void count(std::int64_t& value) { number(value), holds(value >= 0 && value <= kMostEver); }
   void counts(std::span<std::int64_t> values) {
     for (std::int64_t& value : values) count(value);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "logger/amendments_file.h"
 #include "logger/mission_text.h"
 #include "logger/recorder.h"
 #include "logger/run_data.h"
@@ -55,11 +56,11 @@ Result<Past> read_past(const fs::path& folder, std::vector<std::byte> plan) {
       past.plan.assign(all.begin(), all.end());
     }
   }
-  const auto summary = read_summary(folder);
-  past.rows.recalls = recorded_recalls(folder, summary.value_or(nlohmann::ordered_json()));
+  const auto summary = read_summary(folder).value_or(nlohmann::ordered_json());
+  past.rows.recalls = recorded_recalls(folder, summary);
   const bool begun = damage || !past.rows.empty() || !past.rows.metrics.empty();
-  const bool known = decode_plan(past.plan).has_value();
-  if (!known && (begun || !past.plan.empty())) {
+  const auto mission = decode_plan(past.plan);
+  if (!mission && (begun || !past.plan.empty())) {
     return failure(
         (folder / kPlanFile).string() +
         ": missing or not readable, so it is not known which mission's record this is; copy it "
@@ -68,6 +69,14 @@ Result<Past> read_past(const fs::path& folder, std::vector<std::byte> plan) {
   if (damage)
     spdlog::warn("{}; the record goes on in a new segment, and the rows before the damage are kept",
                  *damage);
+  if (!mission) return past;
+  auto amendments = recorded_amendments(folder, summary, *mission);
+  if (amendments) {
+    past.rows.amendments = *std::move(amendments);
+  } else {
+    spdlog::warn("{}; only the amendments that are received from now on are kept",
+                 amendments.error());
+  }
   return past;
 }
 
@@ -159,13 +168,12 @@ class RunLogger {
     context.refused = transport.refused();
     context.kernel_drops = transport.kernel_drops();
     context.cpu_has_fma = cpu_has_fma();
-    const auto problem =
+    auto problem =
         write_file(record_.folder() / kSummaryFile, to_text(summarize(recorder_, context)));
+    if (!problem && !recorder_.amendments().empty()) problem = write_amendments();
     if (problem) note(problem);
     std::error_code ignored;
-    for (const char* file : {kHoldsFile, kRecallsFile}) {
-      if (!problem) fs::remove(record_.folder() / file, ignored);
-    }
+    if (!problem) fs::remove(record_.folder() / kRecallsFile, ignored);
   }
 
  private:
@@ -187,24 +195,30 @@ class RunLogger {
     }
   }
 
-  /// Writes the plan once it is known, and each hold and recall once it is known. Without a
-  /// summary, no other file shows which ticks count, and which agents rest.
+  /// Writes the plan once it is known, and each amendment and recall once it is known. No other
+  /// file has the targets. Without a summary, none shows which ticks count, and which agents rest.
   std::optional<std::string> write_mission() {
     const MissionFollower& heard = recorder_.follower();
     if (!heard.mission()) return std::nullopt;
     if (!plan_written_) {
       if (auto problem = write_plan()) return problem;
     }
-    if (!std::ranges::equal(heard.holds(), holds_written_)) {
-      auto problem = write_file(record_.folder() / kHoldsFile, to_text(holds_json(heard.holds())));
+    if (heard.amendments() != amendments_written_) {
+      auto problem = write_amendments();
       if (problem) return problem;
-      holds_written_.assign(heard.holds().begin(), heard.holds().end());
+      amendments_written_ = heard.amendments();
     }
     const auto recalls = recalls_json(recorder_);
     if (recalls.size() == recalls_written_) return std::nullopt;
     auto problem = write_file(record_.folder() / kRecallsFile, to_text(recalls));
     if (!problem) recalls_written_ = recalls.size();
     return problem;
+  }
+
+  std::optional<std::string> write_amendments() {
+    const double dt_s = recorder_.follower().mission()->timing.dt_s;
+    return write_file(record_.folder() / kAmendmentsFile,
+                      amendments_text(recorder_.amendments(), dt_s));
   }
 
   /// Writes the plan as it was sent. It also writes the scenario's text and the table of its modes,
@@ -231,7 +245,7 @@ class RunLogger {
   const bool resumed_;
   bool stuck_ = false, plan_written_ = false, removal_reported_ = false;
   int interruptions_ = 0;
-  std::vector<Hold> holds_written_;
+  Amendments amendments_written_;
   std::size_t recalls_written_ = 0;
   std::vector<std::byte> plan_of_record_;  // of the record that it continues; empty: any
   Recorder recorder_;

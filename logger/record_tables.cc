@@ -83,10 +83,10 @@ void RecordTables::begin_without_mission() {
   if (!begun()) trajectory_ << kTrajectoryHeader << '\n';
 }
 
-RowTick RecordTables::replay(const RunData& past, const MissionFollower& follower,
-                             const AgentReports& reports) {
-  const Mission& mission = *follower.mission();
-  const auto counted = [&](Tick tick) { return counted_ticks(follower.holds(), tick); };
+RowTick RecordTables::replay(const RunData& past, const MissionKnowledge& known) {
+  const Mission& mission = *known.follower.mission();
+  const std::span<const Hold> holds = known.follower.holds();
+  const auto counted = [&](Tick tick) { return counted_ticks(holds, tick); };
   for (const MetricsRow& metrics : past.metrics) {
     facts_.t_s.push_back(static_cast<double>(counted(metrics.tick)) * mission.timing.dt_s);
     facts_.ergodic_metric.push_back(metrics.ergodic_metric);
@@ -98,13 +98,14 @@ RowTick RecordTables::replay(const RunData& past, const MissionFollower& followe
   }
   facts_.recalls = past.recalls;
   RowTick row;
-  const Context context{row, follower, reports};
+  const Context context{row, known};
   std::size_t vehicles = 0, expected = mission.starts_m.size();
   for_each_row(past, [&](AgentId id, const TrackPoint& point) {
     if (point.tick > former_end_.first) {
       if (vehicles > 0) end_row(context);
       expected = std::max(expected, vehicles);
-      row = {point.tick, point.tick - counted(point.tick), !is_held(follower.holds(), point.tick)};
+      row = {point.tick, point.tick - counted(point.tick), !is_held(holds, point.tick)};
+      begin_row(context);
       vehicles = 0;
       ++facts_.ticks;
       facts_.held_ticks += row.counts ? 0 : 1;
@@ -123,10 +124,11 @@ RowTick RecordTables::replay(const RunData& past, const MissionFollower& followe
 }
 
 void RecordTables::write(const RowTick& row, const TickState& now, const TickState& next,
-                         const MissionFollower& follower, const AgentReports& reports) {
+                         const MissionKnowledge& known) {
   // A pause that only the world received is lost if its coordinator stops: its ticks then count.
   facts_.held_ticks = std::min(facts_.held_ticks, now.uncounted_ticks);
-  const Context context{row, follower, reports, now.roster_revision};
+  const Context context{row, known, now.roster_revision};
+  begin_row(context);
   write_trajectory(context, now, next);
   end_row(context);
   if (row.tick <= former_end_.first) return;
@@ -178,7 +180,7 @@ bool RecordTables::is_recalled(const Context& context, AgentId id) {
   if (const auto known = facts_.recalls.find(id); known != facts_.recalls.end())
     return tick >= known->second;
   const bool recalled =
-      std::ranges::any_of(context.follower.roster(), [&](const RosterEntry& entry) {
+      std::ranges::any_of(context.known.follower.roster(), [&](const RosterEntry& entry) {
         return entry.author.agent == id && entry.recalled_at(context.roster_revision);
       });
   if (recalled) facts_.recalls.emplace(id, tick);
@@ -187,7 +189,7 @@ bool RecordTables::is_recalled(const Context& context, AgentId id) {
 
 void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m) {
   const Mission& mission = context.mission();
-  const RosterEntry* entry = member(context.follower, id, context.row.tick);
+  const RosterEntry* entry = member(context.known.follower, id, context.row.tick);
   const bool covers = entry != nullptr && context.row.counts && !is_recalled(context, id);
   if (rests(mission, id, context.row.counted())) {
     note_home(mission, id, x_m);
@@ -199,7 +201,45 @@ void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vect
   if (keeps_distance(mission)) row_places_m_.push_back(x_m);
 }
 
+/// Has the observers count against the target that holds at the row's tick.
+void RecordTables::begin_row(const Context& context) {
+  const ReceivedAmendment* const change = context.known.amendments.target_at(context.row.tick);
+  const std::optional<Amendment> wanted =
+      change != nullptr ? std::optional(change->amendment) : std::nullopt;
+  const std::optional<Amendment> present =
+      facts_.targets.empty() ? std::nullopt : facts_.targets.back().amendment;
+  if (wanted != present) begin_target(context, change);
+}
+
+/// @param change  null: the plan's target, because the change that held is void
+void RecordTables::begin_target(const Context& context, const ReceivedAmendment* change) {
+  const Mission& mission = context.mission();
+  if (facts_.targets.empty()) facts_.targets.emplace_back();
+  const Tick named = change != nullptr ? change->amendment.from : context.row.tick;
+  const Tick from = std::max(named, facts_.targets.back().until);
+  note_target(mission, from);
+  const Coefficients& target =
+      change != nullptr ? change->target->target : mission.target_coefficients;
+  observer_.begin_target(mission, target);
+  if (in_cosines_)
+    cosines_.begin_target(*in_cosines_, change != nullptr ? change->target->in_cosines()
+                                                          : in_cosines_->target_coefficients);
+  TargetFacts& facts = facts_.targets.emplace_back();
+  if (change != nullptr) facts.amendment = change->amendment;
+  facts.from = facts.until = from;
+}
+
+/// Notes what was made of the present target, whose time lasts to `until` at least.
+void RecordTables::note_target(const Mission& mission, Tick until) {
+  TargetFacts& facts = facts_.targets.back();
+  facts.until = until;
+  if (!observer_.has_seen_any_of_target()) return;
+  facts.ergodic_metric = observer_.metric_of_target(mission);
+  if (in_cosines_) facts.cosine_metric = cosines_.metric_of_target(*in_cosines_);
+}
+
 void RecordTables::end_row(const Context& context) {
+  if (!facts_.targets.empty()) note_target(context.mission(), context.row.tick + 1);
   facts_.nearest_m = std::min(facts_.nearest_m, least_distance_m(row_places_m_));
   row_places_m_.clear();
   write_due_metrics(context);
@@ -221,7 +261,7 @@ void RecordTables::write_due_metrics(const Context& context) {
 void RecordTables::write_metrics(const Context& context, double metric) {
   const Tick tick = context.row.tick;
   const double t_s = static_cast<double>(tick) * context.mission().timing.dt_s;
-  TeamFigures team = figures_of(context.reports, context.follower, tick);
+  TeamFigures team = figures_of(context.known.reports, context.known.follower, tick);
   // A former process's counts are better until all agents have sent a status.
   team.received = std::max(team.received, static_cast<std::int64_t>(former_metrics_.received));
   team.lost = std::max(team.lost, static_cast<std::int64_t>(former_metrics_.lost));
@@ -231,7 +271,7 @@ void RecordTables::write_metrics(const Context& context, double metric) {
     append_number(line, value);
   }
   line += ',' + std::to_string(team.received) + ',' + std::to_string(team.lost) + ',';
-  append_number(line, context.reports.blocks(context.follower).share);
+  append_number(line, context.known.reports.blocks(context.known.follower).share);
   metrics_ << line << '\n';
 }
 

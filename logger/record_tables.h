@@ -14,11 +14,21 @@
 #include "core/base/ids.h"
 #include "logger/agent_reports.h"
 #include "logger/observer.h"
+#include "logger/received_amendments.h"
 #include "logger/run_data.h"
 #include "logger/waiting_states.h"
 #include "team/mission_follower.h"
 
 namespace ergocast {
+
+/// What the team made of a target.
+struct TargetFacts {
+  std::optional<Amendment> amendment;  ///< nothing: the plan's target
+  Tick from = 0, until = 0;            ///< the world's ticks; `until` is the first one after it
+  /// φ² of its time alone, against it: in the mission's basis, and in cosines if basis.free_domain.
+  /// NaN: nothing was covered in its time.
+  double ergodic_metric = std::numeric_limits<double>::quiet_NaN(), cosine_metric = ergodic_metric;
+};
 
 /// The results of the whole run.
 struct RunFacts {
@@ -29,6 +39,8 @@ struct RunFacts {
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
   /// With basis.free_domain: φ² in cosines at the last row of the metrics; NaN: there is none.
   double cosine_metric_last = std::numeric_limits<double>::quiet_NaN();
+  /// If the target has changed: each of the targets that held in a row, ascending by time.
+  std::vector<TargetFacts> targets;
   /// The tick of the first row whose φ² is not a number: from there on the record has no coverage.
   std::optional<Tick> no_metric_from;
   Tick gaps = 0;        ///< ticks without rows before the last row
@@ -65,6 +77,13 @@ struct RowTick {
   }
 };
 
+/// What is known of the mission besides the world's states.
+struct MissionKnowledge {
+  const MissionFollower& follower;
+  const AgentReports& reports;
+  const ReceivedAmendments& amendments;
+};
+
 /// The header lines of the two files.
 inline constexpr const char* kTrajectoryHeader = "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps";
 inline constexpr const char* kTrajectoryHeaderInSpace =
@@ -88,11 +107,11 @@ class RecordTables {
   bool begun() const { return observer_.begun(); }
   /// Adds a former process's rows to the sums again. Returns which row is next: the last one of
   /// those again if it may lack agents. @pre begun(), and no row has been written
-  RowTick replay(const RunData& past, const MissionFollower& follower, const AgentReports& reports);
+  RowTick replay(const RunData& past, const MissionKnowledge& known);
 
   /// Writes the row of a tick that has come to `now` and has led to `next`.
   void write(const RowTick& row, const TickState& now, const TickState& next,
-             const MissionFollower& follower, const AgentReports& reports);
+             const MissionKnowledge& known);
   /// The rows before `tick`, from `row` on, will be missing.
   void skip(const RowTick& row, Tick tick);
 
@@ -103,16 +122,18 @@ class RecordTables {
   /// What a row is computed from, besides the states.
   struct Context {
     const RowTick& row;
-    const MissionFollower& follower;
-    const AgentReports& reports;
+    const MissionKnowledge& known;
     std::int64_t roster_revision = -1;  // the world's; −1: not known
-    const Mission& mission() const { return *follower.mission(); }
+    const Mission& mission() const { return *known.follower.mission(); }
   };
 
   void write_trajectory(const Context& context, const TickState& now, const TickState& next);
   void note_home(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m);
   bool is_recalled(const Context& context, AgentId id);
   void observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m);
+  void begin_row(const Context& context);
+  void begin_target(const Context& context, const ReceivedAmendment* change);
+  void note_target(const Mission& mission, Tick until);
   void end_row(const Context& context);
   void write_due_metrics(const Context& context);
   void write_metrics(const Context& context, double metric);

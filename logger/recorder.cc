@@ -40,6 +40,7 @@ void Recorder::resume(RunData past, std::vector<std::byte> plan) {
   me_.expect_plan(std::move(plan));
   resumed_ = true;
   for (const auto& [agent, track] : past.tracks) row_.tick = std::max(row_.tick, track.back().tick);
+  amendments_ = past.amendments;
   former_rows_ = std::move(past);
 }
 
@@ -66,6 +67,7 @@ void Recorder::on(const AgentStatus& status, const Arrival& arrival) {
 void Recorder::on(const MissionPart&, const Arrival& arrival) {
   if (!arrival.mission_changed) return;
   if (follower().plan_problem()) return fail(*follower().plan_problem());
+  if (me_.knows_mission()) amendments_.note(follower().amendments());
   if (me_.knows_mission() && !tables_.begun()) begin();
   if (!follower().over() || ending_.since) return;
   ending_.since = arrival.now;
@@ -83,7 +85,7 @@ void Recorder::on(const Stop& stop, const Arrival& arrival) {
 
 void Recorder::begin() {
   tables_.begin(mission());
-  if (former_rows_) row_ = tables_.replay(*former_rows_, follower(), reports_);
+  if (former_rows_) row_ = tables_.replay(*former_rows_, known());
   former_rows_.reset();
   states_.drop_before(row_.tick);
 }
@@ -149,7 +151,7 @@ bool Recorder::everybody_left(Instant now) const {
 
 void Recorder::write_rows(Instant now) {
   while (true) {
-    while (write_next_row()) progress_ = now;
+    while (write_next_row(now)) progress_ = now;
     if (!tables_.good() || !gap_ahead() || !gap_is_final(now)) return;
     skip_gap();
   }
@@ -191,13 +193,14 @@ void Recorder::close() {
   if (ending_.finished) return;
   ending_.finished = true;
   tables_.begin_without_mission();
-  while (has_drivers() && write_next_row()) {
+  // Only a row that waited for a missing part or for the mission can be written now.
+  while ((has_drivers() || awaits_mission_since_) && write_next_row(progress_)) {
   }
   // The last chance to write the rows after a gap.
   received_.lost_before = std::max(received_.lost_before, received_.newest);
   while (tables_.good() && gap_ahead() && states_.first_pair()) {
     skip_gap();
-    while (write_next_row()) {
+    while (write_next_row(progress_)) {
     }
   }
 }
@@ -217,22 +220,37 @@ bool Recorder::holds(Tick tick) const {
 /// without a robot whose driver is silent.
 bool Recorder::has_drivers() const { return me_.knows_mission() && uses_beacons(mission()); }
 
-bool Recorder::write_next_row() {
+bool Recorder::write_next_row(Instant now) {
   if (!tables_.good() || all_rows_written()) return false;
   if (!holds(row_.tick) || !holds(row_.tick + 1)) return false;
-  const TickState &now = states_.at(row_.tick), &next = states_.at(row_.tick + 1);
-  row_.uncounted = now.uncounted_ticks;
-  row_.counts = next.uncounted_ticks <= now.uncounted_ticks;
-  tables_.write(row_, now, next, follower(), reports_);
+  const TickState &state = states_.at(row_.tick), &next = states_.at(row_.tick + 1);
+  if (awaits_mission(state, now)) return false;
+  row_.uncounted = state.uncounted_ticks;
+  row_.counts = next.uncounted_ticks <= state.uncounted_ticks;
+  tables_.write(row_, state, next, known());
   row_.pass();
   states_.drop_before(row_.tick);
   return true;
+}
+
+/// Lockstep: whether this state waits for the revision of the mission that its world knew. Its
+/// coordinator repeats it, but may have stopped. So the wait ends before the world gives us up.
+bool Recorder::awaits_mission(const TickState& state, Instant now) {
+  const bool lacks = is_lockstep() && follower().revision() < state.roster_revision;
+  if (!lacks) {
+    awaits_mission_since_.reset();
+  } else if (!awaits_mission_since_) {
+    awaits_mission_since_ = now;
+  }
+  return lacks && !ending_.finished &&
+         now - *awaits_mission_since_ < seconds(mission().timing.lockstep_timeout_s / 4);
 }
 
 /// Whether a state that may be lost for good is missing and newer ones have arrived.
 bool Recorder::gap_ahead() const {
   if (!me_.knows_mission() || all_rows_written() || states_.empty()) return false;
   const Tick missing = holds(row_.tick) ? row_.tick + 1 : row_.tick;
+  if (holds(missing)) return false;  // the row waits for the mission
   return states_.last() > missing && (!is_lockstep() || missing < received_.lost_before);
 }
 

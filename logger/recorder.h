@@ -10,6 +10,9 @@
 // receives all lost rows again. While its streams are bad, as on a full disk, no row is written and
 // none acknowledged.
 //
+// In lockstep the row of a tick is written once the revision of MISSION is known that the world
+// names for it. So it counts against the target that the agents of this tick have.
+//
 // In lockstep a row is missing only if no process can repeat its states. Such states precede the
 // first one that a resumed recorder received, or the first one of a restarted world. Others are
 // those of a time in which the recorder could not write, or in which the world had given up a
@@ -24,6 +27,7 @@
 
 #include "core/base/ids.h"
 #include "logger/agent_reports.h"
+#include "logger/received_amendments.h"
 #include "logger/record_tables.h"
 #include "logger/run_data.h"
 #include "logger/waiting_states.h"
@@ -70,6 +74,8 @@ class Recorder {
   const char* result() const;
   const std::string& reason() const { return ending_.reason; }
   const RunFacts& facts() const { return tables_.facts(); }
+  /// All amendments of the mission that this recorder or a former one has received.
+  const ReceivedAmendments& amendments() const { return amendments_; }
   /// The newest status of each incarnation that Liveness holds, with the worst loop lag of all its
   /// statuses.
   const std::map<Author, AgentStatus>& statuses() const { return reports_.statuses(); }
@@ -102,7 +108,9 @@ class Recorder {
   void begin();
   void write_rows(Instant now);
   void acknowledge(Instant now, Outbox& out);
-  bool write_next_row();
+  bool write_next_row(Instant now);
+  bool awaits_mission(const TickState& state, Instant now);
+  MissionKnowledge known() const { return {follower(), reports_, amendments_}; }
   bool holds(Tick tick) const;
   bool has_drivers() const;
   bool all_rows_written() const {
@@ -121,9 +129,11 @@ class Recorder {
   Participant me_;
   RecordTables tables_;
   AgentReports reports_;
+  ReceivedAmendments amendments_;
   WaitingStates states_;
-  RowTick row_;         // the next one
-  Instant progress_{};  // last row, or first message of a new world
+  RowTick row_;                                  // the next one
+  Instant progress_{};                           // last row, or first message of a new world
+  std::optional<Instant> awaits_mission_since_;  // the revision of the next row's state
   Received received_;
   Tick acked_ = -2;
   Instant next_ack_{};

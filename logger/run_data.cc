@@ -15,6 +15,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "logger/amendments_file.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
@@ -144,7 +145,7 @@ std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
 bool RunData::rests(const Mission& mission, AgentId id, Tick tick) const {
   const auto recall = recalls.find(id);
   return (recall != recalls.end() && tick >= recall->second) ||
-         ergocast::rests(mission, id, counted_ticks(holds, tick));
+         ergocast::rests(mission, id, counted_ticks(holds(), tick));
 }
 
 double RunData::end_s() const {
@@ -191,12 +192,14 @@ std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_di
   return trajectory ? trajectory : metrics;
 }
 
-Result<RunData> read_run(const std::filesystem::path& run_dir) {
+Result<RunData> read_run(const std::filesystem::path& run_dir, const Mission& mission) {
   RunData run;
   if (auto problem = read_up_to_damage(run_dir, run)) return failure(*problem);
   const auto summary = read_summary(run_dir);
   const auto known = summary.value_or(nlohmann::ordered_json());
-  run.holds = recorded_holds(run_dir, known);
+  auto amendments = recorded_amendments(run_dir, known, mission);
+  if (!amendments) return failure(amendments.error());
+  run.amendments = *std::move(amendments);
   run.recalls = recorded_recalls(run_dir, known);
   return run;
 }
@@ -219,7 +222,7 @@ void for_each_row(const RunData& run,
 std::optional<PowerLaw> fit_last_decade(const RunData& run) {
   std::vector<double> t_s, values;
   for (const MetricsRow& row : run.metrics) {
-    const Tick counted = counted_ticks(run.holds, row.tick);
+    const Tick counted = counted_ticks(run.holds(), row.tick);
     const bool same = counted == row.tick;
     t_s.push_back(same ? row.t_s
                        : row.t_s * static_cast<double>(counted) / static_cast<double>(row.tick));
@@ -235,7 +238,7 @@ Coefficients coverage_of(const RunData& run, const Mission& mission) {
   for (const auto& [agent, track] : run.tracks) {
     const Sensor& sensor = sensors.of(planned_kind(mission, agent));
     for (const TrackPoint& point : track) {
-      if (!mission.domain.contains(point.x_m) || is_held(run.holds, point.tick)) continue;
+      if (!mission.domain.contains(point.x_m) || is_held(run.holds(), point.tick)) continue;
       if (run.rests(mission, agent, point.tick)) continue;
       samples += sensor.sample(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
                                sums.data());

@@ -15,6 +15,7 @@
 #include "core/basis/basis.h"
 #include "core/mission/hold.h"
 #include "core/mission/mission.h"
+#include "logger/received_amendments.h"
 #include "logger/slope.h"
 
 namespace ergocast {
@@ -42,10 +43,13 @@ struct MetricsRow {
 struct RunData {
   std::map<AgentId, Track> tracks;  ///< without empty ones
   std::vector<MetricsRow> metrics;
-  std::vector<Hold> holds;  ///< ticks that do not count, from holds.json or summary.json
+  /// What has changed since the plan, from amendments.json; pauses also from summary.json.
+  ReceivedAmendments amendments;
   /// From which tick on a recalled agent rests, from recalls.json or summary.json.
   std::map<AgentId, Tick> recalls;
 
+  /// Ticks that do not count.
+  const std::vector<Hold>& holds() const { return amendments.holds(); }
   /// Whether an agent rests at a tick: by the plan, or because it was recalled.
   bool rests(const Mission& mission, AgentId id, Tick tick) const;
   bool empty() const { return tracks.empty(); }
@@ -55,10 +59,11 @@ struct RunData {
 /// The mission of the record's plan.binpb, or an error that names the file.
 Result<Mission> read_mission(const std::filesystem::path& run_dir);
 
-/// Reads trajectory.csv and metrics.csv with all their segments, and which ticks do not count.
+/// Reads trajectory.csv and metrics.csv with all their segments, and what changed in flight.
 /// Otherwise returns the file and line of an error, with the remedy. A file's last line without its
 /// line break comes from a killed process and is ignored.
-Result<RunData> read_run(const std::filesystem::path& run_dir);
+/// @param mission  read_mission() of the same folder
+Result<RunData> read_run(const std::filesystem::path& run_dir, const Mission& mission);
 
 /// Reads only trajectory.csv in the same way.
 Result<RunData> read_tracks(const std::filesystem::path& run_dir);
@@ -73,7 +78,8 @@ void for_each_row(const RunData& run, const std::function<void(AgentId, const Tr
 /// φ² over the last decade of time, as slope.h fits it.
 std::optional<PowerLaw> fit_last_decade(const RunData& run);
 
-/// c_k of (4) over every recorded position inside the domain. All zero for an empty run.
+/// c_k of (4) over every recorded position inside the domain: where the team has been, whatever its
+/// targets were. All zero for an empty run.
 Coefficients coverage_of(const RunData& run, const Mission& mission);
 
 }  // namespace ergocast

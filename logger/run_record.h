@@ -20,9 +20,9 @@ inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr const char* kScenarioFile = "scenario.textproto";
 /// The compiled plan as it was sent: what `ergocast verify` simulates again.
 inline constexpr const char* kPlanFile = "plan.binpb";
-/// The ticks that do not count, until a summary has them.
-inline constexpr const char* kHoldsFile = "holds.json";
-/// From which ticks recalled agents rest, likewise.
+/// All amendments of the mission, with the numbers of their targets.
+inline constexpr const char* kAmendmentsFile = "amendments.json";
+/// From which ticks recalled agents rest, until a summary has them.
 inline constexpr const char* kRecallsFile = "recalls.json";
 
 /// File `segment` of a table: trajectory.csv, trajectory-001.csv, trajectory-002.csv …

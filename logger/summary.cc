@@ -15,10 +15,10 @@
 #include "core/motion/filter_rules.h"
 #include "core/motion/home.h"
 #include "core/motion/vehicle.h"
+#include "logger/amendments_file.h"
+#include "logger/json_file.h"
 #include "logger/run_record.h"
 #include "logger/slope.h"
-#include "text/input_file.h"
-#include "text/json_bounds.h"
 
 namespace ergocast {
 namespace {
@@ -30,12 +30,13 @@ constexpr double kNotableShare = 0.01;
 /// The relative tolerance of a distance, for rounding.
 constexpr double kRounding = 1e-9;
 /// The limits of a summary that is read again: several times the size for the largest roster.
-/// Limit (Record): length of `summary.json`, `holds.json` and `recalls.json` [bytes]. Beyond it:
-/// `verify`, `report` and other commands refuse the record.
-constexpr std::size_t kMostSummaryBytes = std::size_t{16} << 20;
-/// Limit (Record): values in `summary.json`, `holds.json` and `recalls.json`. Beyond it: `verify`,
+/// Limit (Record): length of `summary.json` and `recalls.json` [bytes]. Beyond it: `verify`,
 /// `report` and other commands refuse the record.
+constexpr std::size_t kMostSummaryBytes = std::size_t{16} << 20;
+/// Limit (Record): values in `summary.json` and `recalls.json`. Beyond it: `verify`, `report` and
+/// other commands refuse the record.
 constexpr std::size_t kMostSummaryValues = 1'000'000;
+constexpr JsonLimits kLimits{kMostSummaryBytes, kMostSummaryValues};
 
 /// JSON has no infinity and no NaN.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -193,10 +194,29 @@ void add_ticks(const Recorder& recorder, Json& summary) {
   const RunFacts& facts = recorder.facts();
   summary["ticks"] = facts.ticks - facts.held_ticks;
   if (Json recalls = recalls_json(recorder); !recalls.empty()) summary["recalls"] = recalls;
+  if (recorder.amendments().empty()) return;
+  const auto& mission = recorder.follower().mission();
+  summary["amendments"] =
+      amendments_json(recorder.amendments(), mission ? mission->timing.dt_s : 0);
   const auto holds = recorder.follower().holds();
   if (holds.empty()) return;
   summary["held_ticks"] = facts.held_ticks;
   summary["holds"] = holds_json(holds);
+}
+
+/// What the team made of each target: φ² of the time in which it held, against it.
+Json targets(const RunFacts& facts, const std::optional<Mission>& mission) {
+  Json list = Json::array();
+  for (const TargetFacts& target : facts.targets) {
+    Json& one = list.emplace_back();
+    one = {{"amendment", target.amendment ? Json(target.amendment->number) : Json(nullptr)},
+           {"from_tick", target.from},
+           {"until_tick", target.until},
+           {"ergodic_metric", number(target.ergodic_metric)}};
+    if (mission && mission->basis.free_domain)
+      one["ergodic_metric_in_cosines"] = number(target.cosine_metric);
+  }
+  return list;
 }
 
 /// φ², the goal that it had, and its slope.
@@ -209,6 +229,7 @@ void add_metric(const RunFacts& facts, const std::optional<Mission>& mission, Js
     summary["ergodic_metric"]["basis"] = name_of_basis(mission->basis);
     summary["ergodic_metric_in_cosines"] = {{"last", if_observed(facts.cosine_metric_last)}};
   }
+  if (!facts.targets.empty()) summary["targets"] = targets(facts, mission);
   if (mission && mission->goal_ergodic_metric > 0) {
     summary["goal"] = {
         {"ergodic_metric", mission->goal_ergodic_metric},
@@ -247,23 +268,6 @@ void add_motion(const Recorder& recorder, const Mission& mission, Json& summary)
 
 // ---- reading ----
 
-/// Null if there is no such file.
-Result<Json> read_json(const std::filesystem::path& file) {
-  const auto read = read_whole(file, kMostSummaryBytes);
-  if (!read) {
-    if (read.error().kind == FileProblem::Kind::kMissing) return Json(nullptr);
-    return failure(read.error().sentence(file));
-  }
-  try {
-    return parse_bounded<Json>(*read, kMostSummaryValues);
-  } catch (const JsonTooLarge& problem) {
-    return failure(file.string() + ": " + problem.what() + "; remove it");
-  } catch (const Json::exception& error) {
-    return failure(file.string() + ": is not JSON: " + error.what() +
-                   ": copy it again from where the run was recorded, or remove it");
-  }
-}
-
 /// Reads a list of recalls_json(); empty if its content is impossible.
 std::map<AgentId, Tick> recalls_in(const Json& list) {
   std::map<AgentId, Tick> recalls;
@@ -278,18 +282,6 @@ std::map<AgentId, Tick> recalls_in(const Json& list) {
     recalls.emplace(static_cast<AgentId>(agent), from);
   }
   return recalls;
-}
-
-/// Reads a list of holds_json(); empty if its content is impossible.
-std::vector<Hold> holds_in(const Json& list) {
-  std::vector<Hold> holds;
-  if (!list.is_array()) return holds;
-  for (const Json& pair : list) {
-    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer()) return {};
-    if (!pair[1].is_null() && !pair[1].is_number_integer()) return {};
-    holds.push_back({pair[0].get<Tick>(), pair[1].is_null() ? -1 : pair[1].get<Tick>()});
-  }
-  return are_holds(holds) ? holds : std::vector<Hold>();
 }
 
 }  // namespace
@@ -315,20 +307,7 @@ const char* name_of_basis(const Basis& basis) {
 }
 
 Result<Json> read_summary(const std::filesystem::path& run_dir) {
-  return read_json(run_dir / kSummaryFile);
-}
-
-Json holds_json(std::span<const Hold> holds) {
-  Json list = Json::array();
-  for (const Hold& hold : holds)
-    list.push_back({hold.from, hold.open() ? Json(nullptr) : Json(hold.until)});
-  return list;
-}
-
-std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir, const Json& summary) {
-  const auto early = read_json(run_dir / kHoldsFile);
-  if (early && early->is_array()) return holds_in(*early);
-  return summary.is_object() ? holds_in(summary.value("holds", Json())) : std::vector<Hold>();
+  return read_json(run_dir / kSummaryFile, kLimits);
 }
 
 Json recalls_json(const Recorder& recorder) {
@@ -348,7 +327,7 @@ Json recalls_json(const Recorder& recorder) {
 
 std::map<AgentId, Tick> recorded_recalls(const std::filesystem::path& run_dir,
                                          const Json& summary) {
-  const auto early = read_json(run_dir / kRecallsFile);
+  const auto early = read_json(run_dir / kRecallsFile, kLimits);
   if (early && early->is_array()) return recalls_in(*early);
   return summary.is_object() ? recalls_in(summary.value("recalls", Json()))
                              : std::map<AgentId, Tick>();

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -36,15 +35,6 @@ nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& con
 
 /// The name of the modes of φ², for the summary and others: "cosines", "modes of the free domain".
 const char* name_of_basis(const Basis& basis);
-
-/// Ticks that do not count, as JSON: for each pause its first tick, and the first tick that counts
-/// again or null.
-nlohmann::ordered_json holds_json(std::span<const Hold> holds);
-
-/// The ticks of a run directory that do not count: from holds.json, else from `summary`. holds.json
-/// exists until the logger writes a summary. Empty if the content is impossible.
-std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir,
-                                 const nlohmann::ordered_json& summary);
 
 /// The agents that were recalled, as JSON: each with the first tick at which it rests for that
 /// reason, and whether it was sent out of the mission.

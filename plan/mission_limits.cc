@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/home.h"
@@ -74,22 +75,14 @@ bool in_domain(const Box& domain, const Eigen::Vector3d& x_m) {
   return domain.contains(x_m) && (x_m.z() == 0 || !domain.planar());
 }
 
-/// |∫ f ρ| ≤ 1, up to the rounding of the quadrature.
-bool is_coefficient(double value) { return std::abs(value) <= 1 + 1e-9; }
-
-bool is_target(const Coefficients& target, const Basis& basis) {
-  if (target.size() != basis.mode_count()) return false;
-  return target[0] == 1 && std::all_of(target.begin(), target.end(), is_coefficient);
-}
-
 /// A plan that names a table also has μ in cosines. Footprints and bands need cosines.
 bool fits(const Basis& basis, const Mission& mission) {
-  if (!basis.free_domain) return basis.table_hash == 0 && mission.cosine_target.size() == 0;
+  if (!basis.free_domain) return basis.table_hash == 0;
   const auto sees_points = [](const AgentKind& kind) {
     return kind.footprint_sigma_m == 0 && kind.band_from == 0 && kind.band_to == 0;
   };
   return basis.table_hash != 0 && basis.mode_count() <= kMostFreeModes && mission.domain.planar() &&
-         is_target(mission.cosine_target, basis) && std::ranges::all_of(mission.kinds, sees_points);
+         std::ranges::all_of(mission.kinds, sees_points);
 }
 
 /// Adaptive noise is between its floor and its ceiling.
@@ -237,8 +230,8 @@ bool within_limits(const Mission& mission) {
   EachWithinLimits each;
   list_fields(each, mission);
   return each.ok && fits(mission.domain) && fit_together(mission.basis, mission.domain) &&
-         is_target(mission.target_coefficients, mission.basis) && fits(mission.basis, mission) &&
-         fits(mission.law) && fits(mission.timing) &&
+         is_target(mission.target_coefficients, mission.cosine_target, mission) &&
+         fits(mission.basis, mission) && fits(mission.law) && fits(mission.timing) &&
          memory_fits(mission.law, mission.timing.dt_s) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&

@@ -48,8 +48,9 @@ struct Record {
 
 Record read_record(const fs::path& folder) {
   const py::gil_scoped_release others_may_run;
-  Record record{folder, value_or_throw(read_mission(folder)), value_or_throw(read_run(folder))};
-  const Tick ticks = tick_after(record.rows.holds, record.mission.timing.tick_count);
+  Record record{folder, value_or_throw(read_mission(folder)), {}};
+  record.rows = value_or_throw(read_run(folder, record.mission));
+  const Tick ticks = tick_after(record.rows.holds(), record.mission.timing.tick_count);
   for (const auto& [agent, track] : record.rows.tracks) {
     if (track.back().tick < ticks) continue;
     throw Refused((folder / kTrajectoryFile).string() + ": tick: agent " + std::to_string(agent) +
@@ -113,7 +114,7 @@ py::dict metrics(const Record& record) {
 }
 
 /// c after each of `ticks`, from the same data as the recorder's φ²: in the order of the file,
-/// members only.
+/// members only. After a change of the target it is shifted (core/law/target_shift.h).
 Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
                  const std::optional<std::vector<std::tuple<AgentId, Tick, Tick>>>& members) {
   check(std::is_sorted(ticks.begin(), ticks.end()), "ticks: must ascend");
@@ -140,11 +141,20 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
       return id == agent && tick >= from && tick < until;
     });
   };
+  const ReceivedAmendment* target = nullptr;
+  const auto aim_at = [&](Tick tick) {
+    const ReceivedAmendment* const now = record.rows.amendments.target_at(tick);
+    if (now != target) observer.begin_target(mission, now->target->target);
+    target = now;
+  };
   for_each_row(record.rows, [&](AgentId agent, const TrackPoint& point) {
     if (next == ticks.end()) return;
     write_before(point.tick);
-    if (is_member(agent, point.tick)) {
-      const Tick counted = counted_ticks(record.rows.holds, point.tick);
+    aim_at(point.tick);
+    const bool counts =
+        !is_held(record.rows.holds(), point.tick) && !record.rows.rests(mission, agent, point.tick);
+    if (counts && is_member(agent, point.tick)) {
+      const Tick counted = counted_ticks(record.rows.holds(), point.tick);
       observer.see(mission, counted, planned_kind(mission, agent), point.x_m);
     }
   });

@@ -252,7 +252,7 @@ std::optional<Tick> home_from(const RunData& run, const Mission& mission, AgentI
                               const Track& track) {
   WayHome way(mission, id);
   const auto sends_home = [&](const TrackPoint& at) {
-    return !is_held(run.holds, at.tick) && way.begun(counted_ticks(run.holds, at.tick), at.x_m);
+    return !is_held(run.holds(), at.tick) && way.begun(counted_ticks(run.holds(), at.tick), at.x_m);
   };
   const auto first = std::ranges::find_if(track, sends_home);
   return first == track.end() ? std::nullopt : std::optional(first->tick);
@@ -265,6 +265,20 @@ Json homes_from(const RunData& run, const Mission& mission) {
     if (const auto tick = home_from(run, mission, id, track)) list[std::to_string(id)] = *tick;
   }
   return list;
+}
+
+/// The amendments of the record, and the targets that it has.
+void add_amendments(const ReceivedAmendments& heard, Json& record) {
+  if (heard.empty()) return;
+  std::vector<Amendment> list;
+  Json targets = Json::object();
+  for (const ReceivedAmendment& one : heard.all()) {
+    if (one.is_void) continue;
+    list.push_back(one.amendment);
+    if (one.target) targets[page_target_name(one.amendment.hash)] = page_target(*one.target);
+  }
+  record["amendments"] = page_amendments(list);
+  record["targets"] = std::move(targets);
 }
 
 /// The command of a vehicle that turns is its velocity at the tick's end.
@@ -328,6 +342,20 @@ Json page_mission(const Mission& flown, const Field& density) {
   return page;
 }
 
+Json page_amendments(std::span<const Amendment> list) {
+  Json json = Json::array();
+  for (const Amendment& one : list) {
+    Json entry = {{"number", one.number}, {"kind", to_string(one.kind)}, {"from", one.from}};
+    if (one.kind == AmendmentKind::kTarget) entry["hash"] = page_target_name(one.hash);
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+std::string page_target_name(std::uint64_t hash) { return to_hex(hash); }
+
+Json page_target(const TargetChange& change) { return rounded_list(change.in_cosines()); }
+
 Json page_record(const RunData& run, const Mission& mission, const Json& summary,
                  const Field& density, const Json& team) {
   Tick ticks = 0;
@@ -345,6 +373,7 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
                  {"tracks", grid.encode(0, grid.rows())},
                  {"team", team}};
   if (team.is_null() && any_station(mission)) record["home_from"] = homes_from(run, mission);
+  add_amendments(run.amendments, record);
   return record;
 }
 

@@ -2,9 +2,12 @@
 // Makes the data of a run's page as JSON, and report.html with these data.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 
+#include "core/mission/amendments.h"
 #include "core/mission/mission.h"
 #include "logger/run_data.h"
 #include "report/target_density.h"
@@ -16,20 +19,30 @@ namespace ergocast {
 /// "free_domain", "conventions": [[name, text], …], "density": null or {"width", "height", "full",
 /// "data"}, "body_radius_m": half the distance that bodies keep, "stations": [{"id", "at_m" from
 /// the domain's corner, "rest_from" in ticks that count}, …], "vehicles": [{"count", "vehicle":
-/// "FIXED_WING"}, …] of the planned kinds, "half_life_ticks"}. The last four are present only if there
-/// are any, and vehicles that are no points. Origin, size and modes have two numbers, in a box three. With
-/// "free_domain" μ and λ are still those of cosines, with which the page draws; φ² over time is in
-/// the modes of the free domain. `density` has a byte for each cell, the north-west first; 255 is
-/// `full` times the uniform density or more. In a box it is the average along z.
+/// "FIXED_WING"}, …] of the planned kinds, "half_life_ticks"}. The last four are present only if
+/// there are any, and vehicles that are no points. Origin, size and modes have two numbers, in a
+/// box three. With "free_domain" μ and λ are still those of cosines, with which the page draws; φ²
+/// over time is in the modes of the free domain. `density` has a byte for each cell, the north-west
+/// first; 255 is `full` times the uniform density or more. In a box it is the average along z.
 /// @param density  in multiples of the uniform density; if empty, the page draws the sum of the μ_k
 nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
+
+/// [{"number", "kind": "target", "from": the world's tick, "hash": of the target, in hexadecimal},
+/// …]
+nlohmann::ordered_json page_amendments(std::span<const Amendment> list);
+/// The name of a target in "targets": its hash in hexadecimal.
+std::string page_target_name(std::uint64_t hash);
+/// The coefficients with which the page draws a target, with a free domain those of cosines.
+nlohmann::ordered_json page_target(const TargetChange& change);
 
 /// Whether any agent's vehicle has a heading, so that the page gets them with the positions.
 bool any_that_turn(const Mission& mission);
 
-/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from"}: the record's
-/// data for the page. "home_from", {"0": tick, …}, is present only without `team`: the ticks at
-/// which agents with a station went home by the rule of core/motion/way_home.h.
+/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from", "amendments",
+/// "targets"}: the record's data for the page. "amendments" and "targets", {page_target_name():
+/// page_target(), …}, are present only if there are any. "home_from", {"0": tick, …}, is present
+/// only without `team`: the ticks at which agents with a station went home by the rule of
+/// core/motion/way_home.h.
 /// @param team  the agents' states over time (cli/team/recorded_team.h), or null
 nlohmann::ordered_json page_record(const RunData& run, const Mission& mission,
                                    const nlohmann::ordered_json& summary, const Field& density,

@@ -19,8 +19,8 @@ struct Record {
   Field target;
 };
 
-Result<Record> read_record(const fs::path& run_dir) {
-  auto run = read_run(run_dir);
+Result<Record> read_record(const fs::path& run_dir, const Mission& mission) {
+  auto run = read_run(run_dir, mission);
   if (!run) return failure(run.error());
   auto summary = read_summary(run_dir);
   if (!summary) return failure(summary.error());
@@ -33,7 +33,7 @@ Result<Record> read_record(const fs::path& run_dir) {
 
 Result<ReportPage> draw_report(const fs::path& run_dir, const Mission& mission,
                                const nlohmann::ordered_json& team) {
-  auto read = read_record(run_dir);
+  auto read = read_record(run_dir, mission);
   if (!read) return failure(read.error());
   const auto& [run, summary, target] = *read;
   return ReportPage{report_page(run, mission, summary, target, team)};
@@ -41,7 +41,7 @@ Result<ReportPage> draw_report(const fs::path& run_dir, const Mission& mission,
 
 Result<nlohmann::ordered_json> read_page_record(const fs::path& run_dir, const Mission& mission,
                                                 const nlohmann::ordered_json& team) {
-  auto read = read_record(run_dir);
+  auto read = read_record(run_dir, mission);
   if (!read) return failure(read.error());
   const auto& [run, summary, target] = *read;
   return page_record(run, mission, summary, target, team);

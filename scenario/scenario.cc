@@ -8,6 +8,7 @@
 #include "scenario/compile/compile_target.h"
 #include "scenario/compile/defaults.h"
 #include "scenario/compile/free_domain.h"
+#include "scenario/compile/new_target.h"
 #include "scenario/compile/polygon_files.h"
 #include "scenario/origin.h"
 #include "scenario/parse/convert.h"
@@ -64,6 +65,14 @@ struct Scenario::State {
   }
 };
 
+/// A scenario as it was read, and what was found in it.
+struct Scenario::Written {
+  proto::Scenario text;
+  std::string file;
+  Findings findings;
+  std::optional<proto::Scenario> running{};  ///< the mission that its target is for
+};
+
 Result<Scenario, Problems> Scenario::load(const std::filesystem::path& file,
                                           const Overrides& overrides) {
   const auto text = read_file(file);
@@ -73,17 +82,45 @@ Result<Scenario, Problems> Scenario::load(const std::filesystem::path& file,
 
 Result<Scenario, Problems> Scenario::parse(std::string_view text, const std::string& file,
                                            const Overrides& overrides) {
-  Findings findings(file);
-  proto::Scenario scenario;
-  if (!read_text(text, scenario, findings)) return failure(findings.take());
-  put_over(overrides, scenario, findings);
+  Written written{{}, file, Findings(file)};
+  if (!read_text(text, written.text, written.findings)) return failure(written.findings.take());
+  put_over(overrides, written.text, written.findings);
+  return compile(written);
+}
+
+Result<Scenario, Problems> Scenario::load_target(const std::filesystem::path& file,
+                                                 const Overrides& overrides,
+                                                 const std::string& running) {
+  Written written{{}, file.string(), Findings(file.string()), proto::Scenario()};
+  proto::Scenario& mission = *written.running;
+  Findings misread("the running mission");
+  if (!read_text(running, mission, misread)) return failure(misread.take());
+  Findings& findings = written.findings;
+  if (!read_target_file(file.string(), mission.domain(), written.text, findings)) {
+    const auto text = read_file(file);
+    if (!text) return failure(Problems{text.error()});
+    if (!read_text(*text, written.text, findings)) return failure(findings.take());
+  }
+  refuse_other_fields(overrides, findings);
+  put_over(overrides, written.text, findings);
+  if (!findings.empty()) return failure(findings.take());
+  return compile(written);
+}
+
+Result<Scenario, Problems> Scenario::compile(Written& written) {
+  auto& [scenario, file, findings, running] = written;
   std::vector<std::filesystem::path> by_whole_path;
   for (const std::string* name : file_names(scenario)) {
     if (name->starts_with('/')) by_whole_path.emplace_back(*name);
   }
-  fill_in(scenario, file);
   Checks checks(findings);
+  if (running) place_in(*running, scenario, checks);
+  fill_in(scenario, file);
   auto polygon_files = read_polygon_files(scenario, checks, findings);
+  if (running) {
+    complete_from(*running, scenario, checks);
+    fill_in(scenario, file);
+  }
   validate(scenario, checks);
   std::optional<CompiledTarget> target;
   if (checks.sound("domain") && checks.sound("basis") && checks.sound("target")) {
@@ -107,7 +144,8 @@ Result<Scenario, Problems> Scenario::parse(std::string_view text, const std::str
                  "widen the narrowest way, or write free_domain: false");
     return failure(findings.take());
   }
-  warn(state->mission, state->target_density, findings);
+  if (!running) warn(state->mission, findings);
+  warn_of_target(state->mission, state->target_density, findings);
   state->warnings = findings.take();
   return Scenario(std::move(state));
 }

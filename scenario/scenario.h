@@ -30,6 +30,16 @@ class Scenario {
                                                       const std::string& file,
                                                       const Overrides& overrides = {});
 
+  /// A new target for a running mission, as a scenario of that mission. `file` is a scenario, of
+  /// which only the target counts, or a file that is a target by itself: a map, GeoJSON or a
+  /// drawing. Its domain, origin and walls, where it has any, must be those of the mission.
+  /// @param running    the text of the mission without its target, logger/mission_text.h; it may
+  ///                   have an origin
+  /// @param overrides  fields of the target
+  static Result<Scenario, std::vector<Problem>> load_target(const std::filesystem::path& file,
+                                                            const Overrides& overrides,
+                                                            const std::string& running);
+
   /// The same with another seed and new random starts: the result of load() with that seed.
   Scenario with_seed(std::uint64_t seed) const;
 
@@ -64,6 +74,8 @@ class Scenario {
 
  private:
   struct State;
+  struct Written;
+  static Result<Scenario, std::vector<Problem>> compile(Written& written);
   explicit Scenario(std::shared_ptr<const State> state);
   std::shared_ptr<const State> state_;
 };

@@ -14,7 +14,7 @@
 
 #include "core/base/contribution.h"
 #include "core/base/ids.h"
-#include "core/mission/hold.h"
+#include "core/mission/amendments.h"
 #include "core/mission/roster.h"
 #include "plan/plan.h"
 
@@ -26,8 +26,8 @@ inline constexpr int kMaxVehiclesPerState = 16;
 inline constexpr int kMaxRosterEntriesPerMessage = 6;
 /// Limit (Messages): entries of a digest. Beyond it: entries take turns.
 inline constexpr int kMaxDigestEntriesPerMessage = 40;
-/// Limit (Messages): bytes of the plan in a part of MISSION. Beyond it: the mission has several
-/// parts.
+/// Limit (Messages): bytes of plan and amendments in a part of MISSION. Beyond it: the mission has
+/// several parts.
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 /// Limit (Messages): parts of a plan. Beyond it: the scenario is refused.
 inline constexpr int kMaxPlanParts = 512;
@@ -37,7 +37,10 @@ static_assert(std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage == kMaxPlanBy
 inline constexpr int kMaxMissionParts = 683;
 static_assert(kMaxMissionParts >= kMaxPlanParts &&
               std::size_t{kMaxMissionParts} * kMaxRosterEntriesPerMessage >= kMaxRosterEntries);
-inline constexpr int kMaxHoldsPerMessage = 1;
+/// Limit (Messages): parts of an AMEND: as many as the largest target needs. Beyond it: the part is
+/// refused with `range`.
+inline constexpr int kMaxAmendParts =
+    (kMaxModes * static_cast<int>(sizeof(double)) - 1) / kMaxPlanBytesPerMessage + 1;
 inline constexpr int kMaxEchoesPerMessage = kMostLeasedAgents;
 inline constexpr int kMaxReasonLength = 150;
 /// The period of an agent's status in wall time.
@@ -95,7 +98,8 @@ struct MissionPart {
   std::uint64_t content_hash = 0;   ///< the sum of hash_of() over all parts of the revision
   std::vector<RosterEntry> roster;  ///< this part's share, in the order of admission
   std::vector<std::byte> plan;      ///< this part's share of the compiled plan
-  std::vector<Hold> holds;          ///< this part's share, in ascending order
+  /// This part's share of the amendments (plan/amendment_list.h), which follow the plan.
+  std::vector<std::byte> amendments;
   /// Lockstep: the world stays at the first tick under this or a later revision until the
   /// coordinator has named a tick. −1: it goes on.
   std::int64_t stand_by_revision = -1;
@@ -174,13 +178,15 @@ struct Stop {
   Signature signature{};
 };
 
-/// Pauses a mission, or resumes it. Only the coordinator obeys, and only once: a recording names a
-/// change that was already made, or an old tick.
-struct Pause {
-  Header header;  ///< header.tick: the newest that the operator knows
-  /// How many beginnings and ends of holds are already named (named_changes(),
-  /// core/mission/hold.h). An even number pauses, an odd one resumes.
-  std::int32_t changes = 0;
+/// Asks for an amendment of the mission. Only the coordinator obeys, and only once: a recording
+/// names the number of an amendment that was already made, or an old tick.
+struct Amend {
+  Header header;            ///< header.tick: the newest that the operator knows
+  std::int32_t number = 0;  ///< that it will have: Amendments::named
+  AmendmentKind kind = AmendmentKind::kPause;
+  Tick delay_ticks = 0;  ///< how many ticks later than necessary it shall hold
+  std::int32_t part = 0, parts = 1;
+  std::vector<std::byte> content{};  ///< this part's share of the target, plan/amendment_list.h
   Signature signature{};
 };
 
@@ -259,7 +265,7 @@ struct RecordAck {
 inline constexpr Tick kRecordWindowTicks = 64;
 
 using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
-                             WorldState, Command, RecordAck, Digest, Pause, Beacon, Recall>;
+                             WorldState, Command, RecordAck, Digest, Amend, Beacon, Recall>;
 
 enum class Bus { kSwarm, kWorld, kCommand };
 inline constexpr int kBusCount = 3;

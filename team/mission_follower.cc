@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "plan/amendment_list.h"
 #include "plan/plan.h"
 
 namespace ergocast {
@@ -35,8 +36,9 @@ std::uint64_t hash_of(const MissionPart& part) {
     add(entry.kind);
     add(entry.recall_revision), add(entry.leaves);
   }
-  for (const Hold& hold : part.holds) add(hold.from), add(hold.until);
+  add(part.plan.size());
   for (const std::byte byte : part.plan) add(byte);
+  for (const std::byte byte : part.amendments) add(byte);
   return hash;
 }
 
@@ -109,23 +111,37 @@ void MissionFollower::forget_oldest() {
   collected_.erase(oldest);
 }
 
+/// The mission of a plan, or why this program cannot use it.
+Result<Mission> MissionFollower::read(const std::vector<std::byte>& plan) const {
+  if (!expected_plan_.empty() && plan != expected_plan_) return failure("another mission");
+  return needs_table_ ? decode_plan_with_table(plan) : decode_plan(plan);
+}
+
 bool MissionFollower::commit(const MissionPart& newest, std::vector<MissionPart> parts) {
-  std::vector<std::byte> plan;
-  std::vector<Hold> holds;
+  std::vector<std::byte> plan, list;
   for (const MissionPart& part : parts) {
     plan.insert(plan.end(), part.plan.begin(), part.plan.end());
-    holds.insert(holds.end(), part.holds.begin(), part.holds.end());
+    list.insert(list.end(), part.amendments.begin(), part.amendments.end());
   }
   const bool first = !mission_ && !plan_problem_;
-  if ((!first && plan != plan_) || !are_holds(holds)) {
+  if (!first && plan != plan_) {
     ++foreign_plans_;
     return false;
   }
+  Result<Mission> read_first = first ? read(plan) : failure(std::string());
+  const Mission* const mission = read_first ? &*read_first : mission_ ? &*mission_ : nullptr;
+  auto amendments = mission != nullptr ? decode_amendments(list, *mission) : Amendments();
+  if (!amendments) {
+    ++foreign_plans_;
+    return false;
+  }
+  if (first && !read_first) plan_problem_ = read_first.error();
+  if (read_first) mission_ = *std::move(read_first);
   plan_ = std::move(plan);
   revision_ = newest.revision;
   state_ = newest.state;
   reason_ = newest.reason;
-  holds_ = std::move(holds);
+  amendments_ = *std::move(amendments);
   stand_by_revision_ = newest.stand_by_revision;
   roster_.clear();
   known_.resize(parts.size());
@@ -143,17 +159,6 @@ bool MissionFollower::commit(const MissionPart& newest, std::vector<MissionPart>
   }
   std::sort(by_incarnation_.begin(), by_incarnation_.end());
   parts_ = std::move(parts);
-  if (!first) return true;
-  if (!expected_plan_.empty() && plan_ != expected_plan_) {
-    plan_problem_ = "another mission";
-    return true;
-  }
-  auto decoded = needs_table_ ? decode_plan_with_table(plan_) : decode_plan(plan_);
-  if (decoded) {
-    mission_ = *std::move(decoded);
-  } else {
-    plan_problem_ = decoded.error();
-  }
   return true;
 }
 

@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/base/result.h"
+#include "core/mission/amendments.h"
 #include "core/mission/mission.h"
 #include "team/messages.h"
 
 namespace ergocast {
 
-/// A hash of a part's content: its number and its shares of roster, plan and holds.
+/// A hash of a part's content: its number and its shares of roster, plan and amendments.
 std::uint64_t hash_of(const MissionPart& part);
 
 class MissionFollower {
@@ -31,7 +33,8 @@ class MissionFollower {
 
   /// Takes in one part, in any order. True if it completed a newer revision: all its parts have
   /// arrived, or older parts in place of the missing ones give its content_hash. A run has one
-  /// plan: a revision with another plan or with impossible holds only counts in foreign_plans().
+  /// plan: a revision with another plan or with an impossible list of amendments only counts in
+  /// foreign_plans().
   bool receive(const MissionPart& part);
 
   /// The mission, once a whole plan has arrived and decoded.
@@ -39,8 +42,8 @@ class MissionFollower {
   /// Why this program cannot use the received plan: another version, damage, or not the expected
   /// plan.
   const std::optional<std::string>& plan_problem() const { return plan_problem_; }
-  /// Complete revisions that were ignored because their plan is not this run's, or their holds are
-  /// impossible.
+  /// Complete revisions that were ignored because their plan is not this run's, or their list of
+  /// amendments is impossible.
   std::int64_t foreign_plans() const { return foreign_plans_; }
 
   std::int64_t revision() const { return revision_; }
@@ -51,8 +54,10 @@ class MissionFollower {
   MissionState state() const { return state_; }
   bool over() const { return is_over(state_); }
   const std::string& reason() const { return reason_; }
-  /// Ticks that do not count. are_holds() is true for them.
-  std::span<const Hold> holds() const { return holds_; }
+  /// What has changed since the plan; are_amendments() is true for it.
+  const Amendments& amendments() const { return amendments_; }
+  /// Ticks that do not count.
+  std::span<const Hold> holds() const { return amendments_.holds; }
   /// See MissionPart.
   std::int64_t stand_by_revision() const { return stand_by_revision_; }
   /// In ascending order of authors.
@@ -74,7 +79,7 @@ class MissionFollower {
   std::int64_t revision_ = -1;
   MissionState state_ = MissionState::kWaiting;
   std::string reason_;
-  std::vector<Hold> holds_;
+  Amendments amendments_;
   std::int64_t stand_by_revision_ = -1;
   std::vector<RosterEntry> roster_;
   std::vector<std::pair<Incarnation, std::size_t>> by_incarnation_;  // places in it, ascending
@@ -90,6 +95,7 @@ class MissionFollower {
   const Page* newest_of(std::size_t part, std::int64_t revision) const;
   std::optional<std::vector<MissionPart>> completed(const MissionPart& newest) const;
   void forget_oldest();
+  Result<Mission> read(const std::vector<std::byte>& plan) const;
   bool commit(const MissionPart& newest, std::vector<MissionPart> parts);
 
   std::map<std::int64_t, Pages> collected_;  // by revision, none of them complete

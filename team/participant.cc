@@ -39,7 +39,7 @@ std::optional<Arrival> Participant::accept(const Message& message, Bus bus, Agen
 bool Participant::too_late(const Message& message, Instant now) {
   window_.note(std::max(own_tick_, mission_tick_), own_tick_ >= 0, now);
   const bool is_command = std::holds_alternative<Stop>(message) ||
-                          std::holds_alternative<Pause>(message) ||
+                          std::holds_alternative<Amend>(message) ||
                           std::holds_alternative<Recall>(message);
   return is_command && !window_.admits(header_of(message).tick);
 }

@@ -59,7 +59,7 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   };
   subscribes(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop, Beacon>);
   subscribes(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
-  subscribes(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop, Pause, Recall>);
+  subscribes(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop, Amend, Recall>);
   subscribes(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState, RecordAck>);
   subscribes(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, WorldState, Command, RecordAck, Stop>);
   subscribes(Role::kDriver,      Bus::kWorld,   kTypes<WorldState>);

@@ -10,6 +10,7 @@ ergocast_test(NAME modes_tests LABELS unit
   LIBS ergocast::modes)
 ergocast_test(NAME core_tests LABELS unit
   SOURCES
+    core/amendments_test.cc
     core/basis_in_space_test.cc
     core/basis_test.cc
     core/block_layout_test.cc
@@ -17,6 +18,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/control_in_space_test.cc
     core/control_test.cc
     core/coverage_table_test.cc
+    core/detour_test.cc
     core/forecast_order_test.cc
     core/forecast_test.cc
     core/geometry_test.cc
@@ -31,6 +33,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/separation_test.cc
     core/speed_limit_test.cc
     core/step_constraints_test.cc
+    core/target_shift_test.cc
     core/vehicle_teams_test.cc core/vehicle_test.cc core/wall_following_test.cc core/walls_attack_test.cc
     core/station_test.cc
     core/walls_test.cc
@@ -106,6 +109,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     coordinator/departure_test.cc
     coordinator/farewell_test.cc
     coordinator/part_schedule_test.cc
+    coordinator/amending_test.cc
     coordinator/pausing_test.cc
     coordinator/recalling_test.cc
     coordinator/takeover_test.cc
@@ -135,6 +139,7 @@ ergocast_test(NAME runtime_tests LABELS unit
 
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
+    cli/amend_order_test.cc
     cli/control_desk_test.cc
     cli/rate_test.cc
     cli/team_monitor_test.cc
@@ -169,6 +174,7 @@ ergocast_test(NAME status_tests LABELS unit
 
 ergocast_test(NAME logger_tests LABELS unit
   SOURCES
+    logger/amendments_test.cc
     logger/drivers_test.cc
     logger/farewell_test.cc
     logger/full_disk_test.cc
@@ -193,6 +199,7 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/free_domain_test.cc
     scenario/geojson_target_test.cc
     scenario/map_target_test.cc
+    scenario/new_target_test.cc
     scenario/plan_proto_test.cc
     scenario/scenario_to_plan_test.cc
     scenario/polygon_flaw_test.cc
@@ -253,5 +260,6 @@ ergocast_test(NAME lab_tests LABELS lab
     lab/large_team_test.cc
     lab/message_loss_test.cc
     lab/pause_test.cc
+    lab/planned_targets_test.cc
     lab/recall_test.cc
   LIBS ergocast_lab ergocast::scenario)

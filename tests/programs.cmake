@@ -67,6 +67,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/commands/bad_input_test.cc
     process/bus_reader_test.cc
     process/by_hand_test.cc
+    process/changed_target_test.cc
     process/command_replay_test.cc
     process/datagram_filter_test.cc
     process/commands/deploy_test.cc
@@ -100,6 +101,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/commands/set_test.cc
     process/commands/status_test.cc
     process/home_test.cc
+    process/amend_test.cc
     process/pause_test.cc
     process/recall_test.cc
     process/commands/stop_test.cc
@@ -128,6 +130,7 @@ target_compile_definitions(process_tests PRIVATE
 # The page in Chromium.
 ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
   SOURCES
+    page/amendment_test.cc
     page/layout_test.cc
     page/map_test.cc
     page/control_test.cc
@@ -138,7 +141,7 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     support/browser.cc
     support/http.cc
     support/tls.cc
-  LIBS ergocast::core OpenSSL::SSL)
+  LIBS ergocast_lab ergocast_logger ergocast::plan ergocast::target OpenSSL::SSL)
 
 # A register of the findings of each check, as the programs report them.
 ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
@@ -155,7 +158,7 @@ ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
   LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
 # The real `ergocast` with selectable bugs, whose files have the linker's names of the wrapped
 # functions.
-set(bugs checks_can_fail/coverage_bugs.cc checks_can_fail/motion_bugs.cc checks_can_fail/participant_bugs.cc)
+set(bugs checks_can_fail/amendment_bugs.cc checks_can_fail/coverage_bugs.cc checks_can_fail/motion_bugs.cc checks_can_fail/participant_bugs.cc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${bugs})
 set(wrapped)
 foreach(file ${bugs})

@@ -33,6 +33,10 @@ class Control {
   /// Listens until `until`, or until `wake_fd` is readable. For a caller that has no other bus.
   void listen(Instant until, int wake_fd) { transport_->deliver_until(until, wake_fd); }
 
+  /// Tells the page that the mission is over and no order has an effect. attend() is called no
+  /// more.
+  void end() const { links_.first.send(kControlOver); }
+
   /// Whether the mission's end has been received.
   bool over() const { return team_.over(); }
   /// The page's end of the link. The page's process inherits it.

@@ -30,6 +30,10 @@ class ControlledPage {
   Control* control() { return control_.get(); }
   /// Call at least ten times a second.
   void attend(Instant now);
+  /// The mission is over: no order has an effect from now on.
+  void end_control() const {
+    if (control_) control_->end();
+  }
 
  private:
   std::unique_ptr<Control> control_;

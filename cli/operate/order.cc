@@ -2,6 +2,8 @@
 // Reports that several orders share.
 #include "cli/operate/order.h"
 
+#include <cstdio>
+
 namespace ergocast::cli {
 namespace {
 
@@ -15,11 +17,36 @@ constexpr std::size_t kMostNames = 10;
 OrderReport waiting_for_mission(const MonitoredRun& team, Instant::duration waited) {
   using State = OrderReport::State;
   if (team.over()) return {State::kFailed, "the mission is over: " + team.reason()};
+  if (team.plan_problem())
+    return {State::kFailed, "the mission cannot be read: " + *team.plan_problem()};
   if (waited < kMissionPatience) return {State::kSent, "waiting for the mission"};
   return {State::kFailed,
           team.knows_mission()
               ? "the mission has not begun: it waits for its quorum, and no vehicle moves"
               : "the mission was not received: is its coordinator running?"};
+}
+
+Outgoing mission_question(const MonitoredRun& team, Header& header) {
+  header.run = team.run();
+  ++header.sequence;
+  Hello question;
+  question.header = header;
+  question.header.tick = -1;
+  return {Bus::kSwarm, question};
+}
+
+std::string why_no_tick(const MonitoredRun& team) {
+  if (!team.coordinator_seen())
+    return "no coordinator answers, and only a coordinator names the tick: start one with "
+           "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
+  return "the coordinator names no tick: it may have another key, or receive no world";
+}
+
+std::string in_seconds(double seconds) {
+  if (!(seconds > 0)) return {};
+  char text[32];
+  std::snprintf(text, sizeof text, ", in %.1f s", seconds);
+  return text;
 }
 
 std::string standing_text(const MonitoredRun& team) {

@@ -2,8 +2,8 @@
 // An order of an operator to a running team. It is repeated until the team's own messages show that
 // the team obeys.
 //
-// `ergocast pause`, `resume`, `stop` and `recall` and the buttons of the page give the same orders.
-// An order has no clock, sends through an outbox, and prints nothing.
+// `ergocast amend`, `pause`, `resume`, `stop` and `recall` and the buttons of the page give the
+// same orders. An order has no clock, sends through an outbox, and prints nothing.
 #pragma once
 
 #include <chrono>
@@ -33,6 +33,8 @@ struct OrderReport {
 
 class Order {
  public:
+  /// How often an order is repeated.
+  static constexpr std::chrono::milliseconds kRepeatPeriod{100};
   /// How long to wait for the first process of a team, and for a coordinator.
   static constexpr std::chrono::seconds kListeningTime{3};
   /// How long to wait for a coordinator's answer.
@@ -48,6 +50,16 @@ class Order {
 
 /// The report of an order that has waited for the mission so far.
 OrderReport waiting_for_mission(const MonitoredRun& team, Instant::duration waited);
+
+/// Asks for the mission under an operator's header, and numbers the message. The coordinator sends
+/// MISSION only once a second; an agent repeats it at once.
+Outgoing mission_question(const MonitoredRun& team, Header& header);
+
+/// Why a coordinator has not named the tick of an amendment.
+std::string why_no_tick(const MonitoredRun& team);
+
+/// ", in 2.0 s", or nothing if the time is not known.
+std::string in_seconds(double seconds);
 
 /// "4 of 6 stand, 1 circles; agent 2 still moves", from the world's newest states. A fixed wing
 /// circles, because it cannot stand.

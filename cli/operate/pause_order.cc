@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks for the mission until its holds are known. Then repeats PAUSE until MISSION names the tick
+// Asks for the mission until its holds are known. Then repeats AMEND until MISSION names the tick
 // of the change.
 #include "cli/operate/pause_order.h"
 
 #include <chrono>
-#include <cstdio>
 
 #include "runtime/bus/random_identity.h"
 
 namespace ergocast::cli {
 namespace {
 
-using namespace std::chrono_literals;
 using State = OrderReport::State;
-
-constexpr auto kAskPeriod = 100ms;
-
-std::string in_seconds(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, ", in %.1f s", seconds);
-  return text;
-}
 
 }  // namespace
 
@@ -34,31 +24,30 @@ bool PauseOrder::is_named(const MonitoredRun& team) const {
 
 void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   if (team.over()) return;
-  if (team.is_running() && !changes_) {
-    changes_ = named_changes(team.holds());
+  if (team.is_running() && !number_) {
+    number_ = team.amendments().named;
     obsolete_ = is_named(team);
     since_ = now;
     next_ = now;
   }
-  was_named_ = was_named_ || (changes_ && is_named(team));
+  was_named_ = was_named_ || (number_ && is_named(team));
   if (was_named_ || now < next_) return;
-  next_ = now + kAskPeriod;
-  ++header_.sequence;
-  header_.run = team.run();
-  if (!changes_) {
-    // The coordinator sends MISSION once a second; an agent repeats it at once.
-    Hello question;
-    question.header = header_;
-    question.header.tick = -1;
-    out.push_back({Bus::kSwarm, question});
+  next_ = now + kRepeatPeriod;
+  if (!number_) {
+    out.push_back(mission_question(team, header_));
     return;
   }
+  ++header_.sequence;
+  header_.run = team.run();
   header_.tick = team.tick();
-  out.push_back({Bus::kSwarm, Pause{header_, *changes_, {}}});
+  out.push_back(
+      {Bus::kSwarm, Amend{.header = header_,
+                          .number = *number_,
+                          .kind = pauses_ ? AmendmentKind::kPause : AmendmentKind::kResume}});
 }
 
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {
-  if (!changes_) return waiting_for_mission(team, now - since_);
+  if (!number_) return waiting_for_mission(team, now - since_);
   if (team.over()) return {State::kFailed, "the mission has ended: " + team.reason()};
   if (!is_named(team) && was_named_)
     return {State::kDone, pauses_ ? "the mission was resumed" : "the mission was paused again"};
@@ -95,13 +84,10 @@ OrderReport PauseOrder::resumed(const MonitoredRun& team) const {
 }
 
 std::string PauseOrder::why_not(const MonitoredRun& team) const {
-  if (!team.coordinator_seen())
-    return "no coordinator answers, and only a coordinator names the tick: start one with "
-           "ergocast-coordinator --resume, or end the mission with ergocast stop --now";
-  if (team.holds().size() == kMaxHolds && pauses_)
+  if (team.coordinator_seen() && team.holds().size() == kMaxHolds && pauses_)
     return "a mission can be paused " + std::to_string(kMaxHolds) +
            " times, and this one has been: end it with ergocast stop";
-  return "the coordinator names no tick: it may have another key, or receive no world";
+  return why_no_tick(team);
 }
 
 }  // namespace ergocast::cli

@@ -29,8 +29,8 @@ class PauseOrder final : public Order {
   bool pauses_;
   Header header_;
   Instant since_, next_{};
-  std::optional<std::int32_t> changes_;  // their count when the mission was first known
-  bool obsolete_ = false;                // the mission was already in the wanted state
+  std::optional<std::int32_t> number_;  // of the next amendment when the mission was first known
+  bool obsolete_ = false;               // the mission was already in the wanted state
   bool was_named_ = false;
 };
 

@@ -12,6 +12,7 @@
 
 #include "cli/record/trajectory_comparison.h"
 #include "cli/team/recorded_team.h"
+#include "logger/amendments_file.h"
 #include "logger/mission_text.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
@@ -148,6 +149,8 @@ Json expected_summary(const Json& recorded, const Mission& mission, const fs::pa
   context.simulated = expectation.simulation;
   context.segments = std::max(1, segment_count(run_dir));
   Json summary = summarize(expectation.recorder, context);
+  if (!expectation.amendments.empty())
+    summary["amendments"] = amendments_json(expectation.amendments, mission.timing.dt_s);
   if (summary.contains("speed_limit")) {
     summary["speed_limit"]["clamped_commands"] = expectation.clamped_commands;
   }

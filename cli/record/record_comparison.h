@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "logger/received_amendments.h"
 #include "logger/recorder.h"
 #include "scenario/scenario.h"
 
@@ -25,11 +26,12 @@ struct FileComparison {
 /// The expected contents of a record, computed by a recorder that received the recorded trajectory.
 struct Expectation {
   const Recorder& recorder;
-  std::string metrics;      ///< what it wrote to metrics.csv
-  bool simulation = false;  ///< the record is of a simulation
-  bool whole = false;       ///< the simulation is complete: no network and no Ctrl-C affected it
-  bool complete = false;    ///< it has the plan's last tick
-  bool closed = false;      ///< its recorder ended in order: no row may be missing at its end
+  std::string metrics;                   ///< what it wrote to metrics.csv
+  const ReceivedAmendments& amendments;  ///< those of the record: it knew them one by one
+  bool simulation = false;               ///< the record is of a simulation
+  bool whole = false;     ///< the simulation is complete: no network and no Ctrl-C affected it
+  bool complete = false;  ///< it has the plan's last tick
+  bool closed = false;    ///< its recorder ended in order: no row may be missing at its end
   std::int64_t clamped_commands = 0;  ///< of the simulation; counts if `complete`
 };
 

@@ -4,7 +4,11 @@
 #include "cli/record/simulated_record.h"
 
 #include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
 
+#include "logger/amendments_file.h"
 #include "logger/summary.h"
 #include "plan/plan.h"
 #include "runtime/process/program_options.h"
@@ -31,14 +35,24 @@ nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scen
   return summarize(recorder, context);
 }
 
+/// The numbers of new targets stand in no other file.
+std::optional<std::string> write_amendments(const Recorder& recorder, const Scenario& scenario,
+                                            const RunRecord& record) {
+  if (recorder.amendments().all().empty()) return std::nullopt;
+  return write_file(record.folder() / kAmendmentsFile,
+                    amendments_text(recorder.amendments(), scenario.mission().timing.dt_s));
+}
+
 }  // namespace
 
 Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
                                       const std::function<void(lab::Simulation&)>& look,
-                                      SimulatedEvents* events) {
-  lab::Simulation simulation(
-      {.plan = encode_plan(scenario.mission()), .version = version(), .host = host_name()},
-      record.trajectory(), record.metrics(), events);
+                                      SimulatedEvents* events, Amendments amendments) {
+  lab::Simulation simulation({.plan = encode_plan(scenario.mission()),
+                              .version = version(),
+                              .host = host_name(),
+                              .amendments = std::move(amendments)},
+                             record.trajectory(), record.metrics(), events);
   const std::string started = wall_clock_text();
   const auto start = std::chrono::steady_clock::now();
   for (int turns = 1; simulation.step() && record.good(); ++turns) {
@@ -52,6 +66,7 @@ Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenari
                              simulation.recorder().facts().no_metric_from.has_value()};
   auto error = record.flush();
   if (!error && events) error = events->flush();
+  if (!error) error = write_amendments(simulation.recorder(), scenario, record);
   if (!error) error = write_file(record.folder() / kSummaryFile, to_text(result.summary));
   if (error) return failure(*error + "; the record is incomplete");
   return result;

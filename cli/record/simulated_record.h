@@ -8,6 +8,7 @@
 
 #include "cli/record/simulated_events.h"
 #include "core/base/result.h"
+#include "core/mission/amendments.h"
 #include "lab/simulation.h"
 #include "logger/run_record.h"
 #include "scenario/scenario.h"
@@ -25,9 +26,11 @@ struct SimulatedRecord {
 /// @param record  empty; in a folder of prepare_run_directory()
 /// @param look    called every few hundred events; it may end the simulation
 /// @param events  writes the event log, too; may be null
+/// @param amendments  known from the beginning; are_amendments()
 /// @return        the error if the record is incomplete
 Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
                                       const std::function<void(lab::Simulation&)>& look,
-                                      SimulatedEvents* events = nullptr);
+                                      SimulatedEvents* events = nullptr,
+                                      Amendments amendments = {});
 
 }  // namespace ergocast::cli

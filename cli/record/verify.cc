@@ -13,11 +13,14 @@
 #include "cli/record/trajectory_comparison.h"
 #include "cli/report_error.h"
 #include "core/base/ids.h"
+#include "core/mission/amendments.h"
 #include "lab/simulation.h"
+#include "logger/amendments_file.h"
 #include "logger/recorder.h"
 #include "logger/run_data.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "plan/amendment_list.h"
 #include "plan/plan.h"
 #include "runtime/process/program_options.h"
 
@@ -31,8 +34,10 @@ constexpr int kTurnsBetweenComparisons = 256;
 
 /// The simulation of a plan, as its recorder writes it.
 struct Repetition {
-  Repetition(const Mission& mission, std::vector<Hold> holds)
-      : simulation({.plan = encode_plan(mission), .version = version(), .holds = std::move(holds)},
+  Repetition(const Mission& mission, Amendments amendments)
+      : simulation({.plan = encode_plan(mission),
+                    .version = version(),
+                    .amendments = std::move(amendments)},
                    trajectory, metrics) {}
 
   /// Runs until the first difference or the end of either trajectory.
@@ -172,15 +177,18 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
 
 /// Compares everything else that follows from the compared trajectory.
 std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Mission& mission,
-                                             RunData rows, const Repetition& repetition,
+                                             RunData rows, const ReceivedAmendments& amendments,
+                                             const Repetition& repetition,
                                              const TrajectoryComparison& comparison,
                                              const Json& summary) {
   const Recorder& simulated = repetition.simulation.recorder();
   const bool complete = !comparison.recorded_over();
   const bool whole = complete && comparison.missing() == 0 && is_simulated(summary, simulated);
+  rows.amendments = amendments;  // MISSION has the newest targets only
   const Observer observer(std::move(rows), simulated.follower());
   const Expectation expectation{.recorder = whole ? simulated : observer.recorder,
                                 .metrics = (whole ? repetition.metrics : observer.metrics).str(),
+                                .amendments = amendments,
                                 .simulation = is_simulated(summary, simulated),
                                 .whole = whole,
                                 .complete = complete,
@@ -223,7 +231,11 @@ int verify(const fs::path& run_dir) {
   auto read = read_summary(run_dir);
   if (!read) return report_error(kExitBadInput, read.error());
   Json& summary = *read;
-  Repetition repetition(*mission, recorded_holds(run_dir, summary));
+  auto amendments = recorded_amendments(run_dir, summary, *mission);
+  if (!amendments) return report_error(kExitBadInput, amendments.error());
+  if (const auto reason = missing_target(run_dir, summary, *amendments))
+    return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + *reason);
+  Repetition repetition(*mission, amendments->list());
   if (!summary.is_object()) {
     print_message(run_dir.string() + ": no " + kSummaryFile +
                   ", so restarts are unknown; comparing anyway");
@@ -248,8 +260,8 @@ int verify(const fs::path& run_dir) {
   files.push_back({kTrajectoryFile, std::to_string(comparison.rows()) + " rows", "", ""});
   auto rows = read_tracks(run_dir);
   if (!rows) return report_difference(run_dir, rows.error() + '\n', summary);
-  auto rest =
-      compare_the_rest(run_dir, *mission, *std::move(rows), repetition, comparison, summary);
+  auto rest = compare_the_rest(run_dir, *mission, *std::move(rows), *amendments, repetition,
+                               comparison, summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, files);
 }

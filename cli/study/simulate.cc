@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast simulate`: simulates a mission into a run directory and shows how far it is.
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/mission_options.h"
@@ -8,6 +10,7 @@
 #include "cli/record/simulated_events.h"
 #include "cli/record/simulated_record.h"
 #include "cli/report_error.h"
+#include "cli/study/planned_targets.h"
 #include "cli/study/trials.h"
 #include "cli/watch/progress.h"
 #include "runtime/process/signals.h"
@@ -27,9 +30,14 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
   display.show(at);
 }
 
+struct SimulateOptions : TrialsOptions {
+  bool event_log = false;
+  std::vector<PlannedTarget> targets;  ///< that replace the scenario's
+};
+
 /// Shows the progress on the terminal; a signal ends the simulation.
 Result<SimulatedRecord> simulate_and_show(RunRecord& record, const Scenario& scenario,
-                                          bool event_log) {
+                                          Amendments amendments, bool event_log) {
   StopSignals signals;
   ProgressDisplay display;
   std::optional<SimulatedEvents> events;
@@ -38,17 +46,21 @@ Result<SimulatedRecord> simulate_and_show(RunRecord& record, const Scenario& sce
     show(simulation, scenario.mission(), display);
     if (signals.take() > 0) simulation.end("Ctrl-C or SIGTERM");
   };
-  return simulate_into(record, scenario, look, events ? &*events : nullptr);
+  return simulate_into(record, scenario, look, events ? &*events : nullptr, std::move(amendments));
 }
 
-int simulate(const MissionOptions& options, bool event_log) {
-  const auto scenario = load_or_complain(options.scenario, options.overrides);
+int simulate(const SimulateOptions& options) {
+  const MissionOptions& chosen = options.mission;
+  const auto scenario = load_or_complain(chosen.scenario, chosen.overrides);
   if (!scenario) return kExitBadInput;
-  const auto folder = prepare_run_directory(options.out, *scenario);
+  auto amendments = amendments_with(options.targets, *scenario, chosen.scenario);
+  if (!amendments) return kExitBadInput;
+  const auto folder = prepare_run_directory(chosen.out, *scenario);
   if (!folder) return report_error(kExitBadInput, folder.error());
   const auto record = RunRecord::create(*folder);
   if (!record) return report_error(kExitBadInput, record.error());
-  const auto simulated = simulate_and_show(**record, *scenario, event_log);
+  const auto simulated =
+      simulate_and_show(**record, *scenario, *std::move(amendments), options.event_log);
   if (!simulated) return report_error(kExitFailed, simulated.error());
   conclude(*folder, simulated->summary, *scenario);
   return simulated->failed ? kExitFailed : kExitDone;
@@ -58,7 +70,7 @@ int simulate(const MissionOptions& options, bool event_log) {
 
 void add_simulate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("simulate", "Run a mission in this process, in virtual time");
-  auto options = std::make_shared<TrialsOptions>();
+  auto options = std::make_shared<SimulateOptions>();
   add_mission_options(*command, options->mission);
   auto* seeds = add_seeds_option(*command, options->seeds,
                                  "One mission for each seed, in the laboratory; --out is then "
@@ -70,12 +82,14 @@ void add_simulate(CLI::App& app, Action& action) {
       ->type_name("FILE|swarm")
       ->needs(seeds);
   add_jobs_option(*command, options->jobs)->needs(seeds);
-  auto event_log = std::make_shared<bool>(false);
-  command->add_flag("--event-log", *event_log, "Write every message, as run does: events-000.lcm …")
+  add_amend_option(*command, options->targets)->excludes(seeds);
+  command
+      ->add_flag("--event-log", options->event_log,
+                 "Write every message, as run does: events-000.lcm …")
       ->excludes(seeds);
-  command->callback([&action, options, event_log, seeds] {
-    action = [options, event_log, many = seeds->count() > 0] {
-      return many ? trials(*options) : simulate(options->mission, *event_log);
+  command->callback([&action, options, seeds] {
+    action = [options, many = seeds->count() > 0] {
+      return many ? trials(*options) : simulate(*options);
     };
   });
 }

@@ -49,6 +49,7 @@ constexpr Count kCounts[] = {
      [](TrialFigures& f) -> std::int64_t& { return f.world_crashes; }},
     {"pauses", "pauses", [](TrialFigures& f) -> std::int64_t& { return f.pauses; }},
     {"recalls", "recalls", [](TrialFigures& f) -> std::int64_t& { return f.recalls; }},
+    {"targets", "new targets", [](TrialFigures& f) -> std::int64_t& { return f.targets; }},
     {"held_ticks", "ticks held", [](TrialFigures& f) -> std::int64_t& { return f.held_ticks; }},
     {"skewed_clocks", "clocks skewed",
      [](TrialFigures& f) -> std::int64_t& { return f.skewed_clocks; }},

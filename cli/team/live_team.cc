@@ -52,6 +52,10 @@ void LiveTeam::on(const WorldState& world) {
   }
 }
 
+void LiveTeam::on(const MissionPart&) {
+  if (me_.knows_mission()) amendments_.note(me_.follower().amendments());
+}
+
 void LiveTeam::log(std::string line) {
   lines_.push_back(std::move(line));
   ++line_count_;
@@ -208,6 +212,7 @@ std::string LiveTeam::frame(Cursor& cursor, bool& more) const {
   }
   Json frame = Json::object();
   if (cursor.rosters != rosters_) frame["roster"] = roster_json();
+  if (grid_) amendments_.add_new(cursor.amendments, frame);
   // The newest row may lack a part of the world's message.
   const std::int64_t complete = grid_ ? grid_->rows() - (over() ? 0 : 1) : 0;
   if (complete > cursor.row) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/team/agent_history.h"
+#include "cli/team/amendment_history.h"
 #include "cli/team/team_history.h"
 #include "cli/team/team_view.h"
 #include "core/mission/mission.h"
@@ -60,6 +61,7 @@ class LiveTeam {
     Tick stride = 0;  ///< of the rows; when it grows, the browser starts again
     std::int64_t row = 0;
     std::uint64_t statuses = 0, incidents = 0, rosters = 0, lines = 0;
+    AmendmentHistory::Cursor amendments{};
   };
   /// The next server-sent events for that browser; empty if there is nothing new. One call returns
   /// a bounded number of rows; `more` is set if others wait.
@@ -83,6 +85,7 @@ class LiveTeam {
   template <class M>
   void on(const M&) {}  // the other types need no more action
   void on(const WorldState& world);
+  void on(const MissionPart& part);
   bool joined_late(const Author& author) const;
   void note_holds(Tick tick, double dt_s);
   void compare(const AgentRow& row, double t_s, double dt_s);
@@ -98,6 +101,7 @@ class LiveTeam {
   nlohmann::ordered_json mission_, status_;  // as the page gets them
   TeamHistory history_;
   AgentHistory agents_;
+  AmendmentHistory amendments_;
   std::map<AgentId, LastLook> last_looks_;
   std::map<std::string, bool> trouble_;  // of the processes, by name
   std::deque<Incident> incidents_;

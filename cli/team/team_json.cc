@@ -72,6 +72,9 @@ std::string team_json(const TeamPicture& at) {
   json["holds"] = nlohmann::ordered_json::array();
   for (const Hold& hold : at.holds)
     json["holds"].push_back({hold.from, or_null(!hold.open(), hold.until)});
+  json["target"] = nullptr;
+  if (at.target)
+    json["target"] = {{"amendment", at.target->number}, {"from_tick", at.target->from}};
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {

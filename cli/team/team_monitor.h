@@ -55,12 +55,19 @@ class MonitoredRun {
   double seconds_until(Tick tick) const;
   RunId run() const { return me_.run(); }
   bool knows_mission() const { return me_.knows_mission(); }
+  /// @pre knows_mission()
+  const Mission& mission() const { return me_.mission(); }
+  /// See MissionFollower.
+  const std::optional<std::string>& plan_problem() const { return me_.follower().plan_problem(); }
+  /// How many more ticks count. @pre knows_mission()
+  Tick ticks_left() const { return me_.timing().tick_count - me_.counted(tick_); }
   /// Whether the mission has begun, is known as a whole, and is not over.
   bool is_running() const {
     return knows_mission() && me_.follower().state() == MissionState::kRunning && !over_;
   }
   /// See core/mission/hold.h. @pre knows_mission()
-  std::span<const Hold> holds() const { return me_.follower().holds(); }
+  const Amendments& amendments() const { return me_.follower().amendments(); }
+  std::span<const Hold> holds() const { return amendments().holds; }
   bool unheard() const;
   bool coordinator_seen() const { return seen(kCoordinator); }
   bool world_seen() const { return !vehicles_.empty(); }

@@ -148,6 +148,13 @@ std::string headline(const TeamPicture& at) {
   return text;
 }
 
+/// "target of amendment 3 since t = 120.0 s", in mission time.
+std::string target_text(const TeamPicture& at) {
+  const Tick from = counted_ticks(at.holds, at.target->from);
+  return "target of amendment " + std::to_string(at.target->number) +
+         number(" since t = %.1f s", static_cast<double>(from) * at.dt_s);
+}
+
 std::string second_line(const TeamPicture& at) {
   std::string text = at.over ? "the mission is over"
                              : std::to_string(at.agents_alive) + " of " +
@@ -156,6 +163,7 @@ std::string second_line(const TeamPicture& at) {
     text += number(", phi^2 %.4g", *at.ergodic_metric);
     text += at.free_domain ? " in modes of the free domain (median)" : " (median)";
   }
+  if (at.target) text += ", " + target_text(at);
   if (at.missed_deadlines > 0)
     text += ", " + std::to_string(at.missed_deadlines) + " commands late";
   if (at.skipped_ticks > 0) text += ", " + std::to_string(at.skipped_ticks) + " ticks skipped";

@@ -236,6 +236,8 @@ TeamPicture TeamView::picture(Instant now) const {
   const Tick end = tick_after(follower().holds(), picture.tick_count);
   picture.tick = picture.tick_count > 0 ? std::min(tick_, end) : tick_;
   picture.holds.assign(follower().holds().begin(), follower().holds().end());
+  if (const auto* change = target_at(follower().amendments().targets, picture.tick))
+    picture.target = {change->number, AmendmentKind::kTarget, change->from, target_hash(*change)};
   picture.counted = counted_ticks(follower().holds(), picture.tick);
   picture.paused =
       !over() && (follower().mission() ? is_held(follower().holds(), picture.tick) : team_paused_);

@@ -61,6 +61,7 @@ struct TeamPicture {
   Tick counted = 0, tick_count = 0;   ///< its number among those that count; 0: not known
   bool paused = false;                ///< `tick` does not count
   std::vector<Hold> holds;            ///< all that MISSION names
+  std::optional<Amendment> target;    ///< which target holds at `tick`; nothing: the plan's
   double dt_s = 0;
   std::optional<double> ergodic_metric;  ///< median of the agents' values, in cosines or …
   bool free_domain = false;              ///< … in the modes of the free domain

@@ -14,6 +14,9 @@
 
 namespace ergocast::cli {
 
+/// The state of control that the page gets last: the mission is over.
+inline constexpr const char* kControlOver = R"({"over":true})";
+
 class ControlLink {
  public:
   /// The longest text.

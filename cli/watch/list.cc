@@ -103,7 +103,8 @@ void add_list(CLI::App& app, Action& action) {
       ->type_name("NAME");
   command->footer(
       "The runs of `ergocast run`; teams that were started by hand or on other hosts are not "
-      "listed.\nstatus, watch, spy, stop, pause, resume and recall take the only one, or the one "
+      "listed.\nstatus, watch, spy, stop, pause, resume, amend and recall take the only one, or "
+      "the one "
       "that "
       "--run-id names;\nstop --now takes all.");
   command->callback([&action, options] { action = [options] { return list(*options); }; });

@@ -23,7 +23,8 @@ void PageControl::listen(Instant now) {
     second_ = now;
     passed_on_ = 0;
   }
-  const bool silent = now - heard_ > kPatience;
+  over_ = over_ || state_ == kControlOver;
+  const bool silent = !over_ && now - heard_ > kPatience;
   if (silent != silent_) ++changes_;
   silent_ = silent;
 }
@@ -31,6 +32,8 @@ void PageControl::listen(Instant now) {
 PageServer::Content PageControl::joined(PageServer::Content content) {
   content.control_token = token_;
   content.control = [this](const ControlRequest& request, const std::string& text) {
+    // A browser may still hold control of a mission that has just ended.
+    if (over_) return request.act == ControlAct::kHere || request.act == ControlAct::kRelease;
     const bool counts = request.act != ControlAct::kStopNow;
     if (silent_ || (counts && passed_on_ >= kMostInASecond)) return false;
     passed_on_ += counts ? 1 : 0;

@@ -36,6 +36,7 @@ class PageControl {
   std::uint64_t changes_ = 0;
   Instant heard_{};     // when the last state came
   bool silent_ = true;  // none has come for some seconds
+  bool over_ = false;   // the mission is over
   Instant second_{};
   int passed_on_ = 0;  // since then
 };

@@ -209,8 +209,8 @@ class Server final : public PageServer {
       refuse(response, 400, "no request of an operator");
     } else if (!content_.control(*order, text)) {
       refuse(response, 503,
-             "no order can be given now: too many requests, or the process that gives them does "
-             "not answer");
+             "no order can be given now: the mission is over, there are too many requests, or the "
+             "process that gives orders does not answer");
     } else {
       response.status = 202;
     }

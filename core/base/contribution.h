@@ -27,6 +27,10 @@ inline constexpr double rounding_of(ContributionEncoding encoding) {
   return encoding == ContributionEncoding::kFixed16 ? 1.0 / 65534 : 0;
 }
 
+/// Averages of samples are within ±1. Once a target has changed (core/law/target_shift.h), samples
+/// are shifted by μ − μ₀, and averages are within ±kShiftedRange.
+inline constexpr std::int32_t kShiftedRange = 3;
+
 /// One block of an agent's running sums: the numerator of (4), cumulative since its start.
 struct Contribution {
   Header header;
@@ -37,6 +41,7 @@ struct Contribution {
   std::int32_t mode_count = 0;
   BlockSums sums;  ///< Σ f_k(x) dt, not divided by h_k [s]; BlockLayout::size_of() numbers
   ContributionEncoding encoding = ContributionEncoding::kDouble;
+  std::int32_t range = 1;  ///< kFixed16: averages travel as parts of it, 1 or kShiftedRange
   /// kFixed16: what the sums have gained in the last `gained_steps` steps [s]. Receivers cannot
   /// compute it from two rounded averages.
   BlockSums gains;

@@ -44,34 +44,35 @@ bool elapsed_is_possible(const Contribution& c, double dt_s, const HalfLife& hal
          c.elapsed_s <= half_life.longest_memory_s(dt_s);
 }
 
-bool sums_are_possible(const Contribution& c, double dt_s, const HalfLife& half_life) {
+bool sums_are_possible(const Contribution& c, double dt_s, double range,
+                       const HalfLife& half_life) {
   if (!elapsed_is_possible(c, dt_s, half_life)) return false;
-  const double expected_s =
-      half_life.any() ? c.elapsed_s : static_cast<double>(c.steps) * dt_s;
+  const double expected_s = half_life.any() ? c.elapsed_s : static_cast<double>(c.steps) * dt_s;
   const double margin_s = expected_s * rounding_margin(c.steps);
   // f_00 = 1, so S_00 is the time covered.
   if (c.block == 0 && !(std::abs(c.sums[0] - expected_s) <= margin_s)) return false;
-  return c.sums.largest() <= expected_s + margin_s;
+  return c.sums.largest() <= range * (expected_s + margin_s);
 }
 
 /// Numbers that travelled in 16 bits may have been rounded up, but not beyond 1.
-bool gains_are_possible(const Contribution& c, double dt_s, const HalfLife& half_life) {
+bool gains_are_possible(const Contribution& c, double dt_s, double range,
+                        const HalfLife& half_life) {
   const double step_s = half_life.any() ? c.elapsed_s / static_cast<double>(c.steps) : dt_s;
   const double gained_s = static_cast<double>(c.gained_steps) * step_s;
   return c.gained_steps >= 0 && c.gained_steps <= c.steps &&
-         c.gains.largest() <= gained_s * (1 + rounding_margin(c.steps));
+         c.gains.largest() <= range * gained_s * (1 + rounding_margin(c.steps));
 }
 
 }  // namespace
 
-bool is_possible(const Contribution& theirs, double dt_s, const HalfLife& half_life) {
-  return sums_are_possible(theirs, dt_s, half_life) && gains_are_possible(theirs, dt_s, half_life);
+bool is_possible(const Contribution& theirs, double dt_s, double range, const HalfLife& half_life) {
+  return sums_are_possible(theirs, dt_s, range, half_life) &&
+         gains_are_possible(theirs, dt_s, range, half_life);
 }
 
 bool CoverageBlock::looks_like(const CoverageBlock& other) const {
   return steps_ == other.steps_ && remembered_steps_ == other.remembered_steps_ &&
-         tick_ == other.tick_ &&
-         next_broadcast_tick_ == other.next_broadcast_tick_;
+         tick_ == other.tick_ && next_broadcast_tick_ == other.next_broadcast_tick_;
 }
 
 void CoverageBlock::replace(const Contribution& theirs, const GainRule& rule) {
@@ -97,6 +98,7 @@ void CoverageBlock::replace_sums(const Contribution& theirs, const GainRule& rul
   sequence_ = theirs.header.sequence;
   tick_ = theirs.header.tick;
   next_broadcast_tick_ = theirs.next_broadcast_tick;
+  range_ = theirs.range;
   sums_ = theirs.sums;
   fade(rule);
 }
@@ -161,7 +163,7 @@ std::int64_t CoverageBlock::compare(const Contribution& theirs, const GainRule& 
   } else {
     steps_before_ = comparable ? static_cast<double>(steps_) : 0;
   }
-  const double most_s = gained_s + 2 * margin_s;
+  const double most_s = rule.range * (gained_s + 2 * margin_s);
   return gains_within(theirs.sums, sums_before_.data(), most_s) ? steps : 0;
 }
 
@@ -170,6 +172,7 @@ void CoverageBlock::write_header(Contribution& out) const {
   out.header.tick = tick_;
   out.steps = steps_;
   out.next_broadcast_tick = next_broadcast_tick_;
+  out.range = range_;
 }
 
 CoverageRow::CoverageRow(const Author& author, const BlockLayout& layout)

@@ -21,16 +21,19 @@
 namespace ergocast {
 
 /// Whether an honest agent can have sent these sums and gains: the elapsed time is steps·dt, S_00
-/// is the elapsed time, and neither |S| nor a gain exceeds its time, all up to rounding (1e-9 and
-/// half an ulp a step). With a half-life the elapsed time is positive, at most steps·dt, and at most
-/// HalfLife::longest_memory_s().
-bool is_possible(const Contribution& theirs, double dt_s, const HalfLife& half_life = {});
+/// is the elapsed time, and neither |S| nor a gain exceeds `range` times its time, all up to
+/// rounding (1e-9 and half an ulp a step). With a half-life the elapsed time is positive, at most
+/// steps·dt, and at most HalfLife::longest_memory_s().
+/// @param range  1, or kShiftedRange once a target has changed
+bool is_possible(const Contribution& theirs, double dt_s, double range = 1,
+                 const HalfLife& half_life = {});
 
 /// How a table finds what a block has gained since the one held before, and what it still weighs.
 struct GainRule {
   double dt_s;
   Tick joined;        ///< no block is compared with one that was sent before this tick
   bool noted = true;  ///< false: blocks in doubles are not compared
+  double range = 1;   ///< of samples: kShiftedRange once a target has changed
   HalfLife half_life = {};
   std::int64_t halvings = 0;  ///< of all sums at the present tick
 };
@@ -42,10 +45,11 @@ class CoverageBlock {
   struct View {
     const double* sums;  ///< those of the block's slots, halved up to the present tick [s]
     std::int64_t steps;
-    double remembered_steps;  ///< the time that these sums cover [steps]; `steps` without a half-life
-    double remembered_s;      ///< the same [s], only with a half-life
-    Tick tick;    ///< when it was sent
-    Tick period;  ///< until its author's next broadcast, as announced
+    double
+        remembered_steps;  ///< the time that these sums cover [steps]; `steps` without a half-life
+    double remembered_s;   ///< the same [s], only with a half-life
+    Tick tick;             ///< when it was sent
+    Tick period;           ///< until its author's next broadcast, as announced
   };
   /// What a block has gained since the one held before.
   struct Gains {
@@ -115,6 +119,7 @@ class CoverageBlock {
   double remembered_s_ = 0, remembered_steps_ = 0;
   std::int64_t sequence_ = 0;  // of the message that brought it, for a relay
   Tick tick_ = 0, next_broadcast_tick_ = 0;
+  std::int32_t range_ = 1;
   std::int64_t gained_steps_ = 0;
   double announced_time_steps_ = 0;  // of announced_gains_
   bool faded_ = false;               // whether faded_sums_ are the sums of the present tick

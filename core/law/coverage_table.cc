@@ -130,6 +130,14 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at, const do
   row->add_step(gain_rule_);
 }
 
+void CoverageTable::shift_sample(const Author& author, const double* shift) {
+  CoverageRow* const row = find(author);
+  ERGOCAST_REQUIRE(row != nullptr && allows_shifts());
+  double* const samples = row->sampled(gain_rule_);
+  for (int slot = 0; slot < layout_.slot_count(); ++slot)
+    samples[slot] -= shift[slot] * gain_rule_.dt_s;
+}
+
 /// The same additions, each in its slot.
 void CoverageTable::add_in_slots(const BasisAt& at, const double* footprint, double* samples) {
   auto& by_mode = scratch_.by_mode;
@@ -154,9 +162,11 @@ bool CoverageTable::fits(const Contribution& theirs) const {
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (theirs.encoding != layout_.encoding()) return Merge::kRefusedEncoding;
   if (theirs.steps < 1 || theirs.steps > max_steps || theirs.next_broadcast_tick < 0 ||
-      !fits(theirs) || !is_possible(theirs, gain_rule_.dt_s, gain_rule_.half_life)) {
+      !fits(theirs) || !is_possible(theirs, gain_rule_.dt_s, kShiftedRange, gain_rule_.half_life)) {
     return Merge::kRefusedRange;
   }
+  if (!is_possible(theirs, gain_rule_.dt_s, gain_rule_.range, gain_rule_.half_life))
+    return Merge::kRefusedShift;
   CoverageRow* const row = find_or_add(theirs.author());
   if (row == nullptr) return Merge::kRefusedLimit;
   const CoverageBlock& held = row->block(theirs.block);
@@ -183,6 +193,7 @@ Contribution CoverageTable::block(const Author& author, int block) const {
   out.encoding = layout_.encoding();
   if (const CoverageRow* row = find(author)) {
     row->write(out, static_cast<std::size_t>(layout_.size_of(block)));
+    if (!row->samples().empty() && allows_shifts()) out.range = kShiftedRange;
     out.elapsed_s = gain_rule_.half_life.any() ? row->block(block).elapsed_s()
                                                : static_cast<double>(out.steps) * gain_rule_.dt_s;
   }

@@ -22,7 +22,14 @@
 
 namespace ergocast {
 
-enum class Merge { kNewer, kStale, kRefusedRange, kRefusedLimit, kRefusedEncoding };
+enum class Merge {
+  kNewer,
+  kStale,
+  kRefusedRange,
+  kRefusedLimit,
+  kRefusedEncoding,
+  kRefusedShift,  ///< possible only if a target has changed, of which the table does not know
+};
 
 class CoverageTable {
  public:
@@ -67,6 +74,14 @@ class CoverageTable {
   /// S += f(x)·dt for the row of `author`, (4)'s integral; creates the row if it is new.
   /// @param footprint  null, or g of core/mission/kinds.h: S += g f(x)·dt
   void add_sample(const Author& author, const BasisAt& at, const double* footprint = nullptr);
+
+  /// S −= shift·dt for the row of `author`, after its newest sample (core/law/target_shift.h).
+  /// @param shift  one number for each slot
+  /// @pre allows_shifts(), and `author` has samples
+  void shift_sample(const Author& author, const double* shift);
+  /// From now on samples may be shifted, so sums may be up to kShiftedRange times their time.
+  void allow_shifts() { gain_rule_.range = kShiftedRange; }
+  bool allows_shifts() const { return gain_rule_.range == kShiftedRange; }
 
   /// From now on the row of `author`, if there is one, counts with this quality. The default is 1.
   void set_quality(const Author& author, double quality);

@@ -34,6 +34,7 @@ Forecast::Forecast(const Mission& mission, const Author& self)
     : self_(self),
       sampling_(mission),
       look_ahead_(mission),
+      half_life_(mission),
       dead_reckons_(mission.dead_reckoning),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
       team_sum_(sampling_.layout()) {
@@ -109,6 +110,7 @@ Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) c
     return term;
   }
   term.track = outlook.track;
+  term.added_steps = outlook.track->added_steps(block);
   term.remembered_steps = outlook.track->remembered_steps(block);
   term.gained_steps = 1;
   term.gained_time_steps = 1;
@@ -173,6 +175,64 @@ void Forecast::point(Term& term, const CoverageTable& table, std::size_t row, in
   term.announced_gains = gains.announced != nullptr ? gains.announced - first : nullptr;
 }
 
+/// Adds `each_s` to a change for each of the last `steps` ticks up to `newest` in which it held,
+/// times what that tick weighs once all has been halved so many times.
+void Forecast::add_steps(Tick newest, std::int64_t steps, std::int64_t halvings, double each_s,
+                         Correction& sum) const {
+  const std::span<const TargetShift::Change> changes = shift_->changes();
+  Tick until = newest + 1;
+  for (std::size_t i = changes.size(); i-- > 0;) {
+    const Tick from = std::max(changes[i].from, newest + 1 - steps);
+    if (from < until) sum[i] += half_life_.remembered_ticks(from, until, halvings) * each_s;
+    until = std::min(until, changes[i].from);
+  }
+}
+
+/// Adds what a term lacks of the shifts.
+void Forecast::add_correction(const Term& term, Tick sent, Tick tick, std::int64_t halvings,
+                              Correction& sum) const {
+  if (term.gained_steps == 0) return;
+  const std::int64_t now = half_life_.halvings(tick), then = half_life_.halvings(sent);
+  const double step_s = term.quality * sampling_.dt_s();
+  if (term.track != nullptr) {
+    // Places are f without a shift: those that extend the row, and the newest, where it goes on.
+    add_steps(term.tick, term.added_steps, halvings, step_s, sum);
+    add_steps(tick, 1, now, term.share * step_s, sum);
+    return;
+  }
+  // Its gains have the shifts of their ticks, and it will gain with the present one.
+  const Tick first = sent + 1 - term.gained_steps;
+  const double gained = term.gained_time_steps;
+  const double each = gained / half_life_.remembered_ticks(first, sent + 1, then);
+  add_steps(sent, term.gained_steps, then, each * (-term.share * step_s), sum);
+  add_steps(tick, 1, now, gained * (term.share * step_s), sum);
+}
+
+Forecast::Correction Forecast::correction(const CoverageTable& table, int block, Tick tick) const {
+  Correction sum{};
+  if (shift_ == nullptr) return sum;
+  auto earlier = terms_.earlier.begin(), later = terms_.later.begin();
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (!table.counts(row) || table.author(row) == self_) continue;
+    const Term& term = table.author(row) < self_ ? *earlier++ : *later++;
+    add_correction(term, table.view(row, block).tick, tick, table.halvings(), sum);
+  }
+  return sum;
+}
+
+/// Subtracts what a block lacks of the shifts.
+void Forecast::correct(const Correction& correction, int block, double per_second,
+                       double* coverage) const {
+  if (shift_ == nullptr) return;
+  const auto [first, count] = sampling_.layout().slots_of(block);
+  for (std::size_t i = 0; i < shift_->changes().size(); ++i) {
+    const double share = correction[i] * per_second;
+    if (share == 0) continue;
+    const double* const shift = shift_->changes()[i].by_slot.data();
+    for (int slot = first; slot < first + count; ++slot) coverage[slot] -= shift[slot] * share;
+  }
+}
+
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                           Tick tick, Coefficients& coverage) {
   ++looks_;
@@ -181,10 +241,15 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
   const bool in_basis_order = sampling_.layout().in_basis_order();
   double* const out = in_basis_order ? coverage.data() : by_slot_.data();
   double per_second = 0;
+  Correction lacks{};
   for (int b = 0; b < table.block_count(); ++b) {
-    if (b == 0 || !uniform) per_second = weigh_terms(table, b, tick);
+    if (b == 0 || !uniform) {
+      per_second = weigh_terms(table, b, tick);
+      lacks = correction(table, b, tick);
+    }
     point_terms(table, b);
     team_sum_.average(terms_, sampling_, b, per_second, out);
+    correct(lacks, b, per_second, out);
   }
   if (!in_basis_order) sampling_.layout().from_slots(out, coverage.data());
 }

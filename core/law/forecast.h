@@ -19,10 +19,15 @@
 // Where kinds differ (core/mission/kinds.h), each row's part has its quality q_j in both sums, and
 // f at a place of teammate j is g_j f.
 //
+// After a change of the target (core/law/target_shift.h) a row's gains still contain the former
+// shift for its steps before the change, while the teammate will add the present one. The forecast
+// corrects them by the known difference. The added places get the shifts of their ticks.
+//
 // ĉ is a function of the table, the roster and the known places. The order of their arrival does
 // not matter: in lockstep all agents that receive the same messages compute the same forecast.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -36,6 +41,7 @@
 #include "core/law/look_ahead.h"
 #include "core/law/row_track.h"
 #include "core/law/sampling.h"
+#include "core/law/target_shift.h"
 #include "core/law/team_sum.h"
 #include "core/law/term.h"
 #include "core/mission/mission.h"
@@ -61,6 +67,9 @@ class Forecast {
   /// agents rest.
   void note_revision(std::int64_t revision) { revision_ = revision; }
 
+  /// The changes of the target. It outlives the next call of look_ahead().
+  void note_shift(const TargetShift& shift) { shift_ = shift.any() ? &shift : nullptr; }
+
   /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if it counts,
   /// its gains are possible, and its author is active in the roster without a newer incarnation and
   /// does not rest: n is 1 + the number of such rows, for each block. Allocates only for a
@@ -77,12 +86,21 @@ class Forecast {
     bool by_places(Tick tick) const { return track != nullptr && track->newest_tick() >= tick; }
   };
 
+  /// How much of the shift of each change the sums of a block lack [s]; core/law/target_shift.h.
+  using Correction = std::array<double, TargetShift::kMostChanges>;
+
   void gather(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
   RowTrack* extended_track(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
   bool uniform_blocks(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   Tick rest_from(AgentId id) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
+  Correction correction(const CoverageTable& table, int block, Tick tick) const;
+  void add_steps(Tick newest, std::int64_t steps, std::int64_t halvings, double each_s,
+                 Correction& sum) const;
+  void add_correction(const Term& term, Tick sent, Tick tick, std::int64_t halvings,
+                      Correction& sum) const;
+  void correct(const Correction& correction, int block, double per_second, double* coverage) const;
   double weigh(Term& term, double horizon_s, Tick tick) const;
   void point_terms(const CoverageTable& table, int block);
   void point(Term& term, const CoverageTable& table, std::size_t row, int block) const;
@@ -90,10 +108,12 @@ class Forecast {
   Author self_;
   Sampling sampling_;
   LookAhead look_ahead_;
+  HalfLife half_life_;
   bool dead_reckons_;
   std::size_t most_places_;
   std::int64_t revision_ = 0;
-  std::vector<Tick> rest_from_;  // by number, where any agent has a station
+  const TargetShift* shift_ = nullptr;  // null: no target has changed
+  std::vector<Tick> rest_from_;         // by number, where any agent has a station
   std::map<AgentId, RowTrack> tracks_;
   std::uint64_t looks_ = 0;        // calls of look_ahead()
   std::vector<Outlook> outlooks_;  // per row of the table

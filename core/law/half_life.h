@@ -46,6 +46,20 @@ class HalfLife {
     return std::ldexp(1.0, static_cast<int>(std::clamp<std::int64_t>(had - wanted, -512, 64)));
   }
 
+  /// Σ of what the ticks of [from, until) weigh once all has been halved so many times. A tick that
+  /// weighs less than 2^-64 of the newest one does not count.
+  double remembered_ticks(Tick from, Tick until, std::int64_t halved) const {
+    if (!any()) return static_cast<double>(std::max<Tick>(0, until - from));
+    double sum = 0;
+    const std::int64_t last = halvings(until - 1);
+    for (std::int64_t i = last; i >= std::max<std::int64_t>(0, last - 64) && from < until; --i) {
+      const Tick first = i > 0 ? std::max(from, tick_of(i)) : from;
+      sum += static_cast<double>(until - first) * factor(i, halved);
+      until = first;
+    }
+    return sum;
+  }
+
   /// The longest time that a row can cover: less than 2 H steps, and room for the steps of an agent
   /// that learns late of a pause. @pre any()
   double longest_memory_s(double dt_s) const {

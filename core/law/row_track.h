@@ -41,8 +41,10 @@ class RowTrack {
   Tick newest_tick() const { return newest_tick_; }
   /// The time that a block covers, with the steps at places [steps].
   double remembered_steps(int block) const { return of(block).remembered_steps; }
+  /// The steps of a block that are at places.
+  std::int64_t added_steps(int block) const { return of(block).steps - of(block).sent_steps; }
   /// Whether any step of a block is at a place. If so, sums() has the block.
-  bool extends(int block) const { return of(block).steps > of(block).sent_steps; }
+  bool extends(int block) const { return added_steps(block) > 0; }
   /// Whether all blocks have the same steps, and the same ones due.
   bool uniform() const;
 
@@ -67,9 +69,9 @@ class RowTrack {
     std::int64_t sent_steps = -1;  // of the block that was taken from the row
     std::int64_t steps = 0;        // with the places added since
     double elapsed_s = 0;          // the time that they cover, halved as the sums …
-    double remembered_steps = 0;   // … and the same in steps, which is `steps` without a half-life
-    Tick until = 0;                // the tick of the last step
-    bool due = false;              // whether that step counts, but is not in the sums yet
+    double remembered_steps = 0;  // … and the same in steps, which is `steps` without a half-life
+    Tick until = 0;               // the tick of the last step
+    bool due = false;             // whether that step counts, but is not in the sums yet
   };
 
   const Block& of(int block) const { return blocks_[static_cast<std::size_t>(block)]; }

@@ -87,6 +87,9 @@ class SeparationFilter {
   /// distance of their loiter centres.
   double contact_m(AgentId one, AgentId other) const;
 
+  /// R: how far the place of `other` may be from the known one, relative to `self` [m].
+  double uncertainty_m(const Mover& self, const Neighbour& other) const;
+
  private:
   /// The set that a body keeps under commands of 0: the places [from, from + along].
   struct HoldingSet {
@@ -104,7 +107,6 @@ class SeparationFilter {
   const Pair& pair_of(AgentId one, AgentId other) const;
   Pair pair_between(const Motion& one, const Motion& other) const;
   double margin_m(double fastest_mps) const;
-  double uncertainty_m(const Mover& self, const Neighbour& other) const;
   void begin(const Mover& self, double reach_m);
   void take(AgentId whose, const StepConstraints::Set& set);
   void keep_from_walls(const Mover& self, const HoldingSet& own);

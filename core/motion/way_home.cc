@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -29,6 +30,8 @@ constexpr double kRounded = 1e-9;
 constexpr double kAhead = 0.99;
 /// The same for a fixed wing, if it does not turn farther in a tick.
 constexpr double kAheadOfWings = 0.9;
+/// How long a body that needs no time to turn or brake may get hardly further on a detour.
+constexpr double kPatience_s = 2;
 /// The speed of a command that only turns a unicycle, as a share of its own speed.
 constexpr double kLookingShare = 1e-6;
 
@@ -54,7 +57,9 @@ WayHome::WayHome(const Mission& mission, AgentId id)
                             std::cos(std::min(motion_.vehicle.max_turn_radps * motion_.dt_s,
                                               std::numbers::pi / 2)))),
       drift_(kWayDeviations * mission.disturbance_intensity / speed_mps_),
-      walls_(mission.walls) {
+      walls_(mission.walls),
+      detour_(static_cast<std::int64_t>(std::ceil((kPatience_s + slack_s_) / motion_.dt_s)),
+              speed_mps_ * motion_.dt_s) {
   if (walls_.empty()) return;
   const double kept_m = kept_from_walls_m(mission, motion_);
   region_.emplace(walls_, mission.domain, kept_m);
@@ -143,7 +148,8 @@ double WayHome::speed_mps(double way_m) const {
 
 Eigen::Vector3d WayHome::velocity_mps(const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps) {
   const Eigen::Vector3d at_m = anchor_m(motion_, x_m, v_mps);
-  const Eigen::Vector3d to_m = next_place_m(at_m) - at_m;
+  Eigen::Vector3d to_m = next_place_m(at_m) - at_m;
+  if (motion_.domain.planar()) to_m.head<2>() = detour_.round(at_m.head<2>(), to_m.head<2>());
   const double apart_m = length_of(to_m), way_m = length_of(home_m_ - at_m);
   if (apart_m == 0) return {0, 0, 0};
   if (motion_.vehicle.max_turn_radps > 0) return turning_mps(to_m, way_m, v_mps);

@@ -12,7 +12,8 @@
 // farthest of these cells that it can see. The slack is 2 dt and what a vehicle loses: with inertia
 // 3 v/A, to turn round and to brake; to turn on the spot π/ω, and for a fixed wing three circles,
 // three times as much among walls; and what disturbances, old commands in real time and a late
-// answer may cost. It does not contain detours around teammates: reserve_s is for those.
+// answer may cost. It does not contain detours around teammates: reserve_s is for those. On a plane
+// the agent goes round bodies that stand for good, core/motion/detour.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,6 +23,7 @@
 #include "core/base/ids.h"
 #include "core/base/rings.h"
 #include "core/mission/mission.h"
+#include "core/motion/detour.h"
 #include "core/motion/free_region.h"
 #include "core/motion/vehicle.h"
 
@@ -40,6 +42,9 @@ class WayHome {
   /// goes on. @pre the agent has a station
   bool begun(Tick counted, const Eigen::Vector3d& x_m);
   bool begun() const { return begun_; }
+
+  /// Takes the bodies that stand for good. velocity_mps() leads round them.
+  Detour& detour() { return detour_; }
 
   /// The velocity to ask the filter for, on the way and to stay at the station; ‖v‖ ≤
   /// home_speed_mps(). Does not allocate.
@@ -66,6 +71,7 @@ class WayHome {
   std::optional<FreeRegion> region_;  // where there are walls
   std::vector<double> ways_m_;        // from its cells to that of the station
   std::optional<int> cell_;           // of the way, the farthest that can be seen
+  Detour detour_;
   bool begun_ = false;
 };
 

@@ -84,7 +84,7 @@ class Describer {
     add("at most " + std::to_string(limit) + " bytes, no control characters");
   }
   void sums(const auto&, std::size_t) { add("at most elapsed_s in size"); }
-  void averages(const auto&, double, std::size_t) { add(""); }
+  void averages(const auto&, double, std::int32_t, std::size_t) { add(""); }
   void room_for_tag() { add(""); }
   void holds(bool) {}
 

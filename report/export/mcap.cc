@@ -32,7 +32,8 @@ class McapExport {
     metadata();
     logs();
     metrics();
-    densities();
+    targets();
+    coverage();
     std::stable_sort(waiting_.begin(), waiting_.end(),
                      [](const Waiting& a, const Waiting& b) { return a.time_ns < b.time_ns; });
     poses();
@@ -76,10 +77,24 @@ class McapExport {
     }
   }
 
-  void densities() {
+  /// The plan's target, and each later one from its tick on.
+  void targets() {
     const auto target = channel("/target", foxglove::grid_schema());
-    const std::uint64_t begin_ns = record_.time_ns(0);
-    waiting_.push_back({begin_ns, target, foxglove::grid(begin_ns, record_.target, mission_)});
+    const auto show = [&](double t_s, const DensityCells& cells) {
+      const std::uint64_t time_ns = record_.time_ns(t_s);
+      waiting_.push_back({time_ns, target, foxglove::grid(time_ns, cells, mission_)});
+    };
+    show(0, record_.target);
+    const auto [columns, rows] = coverage_cells(mission_);
+    for (const ReceivedAmendment& one : record_.run.amendments.all()) {
+      if (one.is_void || !one.target) continue;
+      show(static_cast<double>(one.amendment.from) * mission_.timing.dt_s,
+           density_of(one.target->in_cosines(), mission_, columns, rows));
+    }
+  }
+
+  /// Where the team has been, whatever its targets were.
+  void coverage() {
     const auto coverage = channel("/coverage", foxglove::grid_schema());
     const auto cells_along = coverage_cells(mission_);
     Coefficients sums = Coefficients::Zero(mission_.basis.mode_count());
@@ -100,7 +115,8 @@ class McapExport {
         shown = 1 + static_cast<int>(std::floor(last_s / end_s * kCoveragePictures));
       }
       last_s = point.t_s;
-      if (!mission_.domain.contains(point.x_m) || record_.run.rests(mission_, agent, point.tick))
+      if (!mission_.domain.contains(point.x_m) || record_.run.rests(mission_, agent, point.tick) ||
+          is_held(record_.run.holds(), point.tick))
         return;
       samples += sensors.of(planned_kind(mission_, agent))
                      .sample(BasisAt(point.x_m, mission_.domain, mission_.basis), mission_.basis, 1,

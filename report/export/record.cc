@@ -98,7 +98,7 @@ Result<ExportRecord> read_export_record(const fs::path& run_dir, const Mission& 
   record.mission = in_cosines(mission);  // for the maps; φ² over time stays as recorded
   record.metric_basis = name_of_basis(mission.basis);
   record.origin = origin;
-  auto run = read_run(run_dir);
+  auto run = read_run(run_dir, mission);
   if (!run) return failure(run.error());
   record.run = *std::move(run);
   if (record.run.empty()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes each table of the record to a file, with longitude and latitude if the origin is known.
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -76,8 +77,18 @@ class Tables {
         });
   }
 
+  /// The target that held at the end.
+  DensityCells last_target() const {
+    Tick last = 0;
+    for (const auto& [agent, track] : record_.run.tracks) last = std::max(last, track.back().tick);
+    const ReceivedAmendment* const change = record_.run.amendments.target_at(last);
+    if (change == nullptr) return record_.target;
+    return density_of(change->target->in_cosines(), record_.mission, record_.target.rows(),
+                      record_.target.cols());
+  }
+
   void density() {
-    const DensityCells& target = record_.target;
+    const DensityCells target = last_target();
     const DensityCells coverage = density_of(coverage_of(record_.run, record_.mission),
                                              record_.mission, target.rows(), target.cols());
     table("density.csv", "x_m,y_m,target,coverage" + place_header(), [&](std::ostream& file) {

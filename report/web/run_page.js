@@ -10,7 +10,7 @@ import { advance, seek } from './panels/timeline.js';
 import { hover, pin } from './panels/team.js';
 import { drawPictures, layout, readPixels, view } from './panels/screen.js';
 import { drawHeadline } from './panels/headline.js';
-import { set, setTheme } from './panels/legend.js';
+import { followTarget, set, setTheme } from './panels/legend.js';
 import { livePage, showRecord } from './panels/shown_run.js';
 import { connectButtons, connectChart, connectKeys } from './panels/controls.js';
 import { connectControl } from './panels/control.js';
@@ -26,6 +26,7 @@ function frame(now) {
   if (!S.run) return;
   const begin = performance.now();
   advance(now);
+  followTarget();
   drawPictures();
   drawHeadline(now);
   frames.push(performance.now() - begin);

@@ -278,7 +278,7 @@ void warn_of_hidden_mass(const Mission& mission, const DensityGrid& density, Fin
 
 }  // namespace
 
-void warn(const Mission& mission, const DensityGrid& density, Findings& findings) {
+void warn(const Mission& mission, Findings& findings) {
   warn_of_speed_limits(mission, findings);
   warn_of_coarse_steps(mission, findings);
   warn_of_flat_weights(mission, findings);
@@ -287,8 +287,11 @@ void warn(const Mission& mission, const DensityGrid& density, Findings& findings
   warn_of_crowded_ways_home(mission, findings);
   warn_of_tight_stations(mission, findings);
   warn_of_late_vehicles(mission, findings);
-  warn_of_footprints(mission, findings);
   warn_of_rare_modes(mission, findings);
+}
+
+void warn_of_target(const Mission& mission, const DensityGrid& density, Findings& findings) {
+  warn_of_footprints(mission, findings);
   warn_of_hidden_mass(mission, density, findings);
 }
 

@@ -8,8 +8,11 @@
 
 namespace ergocast {
 
-/// Adds the warnings about `mission`, which breaks no rule.
-/// @param density  of its target
-void warn(const Mission& mission, const DensityGrid& density, Findings& findings);
+/// Adds the warnings about `mission`, which breaks no rule, other than those of warn_of_target().
+void warn(const Mission& mission, Findings& findings);
+
+/// Adds the warnings about the target of `mission`.
+/// @param density  of the target
+void warn_of_target(const Mission& mission, const DensityGrid& density, Findings& findings);
 
 }  // namespace ergocast

@@ -48,8 +48,7 @@ double windowed(const Mission& mission) {
     team.step();
     if (team.tick() <= mission.timing.tick_count / 2 || team.tick() % window != 0) continue;
     if (sums[0] > 0.99 * kWindow_s * static_cast<double>(team.size())) {
-      logs += std::log(
-          ergodic_metric(sums / sums[0], mission.target_coefficients, weights));
+      logs += std::log(ergodic_metric(sums / sums[0], mission.target_coefficients, weights));
       ++windows;
     }
     sums.setZero();

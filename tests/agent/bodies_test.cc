@@ -97,6 +97,33 @@ TEST(AgentKeepsApart, ReportsWhichAgentBlocksIt) {
   EXPECT_EQ(status.longest_block_ticks, 3);
 }
 
+/// How far from home an agent is in the end that is recalled in front of two bodies, 38 m apart.
+double apart_from_home_m(bool others_sent_out) {
+  Mission mission = apart(3, Pace::kRealtime);
+  mission.timing.tick_count = 1000;
+  announce(mission);
+  Agent agent(identity_of(0));
+  std::vector<RosterEntry> roster = roster_of(3);
+  roster[0].recall_revision = 0;
+  for (std::size_t i = 1; others_sent_out && i < roster.size(); ++i) {
+    roster[i].recall_revision = 0;
+    roster[i].active_until = 0;
+    roster[i].leaves = true;
+  }
+  give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
+  std::vector<Eigen::Vector3d> places_m = {{500, 500, 0}, {440, 520, 0}, {446, 482, 0}};
+  for (Tick tick = 0; tick < 600; ++tick) {
+    const auto sent = commands(agent, world_state(tick, places_m), at(tick * 100ms));
+    if (!sent.empty()) places_m[0] += mission.timing.dt_s * sent[0].velocity_mps;
+  }
+  return (places_m[0] - mission.starts_m[0]).norm();
+}
+
+TEST(AgentKeepsApart, GoesHomeRoundBodiesThatNoAgentDrives) {
+  EXPECT_GT(apart_from_home_m(false), 300) << "they may drive away";
+  EXPECT_LT(apart_from_home_m(true), 1e-6);
+}
+
 TEST(AgentKeepsApart, SendsARestartedWorldThePlacesOfAllBodies) {
   Agent agent = running_agent(apart(2, Pace::kRealtime));
   const WorldState state = world_state(4, {{500, 500, 0}, {900, 900, 0}});

@@ -115,11 +115,11 @@ TEST(AgentForgets, AndRemembersWhileTheMissionIsPaused) {
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
   MissionPart gone = forgetting_from(2);
-  gone.holds = {{1, -1}};
+  gone.amendments = pauses({{1, -1}});
   give(agent, gone, at(0s));
   MissionPart again = forgetting_from(4, 2);
   again.roster[1].forgotten = false;
-  again.holds = gone.holds;
+  again.amendments = gone.amendments;
   for (Tick tick = 0; tick < 6; ++tick) {
     if (tick == 3) give(agent, again, at(0s));
     EXPECT_EQ(only<Command>(deliver(agent, world_at(tick, 2 * (tick >= 3)))).size(), 1u);

@@ -92,7 +92,7 @@ TEST(AgentInLockstep, BeginsNoTickBeforeItKnowsTheMissionThatTheWorldGoesBy) {
   EXPECT_TRUE(only<Contribution>(deliver(agent, world)).empty());
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1) << "the tick may not count";
   MissionPart paused = mission_part(3, MissionState::kRunning, roster_of(1));
-  paused.holds = {{1, -1}};
+  paused.amendments = pauses({{1, -1}});
   const auto answers = only<Command>(deliver(agent, paused));
   ASSERT_EQ(answers.size(), 1u);
   EXPECT_TRUE(answers[0].velocity_mps.isZero(0));

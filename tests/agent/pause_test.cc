@@ -17,7 +17,7 @@ std::vector<Contribution> sent_in_silence(std::vector<Hold> holds) {
   announce(mission);
   Agent agent(identity_of(0));
   MissionPart part = mission_part(0, MissionState::kRunning, roster_of(2));
-  part.holds = std::move(holds);
+  part.amendments = pauses(std::move(holds));
   give(agent, part, at(0s));
   deliver(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
   Outbox sent;
@@ -54,7 +54,7 @@ TEST(AgentThatLearnsLateOfAPause, DoesNotWaitForTheTickThatItAnnouncedMeanwhile)
   };
   for (Tick tick = 0; tick < 20; ++tick) EXPECT_EQ(steps_sent_at(tick).size(), 1u) << tick;
   ++part.revision;
-  part.holds = {{2, 20}};
+  part.amendments = pauses({{2, 20}});
   give(agent, part, at(2s));
   EXPECT_EQ(steps_sent_at(20), std::vector<std::int64_t>{21}) << "no other process can send it";
   EXPECT_EQ(steps_sent_at(21), std::vector<std::int64_t>{22});

@@ -27,6 +27,22 @@ void expect_refused(const Contribution& lie, Refusal why) {
   EXPECT_EQ(status_after(agent, at(0s)).refused, expected);
 }
 
+// In real time its author may know of a new target first; in lockstep all know it before its tick.
+TEST(AgentRefuses, ASumThatOnlyANewTargetAllowsAndCountsItInLockstep) {
+  for (const Pace pace : {Pace::kLockstep, Pace::kRealtime}) {
+    Mission mission = small_mission(2);
+    mission.timing.pace = pace;
+    Agent agent = running_agent(mission);
+    deliver(agent, world_state(0, {{100, 500, 0}}));
+    Contribution shifted = block_of(mission, 1, {{200, 500, 0}}, 1);
+    shifted.sums.edit()[3] = 0.2;
+    deliver(agent, shifted);
+    EXPECT_EQ(agent.coverage()->row_count(), 1u) << "only its own";
+    EXPECT_EQ(agent.refused()[static_cast<std::size_t>(Refusal::kRange)],
+              pace == Pace::kLockstep ? 1 : 0);
+  }
+}
+
 TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
   const Mission mission = small_mission(2);
   const Contribution honest = block_of(mission, 1, {{200, 500, 0}}, 1);
@@ -34,7 +50,7 @@ TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
   lie.sums.edit()[3] = kNan;
   expect_refused(lie, Refusal::kRange);
   lie = honest;
-  lie.sums.edit()[3] = 0.1 * (1 + 1e-8);
+  lie.sums.edit()[3] = 0.3 * (1 + 1e-8);
   expect_refused(lie, Refusal::kRange);
   lie = honest;
   lie.mode_count = 21;

@@ -86,6 +86,8 @@ void bug_make_table(CoverageTable* self, const Basis& basis, double dt_s, Tick j
 
 Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t max_steps) {
   if (bug("an honest block is refused") && theirs.steps > kUnderWay) return Merge::kRefusedRange;
+  if (bug("a shifted block is refused") && theirs.sums.largest() > 1.0001 * theirs.elapsed_s)
+    return Merge::kRefusedRange;
   if (bug("one agent's rows are dropped") && theirs.author().agent == 0) return Merge::kStale;
   if (bug("a replaced incarnation is ignored") &&
       is_replaced(*self, theirs.author(), theirs.header.tick))
@@ -179,6 +181,8 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table,
   const bool mistakes_it = the_dead_are_foreseen() || foresees_itself() ||
                            bug("a late block becomes the one before") ||
                            bug("a relayed block becomes the one before");
+  static const TargetShift kNoShift((Mission()));
+  if (bug("teammates go on with the former target")) self->note_shift(kNoShift);
   if (bug("the recalled are foreseen"))
     return real_look_ahead(self, table, without_recalls(roster), tick, coverage);
   if (!mistakes_it) return real_look_ahead(self, table, roster, tick, coverage);

@@ -30,6 +30,8 @@ const char* const kLateBlocks =
     "loss = 0.5\nreordering = 0.5\nreordering_max_s = 3\nswarm_bus_only = 1\nlasting_share = 1";
 const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20";
 const char* const kPauses = "pauses_per_s = 0.3\npause_max_s = 5";
+const char* const kTargets = "targets_per_s = 0.3";
+const char* const kTargetsAndPauses = "targets_per_s = 0.3\npauses_per_s = 0.3\npause_max_s = 5";
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
@@ -160,6 +162,14 @@ const Plant kPlants[] = {
     {Invariant::kNobodyMovesWhilePaused, "the world creeps on", kPauses, "", ": vehicle ",
      "--lockstep"},
     {Invariant::kAverageOfWhatIsHeld, "the average is off"},
+    {Invariant::kSamplesAreTrue, "one agent keeps to the plan's target", kTargets},
+    {Invariant::kSamplesAreTrue, "a target counts twice", kTargets},
+    {Invariant::kSamplesAreTrue, "a target holds a tick late", kTargets, "", "", "--lockstep"},
+    {Invariant::kSamplesAreTrue, "a pause does not delay a target", kTargetsAndPauses},
+    {Invariant::kForecastOfWhatIsKnown, "teammates go on with the former target", kTargets},
+    {Invariant::kForecastOfWhatIsKnown, "teammates go on with the former target", kTargets,
+     kByRowsAlone},
+    {Invariant::kHonestMessagesAccepted, "a shifted block is refused", "targets_per_s = 1"},
     {Invariant::kForecastOfWhatIsKnown, "a late block becomes the one before", kLateBlocks,
      kByRowsAlone},
     {Invariant::kForecastOfWhatIsKnown, "a relayed block becomes the one before", kLateBlocks,

@@ -30,7 +30,7 @@ class Desk : public ::testing::Test {
   }
   void pause_from(Tick tick) {
     MissionPart part = mission_part(1, MissionState::kRunning, roster_of(2));
-    part.holds = {{tick, -1}};
+    part.amendments = pauses({{tick, -1}});
     part.content_hash = hash_of(part);
     give(team_, part, now_);
   }
@@ -79,9 +79,9 @@ TEST_F(Desk, OnlyTheOperatorsRequestsBecomeOrders) {
   EXPECT_EQ(operator_name()["name"], "anna");
   ask(ControlAct::kPause, 2);
   EXPECT_EQ(refusal(), "anna has control now");
-  EXPECT_EQ(sent<Pause>(), 0);
+  EXPECT_EQ(sent<Amend>(), 0);
   ask(ControlAct::kPause);
-  EXPECT_EQ(sent<Pause>(), 1);
+  EXPECT_EQ(sent<Amend>(), 1);
   EXPECT_EQ(lines_.back(), "control: anna asks for: pause, at tick 100, t = 10.0 s");
 }
 
@@ -132,7 +132,7 @@ TEST_F(Desk, ARequestThatNamesAnOldTickIsRefused) {
   EXPECT_EQ(refusal(),
             "the page has shown nothing new for several seconds: look at the team again");
   ask(ControlAct::kPause);
-  EXPECT_EQ(sent<Pause>(), 1);
+  EXPECT_EQ(sent<Amend>(), 1);
 }
 
 TEST_F(Desk, AnOperatorWhoseBrowserIsSilentLosesControl) {
@@ -147,7 +147,7 @@ TEST_F(Desk, AnOperatorWhoseBrowserIsSilentLosesControl) {
   EXPECT_EQ(lines_.back(),
             "control: anna loses control at tick 100, t = 10.0 s: the browser has "
             "been silent for 10 s");
-  EXPECT_EQ(sent<Stop>() + sent<Pause>(), 0);  // the mission goes on
+  EXPECT_EQ(sent<Stop>() + sent<Amend>(), 0);  // the mission goes on
 }
 
 TEST_F(Desk, ManyPressesAreOneOrder) {
@@ -189,7 +189,7 @@ TEST_F(Desk, AResumptionEndsAPauseThatStillWaits) {
   });
   ASSERT_NE(found, lines_.end());
   EXPECT_NE(found->find("still move; then anna asks for: resume"), std::string::npos) << *found;
-  EXPECT_EQ(std::get<Pause>(sent_.back().message).changes, 1);
+  EXPECT_EQ(std::get<Amend>(sent_.back().message).number, 1);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <chrono>
 
+#include "plan/amendment_list.h"
 #include "tests/support/team.h"
 
 namespace ergocast {
@@ -93,7 +94,7 @@ TEST_F(LiveTeamFrames, ShowAPauseFromItsFirstTickToItsLast) {
   const auto incidents_at = [&](Tick tick, const std::vector<Hold>& holds) {
     const Instant now = kListening + 100ms * tick;
     MissionPart part = test::mission_part(++revision, MissionState::kRunning, test::roster_of(2));
-    part.holds = holds;
+    part.amendments = test::pauses(holds);
     test::give(live_team, part, now);
     AgentStatus status = test::status_of(0, test::next_sequence(), tick);
     status.header.tick = tick;
@@ -105,6 +106,50 @@ TEST_F(LiveTeamFrames, ShowAPauseFromItsFirstTickToItsLast) {
   EXPECT_EQ(incidents_at(5, {{5, -1}})[0]["kind"], "paused");
   EXPECT_FALSE(incidents_at(19, {{5, 20}})[0].contains("until"));
   EXPECT_EQ(incidents_at(20, {{5, 20}})[0]["until"], 2.0);
+}
+
+// MISSION has only the newest targets. A page shows all that it ever received.
+TEST_F(LiveTeamFrames, KeepAllTargetsAndSendEachOnce) {
+  const Mission mission = test::small_mission(2);
+  test::announce(mission);
+  LiveTeam live_team(test::kRun, kListening, false);
+  Amendments list;
+  LiveTeam::Cursor quick;
+  std::int64_t revision = 0;
+  const auto frame_of = [&](LiveTeam::Cursor& cursor) {
+    bool more = false;
+    const std::string text = live_team.frame(cursor, more);
+    const auto begin = text.find("data: ", text.find("event: frame"));
+    return begin == text.npos
+               ? nlohmann::json::object()
+               : nlohmann::json::parse(text.substr(begin + 6, text.find('\n', begin) - begin - 6));
+  };
+  const auto frame_after = [&](Tick tick, double second_number) {
+    TargetChange change;
+    change.target = mission.target_coefficients;
+    change.target[1] = second_number;
+    name_target(list, tick, change);
+    MissionPart part = test::mission_part(++revision, MissionState::kRunning, test::roster_of(2));
+    part.amendments = encode_amendments(list);
+    test::give(live_team, part, kListening);
+    return frame_of(quick);
+  };
+  for (const double number : {0.1, 0.2, 0.3}) {
+    const auto frame = frame_after(100 * revision + 5, number);
+    ASSERT_EQ(frame["targets"].size(), 1) << frame;
+    const auto& newest = frame["amendments"].back();
+    EXPECT_EQ(frame["amendments"].size(), revision);
+    EXPECT_EQ(newest["number"], revision - 1);
+    EXPECT_EQ(newest["kind"], "target");
+    EXPECT_EQ(newest["from"], 100 * (revision - 1) + 5);
+    EXPECT_EQ(frame["targets"][newest["hash"].get<std::string>()][1], number);
+    EXPECT_FALSE(frame_of(quick).contains("amendments"));
+  }
+  ASSERT_EQ(list.targets.size(), 2U);
+  LiveTeam::Cursor late;
+  const auto frame = frame_of(late);
+  EXPECT_EQ(frame["targets"].size(), 3);
+  EXPECT_EQ(frame["amendments"].size(), 3);
 }
 
 TEST_F(LiveTeamFrames, OfOtherRunsShowNothing) {

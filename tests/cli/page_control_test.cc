@@ -53,5 +53,18 @@ TEST_F(PassedOn, NothingGoesToAProcessThatDoesNotAnswer) {
   EXPECT_EQ(browser(), "event: control\ndata: {}\n\n");
 }
 
+// The process that gives the orders then writes the report, which may take long.
+TEST_F(PassedOn, SilenceAfterTheMissionsEndIsNoFault) {
+  ends_.first.send(kControlOver);
+  control_.listen(now_);
+  const auto browser = content_.events();
+  EXPECT_EQ(browser(), "event: control\ndata: {\"over\":true}\n\n");
+  now_ += 60s;
+  control_.listen(now_);
+  EXPECT_EQ(browser(), "");
+  EXPECT_TRUE(pass_on(ControlAct::kHere));
+  EXPECT_FALSE(pass_on(ControlAct::kStopNow));
+}
+
 }  // namespace
 }  // namespace ergocast::cli

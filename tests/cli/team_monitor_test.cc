@@ -82,7 +82,7 @@ TEST_F(Monitored, AllVehiclesOfAllDriversStandBeforeTheTeamDoes) {
 TEST_F(Monitored, ReportsMissionTimeAndLeavesOutWhatDoesNotCount) {
   EXPECT_EQ(run_.mission_time(40), "tick 40") << "no mission is known";
   auto part = mission_part(0, MissionState::kRunning, roster_of(2));
-  part.holds = {{10, 30}};
+  part.amendments = pauses({{10, 30}});
   receive(part, at(1ms));
   EXPECT_EQ(run_.mission_time(10), "tick 10, t = 1.0 s");
   EXPECT_EQ(run_.mission_time(30), "tick 10, t = 1.0 s");

@@ -152,6 +152,19 @@ TEST(TeamJson, HasOneClockAndTheWorldsTickBeside) {
   EXPECT_NE(team_table(picture, false).find("tick 500 of"), std::string::npos);
 }
 
+TEST(TeamTable, NamesTheTargetThatHoldsInMissionTime) {
+  TeamPicture picture = running_team();
+  EXPECT_EQ(team_table(picture, false).find("amendment"), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["target"], nullptr);
+  picture.holds = {{100, 300}};
+  picture.target = {.number = 3, .kind = AmendmentKind::kTarget, .from = 1400};
+  EXPECT_NE(team_table(picture, false).find(", target of amendment 3 since t = 120.0 s, "),
+            std::string::npos)
+      << team_table(picture, false);
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["target"],
+            nlohmann::json::parse(R"({"amendment": 3, "from_tick": 1400})"));
+}
+
 TEST(TeamJson, IsOneLineWithNullForWhatIsNotKnown) {
   const std::string line = team_json(running_team());
   EXPECT_EQ(line.find('\n'), std::string::npos);

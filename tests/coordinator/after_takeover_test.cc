@@ -113,13 +113,13 @@ TEST(TakenOver, ACoordinatorOutnumbersARepeatedRevisionOfAStoppedOne) {
 
 TEST(TakenOver, ACoordinatorAdoptsTheEndOfAPauseThatOnlyItsPredecessorHasNamed) {
   MissionPart memory = memory_of(3);
-  memory.holds = {{2, -1}};
+  memory.amendments = pauses({{2, -1}});
   Coordinator coordinator = taken_over(memory);
-  ASSERT_EQ(coordinator.holds(), memory.holds);
+  ASSERT_EQ(coordinator.holds(), (std::vector<Hold>{{2, -1}}));
   MissionPart repeated = memory_of(sent_by(advance(coordinator, at(2s))).revision + 1);
-  repeated.holds = {{2, 9}};
+  repeated.amendments = pauses({{2, 9}});
   give(coordinator, repeated, at(3s));
-  EXPECT_EQ(coordinator.holds(), repeated.holds) << "agents may have gone by it";
+  EXPECT_EQ(coordinator.holds(), (std::vector<Hold>{{2, 9}})) << "agents may have gone by it";
 }
 
 TEST(TakenOver, ACoordinatorOutnumbersARevisionThatOnlyTheWorldNames) {

@@ -22,7 +22,12 @@ Mission realtime_mission(int agents) {
 /// The notice of 2 s, in ticks of realtime_mission().
 constexpr Tick kNotice = 40;
 
-Pause pause_after(int changes) { return {{kRun, kOperator, 1, next_sequence(), 0}, changes}; }
+/// The amendment after `changes` others: an even one pauses, an odd one resumes.
+Amend pause_after(int changes) {
+  return {.header = {kRun, kOperator, 1, next_sequence(), 0},
+          .number = changes,
+          .kind = changes % 2 == 0 ? AmendmentKind::kPause : AmendmentKind::kResume};
+}
 
 TEST(Pausing, CountsTheTicksSinceTheWorldsLastMessage) {
   for (const auto& [since, ticks] : {std::pair{0ms, 0}, {425ms, 8}, {825ms, 16}}) {
@@ -62,7 +67,7 @@ TEST(Pausing, ARecordingOfAPauseThatWasNotObeyedHasNoEffect) {
   Coordinator coordinator = running_coordinator(mission);
   give(coordinator, world_where(10, {9, 9}), at(500ms));
   advance(coordinator, at(500ms));
-  Pause pause = pause_after(0);
+  Amend pause = pause_after(0);
   pause.header.tick = 10;
   give(coordinator, pause, at(10s));  // the world has been silent for so long
   ASSERT_TRUE(coordinator.holds().empty());
@@ -103,12 +108,12 @@ TEST(Pausing, EndsTheLastOfTheMostHoldsButBeginsNoOther) {
     std::vector<Hold> holds;
     for (Tick from = 0; holds.size() < kMaxHolds; from += 2) holds.push_back({from, from + 1});
     if (open) holds.back().until = -1;
-    Pausing pausing;
-    pausing.plan(holds);
+    Amending amending;
+    amending.plan(only_pauses(holds));
     Announcement announcement;
     const int changes = named_changes(holds);
-    pausing.obey(pause_after(changes), small_mission(2).timing, {}, {me, at(1s)}, announcement);
-    EXPECT_EQ(pausing.stand_by_revision() >= 0, open);
+    amending.obey(pause_after(changes), small_mission(2), {}, {me, at(1s)}, announcement);
+    EXPECT_EQ(amending.stand_by_revision() >= 0, open);
     EXPECT_EQ(announcement.revision(), open ? 1 : 0);
   }
 }

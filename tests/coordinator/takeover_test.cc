@@ -203,12 +203,12 @@ WorldState world_by(std::int64_t revision) {
 TEST(Takeover, WaitsForTheRevisionThatTheWorldUses) {
   Coordinator coordinator = that_lacks_the_newest(world_by(13));
   MissionPart newest = memory_of(13);
-  newest.holds = {{2, -1}};
+  newest.amendments = pauses({{2, -1}});
   give(coordinator, newest, at(1200ms));
   EXPECT_LE(coordinator.next_wakeup(), at(1200ms));
   advance(coordinator, at(1200ms));
   ASSERT_TRUE(coordinator.took_over());
-  EXPECT_EQ(coordinator.holds(), newest.holds) << "agents may have gone by it";
+  EXPECT_EQ(coordinator.holds(), (std::vector<Hold>{{2, -1}})) << "agents may have gone by it";
 }
 
 TEST(Takeover, WaitsForTheRevisionOfWhichItHasAPart) {
@@ -218,11 +218,11 @@ TEST(Takeover, WaitsForTheRevisionOfWhichItHasAPart) {
   part.part = 1;
   part.plan = {};
   part.roster = {};
-  part.holds = {{2, -1}};
+  part.amendments = pauses({{2, -1}});
   give(coordinator, part, at(1200ms));
   advance(coordinator, at(1200ms));
   ASSERT_TRUE(coordinator.took_over());
-  EXPECT_EQ(coordinator.holds(), part.holds);
+  EXPECT_EQ(coordinator.holds(), (std::vector<Hold>{{2, -1}}));
 }
 
 TEST(Takeover, GoesOnWithoutARevisionThatNoProcessHasWhole) {

@@ -286,7 +286,8 @@ void expect_refused(const Contribution& lie, std::int64_t max_steps = kManySteps
   CoverageTable table = table_of();
   table.merge(blocks_of({1, 5}, 2)[0], kManySteps);
   const Held before = held(table, {{1, 5}});
-  EXPECT_EQ(table.merge(lie, max_steps), Merge::kRefusedRange);
+  const Merge merged = table.merge(lie, max_steps);
+  EXPECT_TRUE(merged == Merge::kRefusedRange || merged == Merge::kRefusedShift);
   expect_same(held(table, {{1, 5}}), before);
 }
 

@@ -247,22 +247,22 @@ TEST(HalfLife, RefusesTimesThatNoAgentRemembers) {
   Contribution block;
   block.steps = 10000;
   block.sums.edit()[0] = block.elapsed_s = 180;
-  EXPECT_TRUE(is_possible(block, kDt, half_life));
+  EXPECT_TRUE(is_possible(block, kDt, 1, half_life));
   EXPECT_FALSE(is_possible(block, kDt)) << "without forgetting it is steps dt";
   for (const double elapsed_s : {0.0, -1.0, 261.0, 1000.0, std::nan("")}) {
     Contribution lie = block;
     lie.sums.edit()[0] = lie.elapsed_s = elapsed_s;
-    EXPECT_FALSE(is_possible(lie, kDt, half_life)) << elapsed_s;
+    EXPECT_FALSE(is_possible(lie, kDt, 1, half_life)) << elapsed_s;
   }
   Contribution lie = block;
   lie.steps = 1799;
-  EXPECT_FALSE(is_possible(lie, kDt, half_life)) << "more than steps dt";
+  EXPECT_FALSE(is_possible(lie, kDt, 1, half_life)) << "more than steps dt";
   lie = block;
   lie.sums.edit()[0] = 179;
-  EXPECT_FALSE(is_possible(lie, kDt, half_life)) << "S_00 is the time covered";
+  EXPECT_FALSE(is_possible(lie, kDt, 1, half_life)) << "S_00 is the time covered";
   lie = block;
   lie.sums.edit()[5] = -181;
-  EXPECT_FALSE(is_possible(lie, kDt, half_life));
+  EXPECT_FALSE(is_possible(lie, kDt, 1, half_life));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ void merge(const Contribution& theirs) {
 /// Truth values can be written in several ways: any number but 0 is true.
 bool has_flags(const Message& message) {
   return std::holds_alternative<Stop>(message) || std::holds_alternative<TeamStatus>(message) ||
-         std::holds_alternative<MissionPart>(message) || std::holds_alternative<Pause>(message) ||
+         std::holds_alternative<MissionPart>(message) || std::holds_alternative<Amend>(message) ||
          std::holds_alternative<Recall>(message) || std::holds_alternative<WorldState>(message) ||
          std::holds_alternative<RecordAck>(message);
 }

@@ -45,7 +45,7 @@ FUZZ_TARGET(run_tables) {
   const std::size_t next = std::min(end + kSeparator.size(), text.size());
   folder.write("trajectory.csv", text.substr(0, end));
   folder.write("metrics.csv", text.substr(next));
-  auto read = read_run(folder.path());
+  auto read = read_run(folder.path(), test::small_mission(2));
   if (!read) {
     ERGOCAST_REQUIRE(!read.error().empty());
     return;

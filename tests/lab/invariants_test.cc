@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/law/forecast.h"
+#include "tests/support/team.h"
 
 namespace ergocast::test {
 namespace {
@@ -128,6 +129,59 @@ class InvariantsTest : public ::testing::Test {
   Coefficients c_one_, c_two_;
 };
 
+/// What the last state of a mission violates in which agent 0 is at `x_m`, and has its station at
+/// (10, 10). The other agents are at `others_m`; if `sent_out`, their vehicles stand there for
+/// good.
+std::string violated_at_home(const Eigen::Vector2d& x_m,
+                             const std::vector<Eigen::Vector2d>& others_m, bool sent_out = true) {
+  const int agents = 1 + static_cast<int>(others_m.size());
+  Mission mission = small_mission(agents);
+  mission.domain.size_m = {60, 40, 0};
+  mission.law.u_max_mps = 3;
+  mission.speed_limit_mps = 4;
+  mission.timing.dt_s = 0.1;
+  mission.separation.distance_m = 2;
+  for (int i = 0; i < agents; ++i) mission.starts_m[static_cast<std::size_t>(i)] = {5.0 * i, 5, 0};
+  mission.kinds = {{"a", 1, 3, 0, 0}, {"b", agents - 1, 3, 0, 0}};
+  mission.kinds[0].stations_m = {{10, 10, 0}};
+  mission.kinds[0].reserve_s = 1;
+  announce(mission);
+  std::vector<RosterEntry> roster = roster_of(agents);
+  std::vector<Eigen::Vector3d> places_m = {{x_m.x(), x_m.y(), 0}};
+  for (std::size_t i = 0; i < others_m.size(); ++i) {
+    places_m.emplace_back(others_m[i].x(), others_m[i].y(), 0);
+    if (!sent_out) continue;
+    roster[i + 1].recall_revision = 0;
+    roster[i + 1].active_until = 50;
+    roster[i + 1].leaves = true;
+  }
+  Invariants team(mission);
+  team.sent(0, {Bus::kSwarm, mission_part(0, MissionState::kRunning, roster)}, nullptr);
+  team.sent(1, {Bus::kWorld, world_state(mission.timing.tick_count, places_m)}, nullptr);
+  return violated_by(team);
+}
+
+TEST(InvariantsOfHome, AnAgentIsAtItsStationInTheEnd) {
+  EXPECT_EQ(violated_at_home({10.5, 10}, {{40, 30}}), "");
+  EXPECT_EQ(violated_at_home({10.7, 10}, {{40, 30}}), "agents are home in time");
+}
+
+TEST(InvariantsOfHome, OrAsNearAsItCanGetIfAVehicleStandsThereForGood) {
+  EXPECT_EQ(violated_at_home({8.7, 10}, {{10.7, 10}}), "");
+  EXPECT_EQ(violated_at_home({7.9, 10}, {{10.7, 10}}), "agents are home in time");
+  EXPECT_EQ(violated_at_home({8.7, 10}, {{10.7, 10}}, false), "agents are home in time")
+      << "that vehicle could go away";
+}
+
+TEST(InvariantsOfHome, OrEnclosedByVehiclesThatStandForGood) {
+  const std::vector<Eigen::Vector2d> fence = {{55.6, 38.6}, {56, 36.2}, {58.4, 35.6}};
+  EXPECT_EQ(violated_at_home({57.5, 37.8}, fence), "");
+  EXPECT_EQ(violated_at_home({58.5, 38.5}, fence), "agents are home in time")
+      << "it could be nearer";
+  EXPECT_EQ(violated_at_home({57.5, 37.8}, {{55, 38.6}, {58.4, 35}}), "agents are home in time")
+      << "there is a gap";
+}
+
 TEST_F(InvariantsTest, PositionsAreInTheDomain) {
   EXPECT_EQ(violated(), "");
   team_.sent(1, world(1, {10.1, 5, 0}), nullptr);
@@ -173,7 +227,7 @@ TEST_F(InvariantsTest, SumsAreAtMostTheTimeCovered) {
   EXPECT_EQ(violated(), "");
   block.sums.edit()[5] = 2.1;
   team_.sent(1, {Bus::kSwarm, block}, nullptr);
-  EXPECT_EQ(violated(), "|S_mn| <= S_00 = steps dt");
+  EXPECT_EQ(violated(), "S_00 = steps dt, |S_mn| <= S_00, or 3 S_00 after a change");
 }
 
 TEST_F(InvariantsTest, RelaysAnswerDigests) {

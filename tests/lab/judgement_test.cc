@@ -74,7 +74,7 @@ bool never_missed(const Heard& heard) {
   // the tests of real processes do that.
   if (type == kTypes<Stop>) return true;
   // Its operator sends pauses and recalls directly to the coordinator.
-  if (type == kTypes<Pause> || type == kTypes<Recall>) return true;
+  if (type == kTypes<Amend> || type == kTypes<Recall>) return true;
   if (heard.role == Role::kAgent) return type == kTypes<AgentStatus>;
   if (heard.role == Role::kCoordinator) {
     // In lockstep the world asks only the agent that it waits for at its start.

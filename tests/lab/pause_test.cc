@@ -52,8 +52,9 @@ std::vector<std::vector<std::string>> table_of(const std::string& text) {
 
 RecordedRun simulated(const Mission& mission, std::vector<Hold> holds) {
   std::ostringstream trajectory, metrics;
-  lab::Simulation simulation({.plan = encode_plan(mission), .holds = std::move(holds)}, trajectory,
-                             metrics);
+  lab::Simulation simulation(
+      {.plan = encode_plan(mission), .amendments = only_pauses(std::move(holds))}, trajectory,
+      metrics);
   simulation.run();
   EXPECT_EQ(simulation.coordinator().state(), MissionState::kEnded);
   return {table_of(trajectory.str()), table_of(metrics.str()), simulation.recorder().facts(),

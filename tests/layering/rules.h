@@ -146,8 +146,8 @@ inline const std::vector<Rule> kRules = {
     {"cli/watch/page_server.cc", {"runtime/bus", "runtime/process", "cli/watch"}, {kHttp, kSystem}},
     // An operator's orders to a team. Commands and the page give the same orders.
     {"cli/operate",
-     {"text", "core", "team", "lcmtypes", "runtime/bus", "runtime/process", "report", "cli",
-      "cli/team", "cli/record", "cli/watch"},
+     {"text", "core", "plan", "team", "lcmtypes", "scenario", "scenario/parse", "runtime/bus",
+      "runtime/process", "report", "cli", "cli/team", "cli/record", "cli/watch"},
      {kCommandLine, kJson, kFiles, kSystem}},
     {"cli/launch",
      {"text", "core", "modes", "plan", "team", "scenario", "scenario/parse", "runtime/bus",

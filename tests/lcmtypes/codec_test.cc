@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <ergocast/agent_status_t.hpp>
+#include <ergocast/amend_t.hpp>
 #include <ergocast/averages_t.hpp>
 #include <ergocast/beacon_t.hpp>
 #include <ergocast/command_t.hpp>
@@ -16,7 +17,6 @@
 #include <ergocast/low_averages_t.hpp>
 #include <ergocast/low_sums_t.hpp>
 #include <ergocast/mission_t.hpp>
-#include <ergocast/pause_t.hpp>
 #include <ergocast/recall_t.hpp>
 #include <ergocast/record_ack_t.hpp>
 #include <ergocast/stop_t.hpp>
@@ -191,9 +191,8 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(std::memcmp(part_wire.plan.data(), part.plan.data(), 300), 0);
   EXPECT_EQ(std::memcmp(part_wire.mission_signature, a_signature().data(), 64), 0);
   EXPECT_EQ(part_wire.stand_by_revision, 11);
-  ASSERT_EQ(part_wire.hold_count, 1);
-  EXPECT_EQ(part_wire.holds[0].hold_from, 55);
-  EXPECT_EQ(part_wire.holds[0].hold_until, -1);
+  ASSERT_EQ(part_wire.amendments_size, 30);
+  EXPECT_EQ(part_wire.amendments[29], 29 * 3);
   EXPECT_EQ(part_wire.reason, "because");
 
   const auto team_wire = read_by_lcm<team_status_t>(encoded(team_status()));
@@ -215,10 +214,16 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(stop_wire.stop_now, 1);
   EXPECT_EQ(stop_wire.stop_reason, "enough");
 
-  const auto pause_wire = read_by_lcm<pause_t>(encoded(pause()));
-  expect_header(pause_wire.header, kOperator);
-  EXPECT_EQ(std::memcmp(pause_wire.pause_signature, a_signature().data(), 64), 0);
-  EXPECT_EQ(pause_wire.named_changes, 3);
+  const auto amend_wire = read_by_lcm<amend_t>(encoded(amend()));
+  expect_header(amend_wire.header, kOperator);
+  EXPECT_EQ(std::memcmp(amend_wire.amend_signature, a_signature().data(), 64), 0);
+  EXPECT_EQ(amend_wire.amend_number, 3);
+  EXPECT_EQ(amend_wire.amend_kind, 2);
+  EXPECT_EQ(amend_wire.delay_ticks, 70);
+  EXPECT_EQ(amend_wire.amend_part, 1);
+  EXPECT_EQ(amend_wire.amend_parts, 4);
+  ASSERT_EQ(amend_wire.amend_size, 400);
+  EXPECT_EQ(amend_wire.amend_content[399], (399 * 5) % 256);
 
   const auto recall_wire = read_by_lcm<recall_t>(encoded(recall()));
   expect_header(recall_wire.header, kOperator);
@@ -289,7 +294,7 @@ TEST(Codec, EncodingReusesItsBufferWithoutLeavingAnythingInIt) {
 TEST(Codec, TheFullestMessagesFitOneDatagram) {
   MissionPart part = mission_part();
   part.roster.assign(kMaxRosterEntriesPerMessage, part.roster[0]);
-  part.plan.assign(kMaxPlanBytesPerMessage, std::byte{1});
+  part.plan.assign(kMaxPlanBytesPerMessage - part.amendments.size(), std::byte{1});
   part.reason.assign(kMaxReasonLength, 'r');
   WorldState world = world_state();
   world.vehicle_count = kMaxVehiclesPerState;
@@ -297,7 +302,10 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
   status.host.assign(kMaxHostLength, 'h');
   TeamStatus team = team_status();
   team.host.assign(kMaxHostLength, 'h');
-  for (const Message& message : {Message(part), Message(world), Message(status), Message(team)}) {
+  Amend amendment = amend();
+  amendment.content.assign(kMaxPlanBytesPerMessage, std::byte{1});
+  for (const Message& message :
+       {Message(part), Message(world), Message(status), Message(team), Message(amendment)}) {
     EXPECT_LE(encoded(message).size(), kMaxDatagramBytes);
     EXPECT_EQ(verdict(message), "accepted");
   }

@@ -162,7 +162,7 @@ TEST(Fixed16, NeverMixesWithDoubles) {
 TEST(Fixed16, RefusesAverageBeyondOneAndGainsOfMoreStepsThanThereAre) {
   const Contribution honest = Author16(1).run_ticks(1, 1).front();
   Bytes bytes = encoded(honest);
-  constexpr std::size_t kFirstAverage = 100;
+  constexpr std::size_t kFirstAverage = 101;
   bytes[kFirstAverage + 2] = std::byte{0x80};  // −32768
   bytes[kFirstAverage + 3] = std::byte{0};
   EXPECT_EQ(verdict(retagged(bytes)), "range");

@@ -40,7 +40,8 @@ Merge merged_from_bytes(const Contribution& theirs, CoverageTable& table) {
 
 void expect_no_effect(const Contribution& lie) {
   CoverageTable table(basis(), kDt);
-  EXPECT_EQ(merged_from_bytes(lie, table), Merge::kRefusedRange);
+  const Merge merged = merged_from_bytes(lie, table);
+  EXPECT_TRUE(merged == Merge::kRefusedRange || merged == Merge::kRefusedShift);
   EXPECT_EQ(table.row_count(), 0u);
   Coefficients average = Coefficients::Ones(225);
   table.average(average);

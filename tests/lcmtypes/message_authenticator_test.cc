@@ -34,13 +34,13 @@ const MessageAuthenticator kOtherTeam{key_of(2)};
 Message unsigned_copy(Message message) {
   if (auto* part = std::get_if<MissionPart>(&message)) part->signature = {};
   if (auto* stop = std::get_if<Stop>(&message)) stop->signature = {};
-  if (auto* pause = std::get_if<Pause>(&message)) pause->signature = {};
+  if (auto* amend = std::get_if<Amend>(&message)) amend->signature = {};
   if (auto* recall = std::get_if<Recall>(&message)) recall->signature = {};
   return message;
 }
 bool is_signed(const Message& message) {
   return std::holds_alternative<MissionPart>(message) || std::holds_alternative<Stop>(message) ||
-         std::holds_alternative<Pause>(message) || std::holds_alternative<Recall>(message);
+         std::holds_alternative<Amend>(message) || std::holds_alternative<Recall>(message);
 }
 
 Bytes authenticated(const Message& message, const MessageAuthenticator& authenticator,

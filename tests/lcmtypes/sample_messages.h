@@ -49,7 +49,7 @@ inline MissionPart mission_part() {
   m.parts = 5;
   m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200, true, 300, 11, 3, 9, true}};
   for (int i = 0; i < 300; ++i) m.plan.push_back(static_cast<std::byte>(i * 7));
-  m.holds = {{55, -1}};
+  for (int i = 0; i < 30; ++i) m.amendments.push_back(static_cast<std::byte>(i * 3));
   m.stand_by_revision = 11;
   m.reason = "because";
   m.signature = a_signature();
@@ -141,7 +141,18 @@ inline TeamStatus team_status() {
 
 inline Stop stop() { return {header_of_sender(kOperator), true, "enough", true, a_signature()}; }
 
-inline Pause pause() { return {header_of_sender(kOperator), 3, a_signature()}; }
+inline Amend amend() {
+  Amend m{.header = header_of_sender(kOperator),
+          .number = 3,
+          .kind = AmendmentKind::kTarget,
+          .delay_ticks = 70,
+          .part = 1,
+          .parts = 4,
+          .content = {},
+          .signature = a_signature()};
+  for (int i = 0; i < 400; ++i) m.content.push_back(static_cast<std::byte>(i * 5));
+  return m;
+}
 
 inline Recall recall() { return {header_of_sender(kOperator), 127, true, a_signature()}; }
 
@@ -191,7 +202,7 @@ inline Beacon beacon() {
 
 inline std::vector<Message> every_message() {
   return {hello(),       mission_part(), contribution(), agent_status(), team_status(), stop(),
-          world_state(), command(),      record_ack(),   digest(),       pause(),       averages(),
+          world_state(), command(),      record_ack(),   digest(),       amend(),       averages(),
           low_sums(),    low_averages(), beacon(),       recall()};
 }
 

@@ -75,7 +75,7 @@ class Resume : public testing::Test {
   RunData past(const std::string& trajectory, const std::string& metrics) const {
     write("trajectory.csv", trajectory);
     write("metrics.csv", metrics);
-    return read_run(dir).value();
+    return read_run(dir, small_mission(1)).value();
   }
   /// The data after rows 0 … 9 of a single agent on its line.
   RunData ten_rows() const {
@@ -363,7 +363,7 @@ TEST_F(Resume, ATableThatLacksItsOtherIsASegmentThatIsNotOverwritten) {
   EXPECT_EQ(record->segment(), 1);
   EXPECT_EQ(read("trajectory.csv"), "precious");
   EXPECT_EQ(segment_count(dir), 2);
-  const auto table = read_run(dir);
+  const auto table = read_run(dir, small_mission(1));
   ASSERT_FALSE(table);
   EXPECT_NE(table.error().find("metrics.csv: cannot be opened"), std::string::npos)
       << table.error();

@@ -4,11 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <sstream>
 
 #include "tests/support/team.h"
-#include "tests/support/temp_folder.h"
 
 namespace ergocast::test {
 namespace {
@@ -22,19 +20,6 @@ TEST(Summary, IsWrittenWhateverBytesTheNetworkBrought) {
   const auto read = nlohmann::json::parse(to_text(summarize(recorder, {})));
   EXPECT_EQ(read["result"], "failed");
   EXPECT_EQ(read["reason"], "caf\xef\xbf\xbd") << "the replacement character";
-}
-
-TEST(Summary, HoldsAreReadFromTheLoggersFileAsLongAsThereIsOne) {
-  const TempFolder own;
-  const std::vector<Hold> early{{3, 5}, {9, -1}};
-  const nlohmann::ordered_json summary{{"holds", {{3, 5}}}};
-  EXPECT_EQ(recorded_holds(own.path(), nullptr), std::vector<Hold>());
-  EXPECT_EQ(recorded_holds(own.path(), summary), (std::vector<Hold>{{3, 5}}));
-  std::ofstream(own.path() / "holds.json") << to_text(holds_json(early));
-  EXPECT_EQ(recorded_holds(own.path(), nullptr), early);
-  EXPECT_EQ(recorded_holds(own.path(), summary), early) << "it is newer";
-  std::ofstream(own.path() / "holds.json") << "[[5, 3]]";
-  EXPECT_EQ(recorded_holds(own.path(), nullptr), std::vector<Hold>());
 }
 
 /// The summary's text on the goal after one recorded tick.

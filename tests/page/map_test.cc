@@ -30,7 +30,8 @@ constexpr const char* kDistance =
     "const distance = (p, q) => Math.hypot(...lab(p).map((v, i) => v - lab(q)[i]));"
     // Finds the first cell whose density is between `low` and `high` of 255, and reads the
     // shading's pixel in its middle.
-    "const { S, view } = ergocast, { density: { width, height, cells }, size } = S.run;"
+    "const { S, view } = ergocast, { size } = S.run, { width, height, cells } = "
+    "S.run.targetAt(0).density;"
     "const pixel = (low, high) => { const i = cells.findIndex(v => v >= low && v <= high);"
     "  const x = view.px((i % width + 0.5) / width * size[0]);"
     "  const y = view.py((1 - (Math.floor(i / width) + 0.5) / height) * size[1]);"

@@ -164,7 +164,8 @@ TEST_F(PageInABrowser, KeepOutsAreOutlined) {
   open_report({"--duration", "5"}, "#theme=light", "harbour_patrol");
   // The reddest pixel at the middle of the first piece of an outline.
   const auto drawn = js(
-      "const { view, S } = ergocast, pieces = S.run.nowhere.outline, s = devicePixelRatio;"
+      "const { view, S } = ergocast, pieces = S.run.targetAt(0).nowhere.outline, s = "
+      "devicePixelRatio;"
       "const [a, b, c, d] = pieces[0], x = view.px((a + c) / 2) * s, y = view.py((b + d) / 2) * s;"
       "const { data } = document.getElementById('shading').getContext('2d').getImageData("
       "Math.round(x) - 1, Math.round(y) - 1, 3, 3);"

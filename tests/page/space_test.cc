@@ -208,7 +208,7 @@ TEST_F(BoxInABrowser, AFlatBoxIsDrawnHigher) {
             std::string::npos);
   // The target is larger at the surface than at the bottom, and zero at the land in the west.
   const auto cells =
-      js("const { cells, width, height } = ergocast.shown().density, at = (u, v) => "
+      js("const { cells, width, height } = ergocast.shown().targetAt(0).density, at = (u, v) => "
          "cells[Math.floor(v * height) * width + Math.floor(u * width)];"
          "return [at(0.5, 0.02), at(0.5, 0.9), at(0.03, 0.02)]");
   EXPECT_GT(cells[0].get<int>(), 2 * cells[1].get<int>());

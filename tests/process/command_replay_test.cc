@@ -19,7 +19,7 @@ class Tape {
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
       ears_.push_back({bus, std::make_unique<lcm::LCM>(buses.of(bus)), &recorded_});
       Ear& ear = ears_.back();
-      ear.lcm->subscribe("ERGOCAST_(PAUSE|STOP)", &Ear::receive, &ear)->setQueueCapacity(0);
+      ear.lcm->subscribe("ERGOCAST_(AMEND|STOP)", &Ear::receive, &ear)->setQueueCapacity(0);
     }
   }
   /// Reads the arrived messages; returns the number of all recorded ones.
@@ -156,7 +156,7 @@ class CommandReplay : public ByHand {
 TEST_F(CommandReplay, APauseThatNoCoordinatorObeyedDoesNotPauseLater) {
   start_mission();
   Tape tape(kUrl);
-  hold_next("ERGOCAST_PAUSE", 0);  // the operator's command, once it knows the mission
+  hold_next("ERGOCAST_AMEND", 0);  // the operator's command, once it knows the mission
   Program& pause = hand("ergocast", {"pause", "--key-file", coordinator_key_});
   hold_none();
   ASSERT_TRUE(eventually([&] { return stopped({pause.child.pid()}); })) << pause.printed();

@@ -74,7 +74,7 @@ TEST_F(PauseCommand, HoldsAMissionInLockstepWhichItsSimulationRepeats) {
   const Tick from = holds[0][0], until = holds[0][1];
   EXPECT_LT(from, until);
   EXPECT_EQ(summary()["held_ticks"], until - from);
-  EXPECT_FALSE(std::filesystem::exists(out() / "holds.json")) << "the summary has them";
+  EXPECT_EQ(summary()["amendments"].size(), 2U);
   expect_standing(from, until);
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
@@ -107,7 +107,7 @@ TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
   mission.send(SIGKILL);
   wait_for(mission);
   ASSERT_FALSE(std::filesystem::exists(out() / "summary.json"));
-  ASSERT_TRUE(std::filesystem::exists(out() / "holds.json"));
+  ASSERT_TRUE(std::filesystem::exists(out() / "amendments.json"));
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   EXPECT_TRUE(answered("identical to its simulation")) << output();
   EXPECT_EQ(ergocast({"report", out()}), 0) << output();

@@ -2,6 +2,7 @@
 """Records and simulations in Python, against the command and against the files' bytes."""
 
 import csv
+import json
 import os
 import shutil
 import subprocess
@@ -151,6 +152,75 @@ class Loaded(WithRecord):
         self.assertEqual(bare.summary, {})
         self.assertIsNone(bare.target_density)
         self.assertTrue(np.array_equal(bare.coverage(), self.run_.coverage()))
+
+
+def target_hash(mu):
+    """target_hash() of core/mission/amendments.h."""
+    h = 1
+    for bits in np.ravel(mu).view(np.uint64):
+        h = (h ^ int(bits)) * 0x9E3779B97F4A7C15 % 2**64
+        h ^= h >> 29
+    return f"{h:016x}"
+
+
+class ChangedTarget(WithRecord):
+    """The record, as if its target had changed at tick 50, and another one had been void."""
+
+    FROM = 50
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.mu = cls.run_.mu.copy()
+        cls.mu[1::2] *= 0.5
+        cls.mu[:, 1::2] += 0.01
+        amendments = [
+            {"number": 0, "from_tick": 20, "mu": cls.run_.mu / 2 + (np.arange(256) == 0).reshape(16, 16) / 2,
+             "void": True},
+            {"number": 0, "from_tick": cls.FROM, "mu": cls.mu},
+        ]
+        for one in amendments:
+            mu = one.pop("mu")
+            one |= {"kind": "target", "t_s": 0, "hash": target_hash(mu), "target": np.ravel(mu).tolist()}
+        cls.changed = cls.folder / "changed"
+        shutil.copytree(cls.run_dir, cls.changed)
+        text = json.dumps({"holds": [], "amendments": amendments})
+        (cls.changed / "amendments.json").write_text(text)
+
+    def test_each_moment_counts_against_the_target_of_its_time(self):
+        run, plan = ergocast.load(self.changed), self.run_
+        before, after = plan.coverage([self.FROM - 1, 120]), run.coverage([self.FROM - 1, 120])
+        self.assertTrue(np.array_equal(after[0], before[0]))
+        share = (121 - self.FROM) / 121
+        np.testing.assert_allclose(after[1], before[1] - share * (self.mu - plan.mu), atol=1e-14)
+
+    def test_a_damaged_list_is_refused(self):
+        copy = self.folder / "damaged"
+        shutil.copytree(self.changed, copy)
+        text = (copy / "amendments.json").read_text()
+        (copy / "amendments.json").write_text(text.replace("[1.0, ", "[1.0, 7, ", 1))
+        with self.assertRaisesRegex(ergocast.RecordError, "amendments.json: entry 0: .*remove it"):
+            ergocast.load(copy)
+
+    def exported(self, run_dir, form, name):
+        done = command("export", run_dir, "--to", form, "--out", self.folder / name)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return self.folder / name
+
+    def test_tables_have_the_last_target(self):
+        table = self.exported(self.changed, "csv", "tables") / "density.csv"
+        rows = list(csv.DictReader(table.open()))[::97]
+        twice = np.where(np.arange(16) > 0, 2, 1)
+        for row in rows:
+            x, y = (np.cos(np.arange(16) * np.pi * float(row[c]) / 2000) * twice for c in ("x_m", "y_m"))
+            self.assertAlmostEqual(float(row["target"]), x @ self.mu @ y, delta=1e-9)
+
+    def test_mcap_has_each_target_in_its_time(self):
+        grids = [
+            self.exported(run_dir, "mcap", name).read_bytes().count(b'"column_count"')
+            for run_dir, name in ((self.run_dir, "plan.mcap"), (self.changed, "changed.mcap"))
+        ]
+        self.assertEqual(grids[1], grids[0] + 1)
 
 
 class InTheModesOfTheFreeDomain(unittest.TestCase):

@@ -6,8 +6,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <map>
 #include <sstream>
+#include <string>
+#include <vector>
 
+#include "core/mission/amendments.h"
 #include "lab/ideal_team.h"
 #include "lab/simulation.h"
 #include "plan/plan.h"
@@ -110,6 +115,121 @@ TEST(SameAsSimulate, ForDrawnScenariosWithEveryField) {
   EXPECT_GT(stood_for, kMissions / 3);
   EXPECT_GT(others_that_differ, others / 2) << "of " << others << ": the swarm is needed for these";
   EXPECT_LT(drawn.refused, kMissions);
+}
+
+// ---- targets that change in flight ----
+
+constexpr Tick kChanges[] = {60, 130};
+
+/// A team with one peak at x, and what `law`, `time` and `agents` say besides.
+struct Case {
+  const char *law, *time, *agents;
+};
+
+Mission mission_of(const Case& one, int peak_x_m) {
+  const std::string text =
+      "domain { size_x_m: 1000 size_y_m: 800 } target { gaussians { mean_x_m: " +
+      std::to_string(peak_x_m) + " mean_y_m: 300 sigma_m: 120 } } law { u_max_mps: 20 " + one.law +
+      " } time { duration_s: 30 " + one.time + " } agents { random_count: 5 " + one.agents + " }";
+  return Scenario::parse(text, "peak").value().mission();
+}
+
+/// The targets of this case, each from its tick.
+Amendments amendments_of(const Case& one) {
+  Amendments list;
+  for (const Tick from : kChanges) {
+    TargetChange change;
+    change.target = mission_of(one, 200 + 5 * static_cast<int>(from)).target_coefficients;
+    name_target(list, from, change);
+  }
+  return list;
+}
+
+/// The places of all agents, by tick.
+using Places = std::map<Tick, std::vector<Eigen::Vector3d>>;
+
+class PlaceObserver : public lab::SimulationObserver {
+ public:
+  void received(lab::NodeId, const Message& message) override {
+    const auto* const world = std::get_if<WorldState>(&message);
+    if (world == nullptr || world->header.tick < 0) return;
+    auto& at = places[world->header.tick];
+    at.resize(5);
+    for (const Vehicle& vehicle : world->vehicles_in_part())
+      at[static_cast<std::size_t>(vehicle.id)] = vehicle.position_m;
+  }
+  Places places;
+};
+
+Places simulated_places(const Mission& mission, const Amendments& list) {
+  std::ostringstream trajectory, metrics;
+  PlaceObserver observer;
+  lab::Simulation({.plan = encode_plan(mission), .amendments = list}, trajectory, metrics,
+                  &observer)
+      .run();
+  return observer.places;
+}
+
+Places ideal_places(const Mission& mission, const Amendments& list) {
+  Places places;
+  lab::IdealTeam team(mission);
+  team.note(list);
+  while (true) {
+    for (std::size_t i = 0; i < team.size(); ++i) places[team.tick()].push_back(team.x_m(i));
+    if (team.tick() == mission.timing.tick_count) return places;
+    team.step();
+  }
+}
+
+/// The greatest distance between two places of one agent at one tick.
+double distance_m(const Places& a, const Places& b) {
+  if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
+  double most_m = 0;
+  for (const auto& [tick, of_a] : a) {
+    for (std::size_t i = 0; i < of_a.size(); ++i)
+      most_m = std::max(most_m, (of_a[i] - b.at(tick)[i]).norm());
+  }
+  return most_m;
+}
+
+class SameAsSimulateAmended : public ::testing::TestWithParam<Case> {};
+
+TEST_P(SameAsSimulateAmended, WhereAllIsSentEachTick) {
+  const Mission mission = mission_of(GetParam(), 200);
+  const Amendments list = amendments_of(GetParam());
+  const Places simulated = simulated_places(mission, list), ideal = ideal_places(mission, list);
+  ASSERT_EQ(simulated.size(), 301U);
+  EXPECT_EQ(distance_m(simulated, ideal), 0);
+  EXPECT_GT(distance_m(ideal, ideal_places(mission, {})), 1) << "the changes matter";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Laws, SameAsSimulateAmended,
+    ::testing::Values(Case{"", "broadcast_period_ticks: 1", ""},
+                      Case{"", "broadcast_period_ticks: 1", "dead_reckoning: false"},
+                      Case{"anticipation: 0", "", ""},
+                      Case{"", "broadcast_period_ticks: 1",
+                           "kind { name: \"wide\" count: 2 footprint_sigma_m: 60 quality: 0.7 } "
+                           "kind { name: \"fine\" count: 3 }"}));
+
+TEST(SameAsSimulate, UpToRoundingWithTargetsThatChangeBetweenBroadcasts) {
+  for (const char* time : {"", "high_mode_period_factor: 3"}) {
+    const Case one{"", time, ""};
+    const Mission mission = mission_of(one, 200);
+    ASSERT_GT(mission.timing.broadcast_period_ticks, 1);
+    const Amendments list = amendments_of(one);
+    EXPECT_LT(distance_m(simulated_places(mission, list), ideal_places(mission, list)), 1e-6);
+  }
+}
+
+TEST(SameAsSimulate, WithATargetThatIsKnownBeforeItHolds) {
+  const Case one{"", "broadcast_period_ticks: 1", "dead_reckoning: false"};
+  const Mission mission = mission_of(one, 200);
+  Amendments list;
+  TargetChange change;
+  change.target = mission_of(one, 800).target_coefficients;
+  name_target(list, 1000, change);
+  EXPECT_EQ(distance_m(simulated_places(mission, list), simulated_places(mission, {})), 0);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/mission/mission.h"
+#include "plan/amendment_list.h"
 #include "plan/plan.h"
 #include "team/messages.h"
 #include "team/mission_follower.h"
@@ -63,6 +64,11 @@ inline std::vector<RosterEntry> roster_of(int agents) {
 inline std::int64_t next_sequence() {
   static std::int64_t last = 0;
   return ++last;
+}
+
+/// The list of amendments of a mission that only has these pauses, as MISSION carries it.
+inline std::vector<std::byte> pauses(std::vector<Hold> holds) {
+  return encode_amendments(only_pauses(std::move(holds)));
 }
 
 inline MissionPart mission_part(std::int64_t revision, MissionState state,

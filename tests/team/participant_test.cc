@@ -196,7 +196,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
 // ---- commands of the operator ----
 
 Stop stop_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, false, "enough"}; }
-Pause pause_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, 0}; }
+Amend pause_at(Tick tick) { return {.header = {kRun, kOperator, 1, next_sequence(), tick}}; }
 Recall recall_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, 1, false}; }
 
 TEST(Participant, RefusesACommandThatNamesATickWhichItSentLongAgo) {

@@ -59,12 +59,12 @@ export function addLog(lines) {
   if (low) log.scrollTop = log.scrollHeight;
 }
 
-// φ² each mission second from all positions; if the page lacks the beginning, or the modes of the free
-// domain, what the agents report.
+// φ² each mission second from all positions; if the page lacks the beginning, a target, or the modes of the
+// free domain, what the agents report.
 function addMetrics(run) {
   const { told } = run,
     every = Math.max(1, Math.round(1 / run.step)),
-    whole = !run.mission.free_domain && run.tracks.some(track => track.first === 0);
+    whole = !run.mission.free_domain && run.knowsTargets && run.tracks.some(track => track.first === 0);
   if (!whole) {
     run.metrics = told;
     return;
@@ -147,6 +147,7 @@ export function watchLive(page) {
   on('frame', frame => {
     if (frame.log) addLog(frame.log);
     if (!run) return;
+    if (frame.amendments) run.setAmendments(frame.amendments, frame.targets);
     if (frame.tracks) run.add(frame.tracks);
     if (frame.roster) run.setRoster(frame.roster);
     if (frame.incidents) {

@@ -2,7 +2,7 @@
 // Views a mission in a box along one axis: the result is a run in a plane, which the map can draw.
 import { averageOf, picture } from './cosine_sums.js';
 import { Places, axesOf } from './places.js';
-import { targetOfModes } from './run.js';
+import { Target, targetOfModes } from './targets.js';
 import { stretchOf } from './stretch.js';
 
 function projectedTrack(track, axes, factors) {
@@ -28,24 +28,31 @@ export function projected(run, name) {
     { mission } = run,
     { modes } = mission,
     [a, b] = axes,
-    tracks = new Map();
+    tracks = new Map(),
+    targets = new WeakMap();
   const pick = list => axes.map(axis => list[axis]),
     stretch = axes.map(axis => (axis === 2 ? stretchOf(mission.size_m) : 1));
   const size = pick(mission.size_m).map((l, i) => l * stretch[i]);
+  // For the view from above, the record contains the density itself.
+  const viewed = target =>
+    new Target({
+      ...target,
+      density: () =>
+        hidden === 2
+          ? target.density
+          : targetOfModes(averageOf(target.coefficients, modes, hidden), modes[a], modes[b], size),
+    });
   const seen = Object.assign(Object.create(run), {
     axes,
     size,
     stretch,
-    outline: undefined,
-    levels: undefined,
-    nowhere: undefined,
     pace: undefined,
     mission: { ...mission, size_m: size, box_m: mission.size_m, origin_m: pick(mission.origin_m) },
-    // For the view from above, the record contains the density itself.
-    density:
-      hidden === 2
-        ? run.density
-        : targetOfModes(averageOf(mission.target, modes, hidden), modes[a], modes[b], size),
+    targetAt: row => {
+      const target = run.targetAt(row);
+      if (!targets.has(target)) targets.set(target, viewed(target));
+      return targets.get(target);
+    },
     picture: (layer, row, width, height) =>
       picture(averageOf(run.coefficients(layer, row), modes, hidden), modes[a], modes[b], width, height),
   });

@@ -2,7 +2,8 @@
 // Holds a mission as the page shows it, from a record or as it grows, without any drawing.
 import { picture } from './cosine_sums.js';
 import { Coverage } from './coverage.js';
-import { Track, addTracks, bytesOf } from './tracks.js';
+import { amendedTarget, firstDifference, plannedTarget } from './targets.js';
+import { Track, addTracks } from './tracks.js';
 
 const TOLERANCE_S = 1e-6;
 const LONG_BLOCK_S = 1; // bodies that pass each other have shorter ones
@@ -43,11 +44,10 @@ export class Run {
     this.recalledFrom = new Map(); // world's tick from which a recalled agent rests
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
+    this.amendments = []; // {number, kind, from: tick, hash}, ascending, as far as the page knows them
+    this.received = new Map(); // coefficients of new targets, by hash
+    this.targets = [plannedTarget(mission)]; // ascending by row
     this.coverage = new Coverage(this);
-    // The modes of the wire begin with those without waves along z.
-    this.density =
-      decodeDensity(mission.density) ??
-      targetOfModes(mission.target, this.coverage.M, this.coverage.N, this.size);
   }
   get end() {
     return Math.max(0, this.rows - 1) * this.step;
@@ -61,6 +61,35 @@ export class Run {
     if (JSON.stringify(pairs) === JSON.stringify(this.holds)) return;
     this.holds = pairs;
     this.coverage.reset(0);
+  }
+  // What has changed since the plan, and the coefficients of targets that are new to the page, by hash.
+  setAmendments(list, coefficients = {}) {
+    for (const [hash, mu] of Object.entries(coefficients)) this.received.set(hash, mu);
+    const before = this.targets;
+    const targetOf = amendment => {
+      const target = amendedTarget(amendment, this.received.get(amendment.hash), this);
+      return before.find(one => one.sameAs(target)) ?? target;
+    };
+    this.amendments = list;
+    this.targets = [before[0], ...list.filter(one => one.kind === 'target').map(targetOf)];
+    const changed = firstDifference(before, this.targets);
+    if (changed < this.rows) this.coverage.reset(changed);
+  }
+  // The target that holds at a row.
+  targetAt(row) {
+    return this.targets.findLast(target => target.row <= row);
+  }
+  // Whether the page has received all of them since the plan.
+  get knowsTargets() {
+    return (this.amendments[0]?.number ?? 0) === 0 && this.targets.every(target => target.known);
+  }
+  // Incidents, and the new targets that hold by now, ascending.
+  get marks() {
+    const marks = this.targets
+      .slice(1)
+      .map(({ from }) => ({ t: from * this.mission.dt_s, kind: 'target', sign: '◎', text: 'new target' }))
+      .filter(({ t }) => t <= this.end + TOLERANCE_S);
+    return marks.length ? [...this.incidents, ...marks].sort((a, b) => a.t - b.t) : this.incidents;
   }
   // Mission time at `t`, without the ticks that do not count.
   counted(t) {
@@ -103,10 +132,11 @@ export class Run {
   }
   // cₖ at a row of a layer of the map: of what was achieved, or what is too much of it.
   coefficients(layer, row) {
-    const { target } = this.mission;
-    if (layer === 'target') return target;
+    if (layer === 'target') return this.targetAt(row).coefficients;
     const c = this.coverage.at(row);
-    return layer === 'difference' ? c.map((v, k) => v - target[k]) : c;
+    if (layer !== 'difference') return c;
+    const target = this.coverage.meanTarget();
+    return c.map((v, k) => v - target[k]);
   }
   // The same on a grid, the north-west first.
   picture(layer, row, width, height) {
@@ -154,32 +184,6 @@ export class Run {
   }
 }
 
-// The end of a scale of these values: few are above it.
-export function fullOf(values) {
-  const sorted = Float32Array.from(values).sort();
-  return Math.max(2, sorted[Math.floor(0.998 * (sorted.length - 1))]);
-}
-
-// Without a recorded density the picture is what the modes say of the target.
-export function targetOfModes(target, M, N, [lx, ly]) {
-  const most = 160,
-    scale = most / Math.max(lx, ly);
-  const width = Math.max(16, Math.round(lx * scale)),
-    height = Math.max(16, Math.round(ly * scale));
-  const values = picture(target, M, N, width, height),
-    full = fullOf(values);
-  return {
-    width,
-    height,
-    full,
-    cells: Uint8Array.from(values, v => Math.max(1, Math.min(255, (255 * v) / full))),
-  };
-}
-
-function decodeDensity(coded) {
-  return coded && { width: coded.width, height: coded.height, full: coded.full, cells: bytesOf(coded.data) };
-}
-
 // The objects of a list in a summary, which may be damaged.
 function listOf(value) {
   return Array.isArray(value) ? value.filter(one => one && typeof one === 'object') : [];
@@ -188,6 +192,7 @@ function listOf(value) {
 // A record as report/page.h writes it.
 export function recordedRun(record) {
   const run = new Run(record.mission, record.stride, record.rows);
+  if (record.amendments) run.setAmendments(record.amendments, record.targets);
   run.add(record.tracks);
   run.metrics = record.metrics;
   run.summary =

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes slices through a box: pictures of target, coverage or difference in planes across its axes.
 import { ACROSS_AND_UP, picture, planeOf } from './cosine_sums.js';
-import { fullOf } from './run.js';
+import { fullOf } from './targets.js';
 import { clamp } from '../text.js';
 
 const CELLS = 96,
   SAMPLES = 24;
 
-// The end of the scale, and where the target is densest, as shares of the box's sides.
-export function rangeOfTarget(run) {
-  const { target, modes } = run.mission,
-    values = new Float32Array(SAMPLES ** 3);
+// The end of a target's scale, and where it is densest, as shares of the box's sides.
+export const rangeOf = (run, target) =>
+  (target.range ??= rangeOfTarget(target.coefficients, run.mission.modes));
+
+function rangeOfTarget(target, modes) {
+  const values = new Float32Array(SAMPLES ** 3);
   for (let l = 0; l < SAMPLES; l++) {
     values.set(
       picture(planeOf(target, modes, 2, (l + 0.5) / SAMPLES), modes[0], modes[1], SAMPLES, SAMPLES),
@@ -37,6 +39,7 @@ const alphaOf = (level, difference) => {
 export function sliceImage(run, { layer, row, colours }, axis, share) {
   const { modes } = run.mission,
     [a, b] = ACROSS_AND_UP[axis],
+    { full } = rangeOf(run, run.targetAt(row)),
     difference = layer === 'difference';
   const values = picture(
     planeOf(run.coefficients(layer, row), modes, axis, share),
@@ -50,7 +53,7 @@ export function sliceImage(run, { layer, row, colours }, axis, share) {
   const image = new ImageData(CELLS, CELLS),
     pixels = new Uint32Array(image.data.buffer);
   for (let i = 0; i < pixels.length; i++) {
-    const level = clamp(zero + (255 * values[i]) / run.range.full, 0, 255);
+    const level = clamp(zero + (255 * values[i]) / full, 0, 255);
     pixels[i] = ((table[level | 0] & 0xffffff) | (alphaOf(level, difference) << 24)) >>> 0;
   }
   return image;

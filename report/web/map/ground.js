@@ -36,11 +36,11 @@ function contour({ width, height }, [lx, ly], step, value, level) {
   return pieces;
 }
 
-const outlineOf = ({ density, size }, level) =>
+const outlineOf = (density, size, level) =>
   contour(density, size, Math.max(1, density.width >> 7), k => density.cells[k], level);
 
 // Where the target is 0, unless that is most of the domain: rectangles of cells, and their outline.
-function nowhereOf({ density, size: [lx, ly] }) {
+function nowhereOf(density, [lx, ly]) {
   const { width, height, cells } = density,
     rectangles = [];
   let zeros = 0;
@@ -63,7 +63,8 @@ function nowhereOf({ density, size: [lx, ly] }) {
 
 // The shading as a picture: target, achieved or difference.
 function shading(run, layer, row, colours) {
-  const { density, size } = run,
+  const { density } = run.targetAt(row),
+    { size } = run,
     achieved = layer !== 'target';
   const width = achieved
     ? Math.max(24, Math.round(size[0] >= size[1] ? 128 : (128 * size[0]) / size[1]))
@@ -166,27 +167,30 @@ function paintStations(g, run, view, colours) {
 }
 
 export function paintShading(g, run, view, { layer, row, colours }) {
-  const [lx, ly] = run.size;
-  run.outline ??= outlineOf(run, CONTOUR);
-  run.levels ??= LEVELS.map(level => outlineOf(run, level));
-  run.nowhere ??= nowhereOf(run);
+  const { size } = run,
+    [lx, ly] = size,
+    target = run.targetAt(row),
+    { density } = target;
+  target.outline ??= outlineOf(density, size, CONTOUR);
+  target.levels ??= LEVELS.map(level => outlineOf(density, size, level));
+  target.nowhere ??= nowhereOf(density, size);
   g.fillStyle = colours.bg;
   g.fillRect(0, 0, view.width, view.height);
   g.imageSmoothingEnabled = true;
   g.imageSmoothingQuality = 'high';
   g.drawImage(shading(run, layer, row, colours), view.px(0), view.py(ly), lx * view.scale, ly * view.scale);
-  hatch(g, run.nowhere.rectangles, view, colours);
+  hatch(g, target.nowhere.rectangles, view, colours);
   g.strokeStyle = colours.bad;
   g.lineWidth = 1.4;
   g.globalAlpha = 0.75;
-  stroke(g, view, run.nowhere.outline);
+  stroke(g, view, target.nowhere.outline);
   g.strokeStyle = colours.muted;
   g.lineWidth = 1;
   g.globalAlpha = 0.6;
   g.strokeRect(view.px(0), view.py(ly), lx * view.scale, ly * view.scale);
   g.strokeStyle = colours.ink;
   g.globalAlpha = layer === 'target' ? 0.2 : 0.38;
-  for (const pieces of layer === 'target' ? run.levels : [run.outline]) stroke(g, view, pieces);
+  for (const pieces of layer === 'target' ? target.levels : [target.outline]) stroke(g, view, pieces);
   g.globalAlpha = 1;
   paintWalls(g, run, view, colours);
   paintStations(g, run, view, colours);

@@ -90,7 +90,7 @@ export class Space {
       const key = [
         run.id,
         state.layer,
-        state.layer === 'target' ? '' : state.row,
+        state.layer === 'target' ? run.targetAt(state.row).id : state.row,
         state.colours.theme,
         at,
       ].join();

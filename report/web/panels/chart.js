@@ -90,6 +90,18 @@ function curve(g, s, t, from, to) {
   g.stroke();
 }
 
+// Vertical lines where φ² begins to compare with another target.
+function paintTargets(g, s, run, colours) {
+  g.strokeStyle = colours.accent;
+  g.lineWidth = 1;
+  g.globalAlpha = 0.8;
+  g.setLineDash([6, 3]);
+  for (const { kind, t } of run.marks)
+    if (kind === 'target' && t >= s.begin && t <= s.end) segment(g, s.x(t), s.room.top, s.x(t), s.bottom);
+  g.setLineDash([]);
+  g.globalAlpha = 1;
+}
+
 // `t` is the time of the page, `pointer` that under the pointer or −1.
 export function paintChart(g, run, { t: now, quantity, axis, colours, guide, pointer }, width, height) {
   const s = scalesOf(run, { quantity, axis }, width, height),
@@ -98,6 +110,7 @@ export function paintChart(g, run, { t: now, quantity, axis, colours, guide, poi
   paintRows(g, s, colours);
   paintColumns(g, s, colours, ' s');
   if (quantity === 'phi' && guide) paintGuide(g, s, run, colours);
+  if (quantity === 'phi') paintTargets(g, s, run, colours);
   const goal = run.mission.goal;
   if (quantity === 'phi' && goal > s.up.low && goal < s.up.high) {
     g.strokeStyle = colours.ok;
@@ -117,9 +130,12 @@ export function paintChart(g, run, { t: now, quantity, axis, colours, guide, poi
   curve(g, s, t, Math.max(0, i), t.length - 1);
   g.globalAlpha = 1;
   curve(g, s, t, 0, i);
-  for (const incident of run.incidents) {
+  for (const incident of run.marks) {
     g.fillStyle =
-      colours[{ silent: 'bad', gone: 'gone', late: 'warn', paused: 'muted' }[incident.kind] ?? 'ok'];
+      colours[
+        { silent: 'bad', gone: 'gone', late: 'warn', paused: 'muted', target: 'accent' }[incident.kind] ??
+          'ok'
+      ];
     g.fillRect(s.x(incident.t) - 1, bottom - 6, 2, 6);
   }
   const cursor = (at, colour, dashed) => {

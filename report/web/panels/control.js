@@ -150,7 +150,8 @@ function showRefusal(refused) {
 }
 
 // Shows the state of control that the server sends: {operator, acts, refused}.
-export function showControl({ silent, operator, acts, refused }) {
+export function showControl({ over, silent, operator, acts, refused }) {
+  if (over) return hideControl();
   if (silent) {
     complain('The process that gives the orders does not answer: no order is carried out.');
     return;

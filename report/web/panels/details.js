@@ -130,6 +130,15 @@ function table(columns, objects) {
   return box;
 }
 
+const AMENDMENT_COLUMNS = [
+  ['amendment', 'number', 'Its number in the mission'],
+  ['kind', 'kind', 'What it changes: a pause begins or ends, or the target is another one'],
+  ['from tick', 'from', 'The first tick of the world at which it holds'],
+  ['t [s]', 't', 'Mission time at that tick'],
+];
+const amendmentsOf = run =>
+  run.amendments.map(one => ({ ...one, t: +run.counted(one.from * run.mission.dt_s).toFixed(3) }));
+
 const objectsOf = value => (Array.isArray(value) ? value.filter(v => v && typeof v === 'object') : []);
 
 function refusals(summary) {
@@ -221,6 +230,7 @@ export function showDetails() {
       ),
     );
   }
+  if (run.amendments.length) parts.push(heading('Amendments'), table(AMENDMENT_COLUMNS, amendmentsOf(run)));
   parts.push(
     heading('Conventions'),
     element(

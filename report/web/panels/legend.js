@@ -3,17 +3,47 @@
 import { themeColours } from '../colours.js';
 import { S, ask, inSpace, shown } from './state.js';
 import { TAILS } from '../map/map.js';
+import { rangeOf } from '../data/slices.js';
 import { colourTeam } from './team.js';
 import { redraw } from './screen.js';
 import { $, put } from '../text.js';
 import { meaningOf } from './words.js';
 
+let written = -1; // the target for which the legend was written
+
+// The end of the scale: it is that of the target that holds.
+function fullAt(row) {
+  return inSpace() ? rangeOf(S.run, S.run.targetAt(row)).full : shown().targetAt(row).density.full;
+}
+
+// Says which target holds, if it is no more the plan's.
+function noteTarget({ number, from, known }) {
+  const t = number === null ? 0 : S.run.counted(from * S.run.mission.dt_s);
+  put(
+    $('targetText'),
+    `amendment ${number}: target since t = ${+t.toFixed(1)} s${known ? '' : ', not received'}`,
+  );
+  $('targetText').hidden = number === null;
+}
+
+// Follows the target that holds at the chosen time.
+export function followTarget() {
+  const { id } = S.run.targetAt(S.run.rowAt(S.t));
+  if (id !== written) showLegend();
+}
+
 export function showLegend() {
   const difference = S.layer === 'difference',
-    full = S.run ? (inSpace() ? S.run.range.full : shown().density.full) : 2,
+    row = S.run?.rowAt(S.t) ?? 0,
+    full = S.run ? fullAt(row) : 2,
     times = v => `${v.toFixed(v < 10 ? 1 : 0)}×`;
   put($('scaleLow'), difference ? `too little −${times(full / 2)}` : '0');
   put($('scaleHigh'), difference ? `+${times(full / 2)} too much` : `≥ ${times(full)} average`);
+  if (S.run) {
+    const target = S.run.targetAt(row);
+    written = target.id;
+    noteTarget(target);
+  }
   const ramp = $('ramp'),
     g = ramp.getContext('2d'),
     image = g.createImageData(ramp.width, 1),

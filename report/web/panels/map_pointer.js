@@ -60,7 +60,7 @@ function groundText(run, x, y) {
   if (inSpace()) return null;
   const [mx, my] = view.metres(x, y),
     [lx, ly] = run.size,
-    { width, height, cells, full } = run.density;
+    { width, height, cells, full } = run.targetAt(S.run.rowAt(S.t)).density;
   if (!(mx >= 0 && my >= 0 && mx <= lx && my <= ly)) return null;
   const i = Math.min(width - 1, Math.floor((mx / lx) * width)),
     j = Math.min(height - 1, Math.floor((1 - my / ly) * height));

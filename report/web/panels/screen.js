@@ -29,7 +29,8 @@ function context(id) {
 
 function drawShading() {
   const row = S.run.rowAt(S.t),
-    key = [S.layer, S.layer === 'target' ? '' : row, view.key, S.theme, S.run.id, S.view].join();
+    target = S.run.targetAt(row),
+    key = [S.layer, S.layer === 'target' ? '' : row, target.id, view.key, S.theme, S.run.id, S.view].join();
   if (key === shadingKey) return;
   shadingKey = key;
   paintShading(context('shading'), shown(), view, mapState());

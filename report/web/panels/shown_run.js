@@ -72,8 +72,10 @@ export const livePage = {
     listAgents();
     const { run } = S;
     $('slider').max = Math.max(0, run.rows - 1);
-    if (run.newIncidents) {
-      const last = run.incidents[run.incidents.length - 1];
+    const { marks } = run;
+    if (run.newIncidents || marks.length !== run.marksSpoken) {
+      const last = marks[marks.length - 1];
+      run.marksSpoken = marks.length;
       if (last) put($('spoken'), `${last.text} at ${last.t.toFixed(0)} s`);
       run.newIncidents = false;
       buildStrip();

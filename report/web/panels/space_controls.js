@@ -4,7 +4,7 @@ import { S, ask, inSpace } from './state.js';
 import { showLegend } from './legend.js';
 import { nameOf } from '../data/places.js';
 import { canTurn, layout } from './screen.js';
-import { rangeOfTarget } from '../data/slices.js';
+import { rangeOf } from '../data/slices.js';
 import { $, element, put } from '../text.js';
 
 const VIEWS = ['turn', 'xy', 'xz', 'yz'];
@@ -93,8 +93,7 @@ export function beginSpace(run) {
     S.view = 'xy';
     return;
   }
-  run.range = rangeOfTarget(run);
-  if (!begun) S.slices = [...(last = run.range.densest)];
+  if (!begun) S.slices = [...(last = rangeOf(run, run.targetAt(0)).densest)];
   showView(begun ? S.view : 'turn');
   begun = true;
 }

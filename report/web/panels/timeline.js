@@ -9,6 +9,7 @@ const COLOUR = {
   late: 'var(--warn)',
   ok: 'var(--ok)',
   paused: 'var(--muted)',
+  target: 'var(--accent)',
 };
 let last = 0;
 
@@ -64,9 +65,22 @@ export function faster(direction) {
 }
 
 export function jump(direction) {
-  const times = S.run.incidents.map(incident => incident.t);
+  const times = S.run.marks.map(mark => mark.t);
   const t = direction > 0 ? times.find(at => at > S.t + 1e-6) : times.findLast(at => at < S.t - 1e-6);
   if (t !== undefined) seek(t);
+}
+
+// "amendment 0: " if an amendment of that kind holds from `t` on.
+function numberAt(kind, t) {
+  const { amendments, mission } = S.run,
+    found = amendments.find(one => one.kind === kind && Math.abs(one.from * mission.dt_s - t) < 1e-6);
+  return found ? `amendment ${found.number}: ` : '';
+}
+
+function inWords({ kind, text, t, until }) {
+  const words = `${numberAt(kind === 'paused' ? 'pause' : kind, t)}${text} at ${t.toFixed(1)} s`,
+    resumed = kind === 'paused' && until ? numberAt('resume', until) : '';
+  return resumed ? `${words}, ${resumed}resumed at ${until.toFixed(1)} s` : words;
 }
 
 const narrow = () => innerWidth <= 820;
@@ -79,7 +93,7 @@ export function buildStrip() {
     at = t => (t / Math.max(run.end, run.step)) * width,
     groups = [];
   box.replaceChildren();
-  for (const incident of run.incidents) {
+  for (const incident of run.marks) {
     const group = groups[groups.length - 1];
     if (group && at(incident.t) - at(group[group.length - 1].t) < 16) group.push(incident);
     else groups.push([incident]);
@@ -101,7 +115,7 @@ export function buildStrip() {
     button.append(sign);
     button.style.left = `${at(first.t)}px`;
     button.style.color = COLOUR[first.kind];
-    button.title = group.map(incident => `${incident.text} at ${incident.t.toFixed(1)} s`).join(', ');
+    button.title = group.map(inWords).join(', ');
     button.setAttribute('aria-label', button.title);
     button.onclick = () => seek(first.t);
     box.append(button);

@@ -14,7 +14,12 @@ const TOP = {
   agents: 'Agents that report, of those that the mission has.',
 };
 const MAP = {
-  Target: 'Where the target wants the team to spend its time.',
+  Target:
+    'Where the target wants the team to spend its time. ' +
+    'While a team runs, the command “ergocast amend --target FILE” gives it another target.',
+  amendment:
+    'The target at the chosen time is no longer that of the plan. ' +
+    'Each moment counts against the target of its time.',
   Achieved: 'Where the team has spent its time up to the chosen time.',
   Difference: 'Where the team has been too little or too much: this is what φ² adds up.',
   scale: 'A colour shows how many times denser a place is than the average of the domain.',
@@ -114,9 +119,10 @@ function isShown(label) {
     'thick arrow': mission.body_radius_m > 0,
     'no-entry sign': mission.body_radius_m > 0 || mission.walls?.length > 0,
     pin: true,
+    amendment: S.run.targets.length > 1,
     square: mission.stations?.length > 0,
     'Radio range': mission.radio_range_m > 0,
-    'hatched area': S.run.nowhere?.rectangles.length > 0,
+    'hatched area': S.run.targetAt(S.run.rowAt(S.t)).nowhere?.rectangles.length > 0,
   };
   return needs[label] ?? true;
 }

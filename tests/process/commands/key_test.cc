@@ -150,8 +150,8 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
   for (int i = 0; i < 20; ++i) {
     outsider.send(Bus::kSwarm, stop("no key"));
     member.send(Bus::kSwarm, stop("an agent's key"));
-    outsider.send(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
-    member.send(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
+    outsider.send(Bus::kSwarm, Amend{.header = {run, kOperator, 1, 0, 0}});
+    member.send(Bus::kSwarm, Amend{.header = {run, kOperator, 1, 0, 0}});
   }
   EXPECT_TRUE(logs("coordinator", "a process sends without our --key-file"));
   ASSERT_TRUE(moves_on()) << printed();

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast amend`: gives a running team a new target, or lists what has changed in its mission.
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/operate/amend_order.h"
+#include "cli/operate/team_command.h"
+#include "cli/record/new_target.h"
+#include "cli/watch/find_run.h"
+#include "plan/amendment_list.h"
+#include "runtime/process/shipped_scenarios.h"
+#include "scenario/parse/override_options.h"
+#include "text/read_number.h"
+
+namespace ergocast::cli {
+namespace {
+
+/// Limit (Commands): time that `amend --at` counts from now [s]. Beyond it: it is refused.
+constexpr double kMostDelay_s = 1e7;
+
+struct AmendOptions : BusOptions {
+  std::filesystem::path target;
+  Overrides overrides;
+  double delay_s = 0;
+  bool dry_run = false, list = false;
+};
+
+class Amending : public TeamCommand {
+ public:
+  explicit Amending(const AmendOptions& options) : TeamCommand(options), options_(options) {}
+
+ private:
+  int act() override {
+    if (const auto code = choose_run()) return *code;
+    if (const auto code = know_mission()) return *code;
+    if (options_.list) return list();
+    const auto compiled = compile();
+    if (!compiled) return kExitBadInput;
+    const TargetChange change = target_change_of(*compiled);
+    // What has arrived meanwhile.
+    if (!listen()) return interrupted();
+    return options_.dry_run ? describe(change) : order(change);
+  }
+
+  const MonitoredRun& team() const { return runs_.begin()->second; }
+
+  /// Waits for the mission. If there is none, prints an error and returns the exit code.
+  std::optional<int> know_mission() {
+    const Instant since = now();
+    while (!team().is_running()) {
+      const OrderReport report = waiting_for_mission(team(), now() - since);
+      if (report.state == OrderReport::State::kFailed)
+        return report_error(kExitFailed, report.text);
+      if (!listen()) return interrupted();
+    }
+    return std::nullopt;
+  }
+
+  /// The new target; nothing if it has problems, which are printed.
+  std::optional<Scenario> compile() const {
+    const std::filesystem::path recorded = recorded_scenario();
+    if (options_.target.empty() && recorded.empty()) {
+      report_error(kExitBadInput,
+                   "--set changes the scenario in the run's directory, and that of run " +
+                       to_hex(team().run()) +
+                       " is not known on this host: name a scenario with --target");
+      return std::nullopt;
+    }
+    const auto& file = options_.target.empty() ? recorded : options_.target;
+    auto loaded = load_new_target(team().mission(), file, options_.overrides, recorded);
+    if (!loaded) {
+      report_error(kExitBadInput, loaded.error());
+      return std::nullopt;
+    }
+    for (const Problem& warning : loaded->warnings())
+      print_message("warning: " + to_string(warning));
+    return *std::move(loaded);
+  }
+
+  /// The scenario in the directory of this run; empty if this host does not know it.
+  std::filesystem::path recorded_scenario() const {
+    const std::vector<LiveRun> live = live_runs_named(team().run());
+    if (live.empty() || live.front().run_dir.empty()) return {};
+    return live.front().run_dir / "scenario.textproto";
+  }
+
+  Tick delay() const {
+    return static_cast<Tick>(std::llround(options_.delay_s / team().mission().timing.dt_s));
+  }
+
+  /// The earliest tick that a coordinator can name now, as far as this command knows.
+  Tick earliest() const {
+    const Timing& timing = team().mission().timing;
+    const Tick notice = timing.pace == Pace::kRealtime ? notice_ticks(timing) : 1;
+    return team().tick() + 1 + notice + delay();
+  }
+
+  int order(const TargetChange& change) {
+    AmendOrder order(change, delay(), now());
+    const auto report = obeyed(order);
+    if (!report) return interrupted();
+    if (report->state == OrderReport::State::kFailed)
+      return report_error(kExitFailed, report->text);
+    std::printf("%s\n", report->text.c_str());
+    return kExitDone;
+  }
+
+  /// Prints what the target would change.
+  int describe(const TargetChange& change) const {
+    const Amendments& list = team().amendments();
+    const double differs = share_that_differs(
+        team().mission(), target_now(team().mission(), list, team().tick()), change);
+    std::printf("no problems: target %s, %lld modes, %zu bytes\n",
+                to_hex(target_hash(change)).c_str(), static_cast<long long>(change.target.size()),
+                encode_target(change).size());
+    std::printf("about %.0f %% of its mass is elsewhere than in the target that holds now\n",
+                100 * differs);
+    std::printf("it would be amendment %d, at the earliest from %s on\n", list.named,
+                team().mission_time(earliest()).c_str());
+    std::printf("nothing was sent\n");
+    return kExitDone;
+  }
+
+  int list() const {
+    const Amendments& list = team().amendments();
+    if (list.named == 0) std::printf("no amendments: the mission is as its plan has it\n");
+    const auto hidden = list.named - static_cast<std::int32_t>(list.recent.size());
+    if (hidden > 0) std::printf("%d older amendments are not listed\n", hidden);
+    for (const Amendment& one : list.recent)
+      std::printf("%s\n", amendment_text(team(), one).c_str());
+    return kExitDone;
+  }
+
+  const AmendOptions& options_;
+};
+
+/// The seconds of "+10s".
+double delay_from(std::string text) {
+  const std::string written = text;
+  if (text.ends_with('s')) text.pop_back();
+  if (text.starts_with('+')) {
+    const auto value = read_number<double>(text.substr(1));
+    if (value && *value >= 0 && *value <= kMostDelay_s) return *value;
+  }
+  throw CLI::ValidationError(
+      "--at",
+      "\"" + written + "\" is no time from now on: write +10s for ten seconds of mission time");
+}
+
+void add_target_options(CLI::App& command, AmendOptions& options) {
+  command
+      .add_option("--target", options.target,
+                  "A scenario, of which only the target counts, or a map, GeoJSON or drawing")
+      ->transform(shipped_scenario())
+      ->type_name("FILE");
+  add_set_option(command, options.overrides.fields);
+  command.get_option("--set")->description(
+      "A field of the target and its value, such as target.uniform_weight=0.1; once for each "
+      "field. Without --target: of the scenario in the run's directory");
+  command
+      .add_option_function<std::string>(
+          "--at", [&options](const std::string& text) { options.delay_s = delay_from(text); },
+          "How much later than necessary it holds, in mission time: +10s")
+      ->type_name("+TIME");
+  command.add_flag("--dry-run", options.dry_run,
+                   "Only check the target and show what would change; send nothing");
+  auto* list = command.add_flag("--list", options.list, "List what has changed in the mission");
+  for (const char* other : {"--target", "--set", "--at", "--dry-run"})
+    list->excludes(command.get_option(other));
+}
+
+}  // namespace
+
+void add_amend(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("amend", "Give a running team a new target");
+  auto options = std::make_shared<AmendOptions>();
+  add_target_options(*command, *options);
+  add_bus_options(*command, *options);
+  describe_search(*command);
+  command->footer(
+      "From a tick that the coordinator names, all agents cover the new target. What they covered\n"
+      "before counts against the target of its time.\n"
+      "Exit codes: 0 the new target holds; 2 the target has problems, or several runs are found;\n"
+      "3 LCM cannot be used; 4 no team is found, or it was not seen to obey.");
+  command->callback([&action, options, command] {
+    const bool has_target = !options->target.empty() || !options->overrides.fields.empty();
+    if (!has_target && !options->list) throw CLI::RequiredError("--target, --set or --list");
+    action = [options, command] {
+      if (const auto code = find_run(*command, *options)) return *code;
+      return Amending(*options).carry_out();
+    };
+  });
+}
+
+}  // namespace ergocast::cli

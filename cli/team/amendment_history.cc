@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Replaces what it knows by a newer list from that list's first amendment on. A target is known by
+// its hash.
+#include "cli/team/amendment_history.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "report/page.h"
+
+namespace ergocast {
+
+void AmendmentHistory::note(const Amendments& list) {
+  for (const TargetChange& change : list.targets) keep(change);
+  const std::int32_t first = list.recent.empty() ? list.named : list.recent.front().number;
+  std::vector<Amendment> all = amendments_;
+  std::erase_if(all, [first](const Amendment& one) { return one.number >= first; });
+  all.insert(all.end(), list.recent.begin(), list.recent.end());
+  if (all.size() > kMost) all.erase(all.begin(), all.end() - kMost);
+  if (all == amendments_) return;
+  amendments_ = std::move(all);
+  ++changes_;
+}
+
+void AmendmentHistory::keep(const TargetChange& change) {
+  const std::uint64_t hash = target_hash(change);
+  if (std::ranges::find(targets_, hash, &Target::hash) != targets_.end()) return;
+  targets_.push_back({hash, page_target(change)});
+  ++targets_ever_;
+  if (targets_.size() > kMostTargets) targets_.pop_front();
+}
+
+void AmendmentHistory::add_new(Cursor& cursor, nlohmann::ordered_json& frame) const {
+  if (cursor.changes == changes_) return;
+  auto& targets = frame["targets"] = nlohmann::ordered_json::object();
+  const auto fresh = std::min<std::uint64_t>(targets_ever_ - cursor.targets, targets_.size());
+  for (auto at = targets_.end() - static_cast<std::ptrdiff_t>(fresh); at != targets_.end(); ++at)
+    targets[page_target_name(at->hash)] = at->coefficients;
+  frame["amendments"] = page_amendments(amendments_);
+  cursor = {changes_, targets_ever_};
+}
+
+}  // namespace ergocast

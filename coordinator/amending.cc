@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Collects what an operator wants, and names it at a tick that all agents learn in time.
+#include "coordinator/amending.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "plan/amendment_list.h"
+
+namespace ergocast {
+namespace {
+
+/// Operators whose parts are collected at once.
+/// Limit (Team): operators whose targets a coordinator collects at once. Beyond it: the parts of
+/// the one that asked first are forgotten; it repeats them.
+constexpr std::size_t kMostOperators = 4;
+
+/// Real time: the tick after the notice. It counts from the newest tick that the world can be at.
+/// Nothing while the world is silent, because that tick is then unknown; the operator asks again.
+std::optional<Tick> tick_with_notice(const Timing& timing, const TickWatch& ticks,
+                                     const SignsOfLife& signs) {
+  if (!ticks.world_heard() || signs.me.silent(kWorld, signs.now)) return std::nullopt;
+  const double since_s = std::chrono::duration<double>(signs.now - ticks.since()).count();
+  const auto since = static_cast<Tick>(since_s * timing.realtime_factor / timing.dt_s);
+  return ticks.newest() + 1 + since + notice_ticks(timing);
+}
+
+}  // namespace
+
+void Amending::replace(Amendments list) {
+  list_ = std::move(list);
+  bytes_ = encode_amendments(list_);
+}
+
+void Amending::plan(Amendments list) {
+  constexpr std::ptrdiff_t kListed = 2;
+  const auto& all = list.targets;
+  if (std::ssize(all) > kListed) {
+    planned_.assign(all.begin() + kListed, all.end());
+    list.targets.resize(kListed);
+  }
+  replace(std::move(list));
+}
+
+void Amending::adopt(const Amendments& known) {
+  if (known.named > list_.named) replace(known);
+}
+
+/// Whether the next amendment may be of this kind and number.
+bool Amending::may_name(const Amend& amend, const TickWatch& ticks) const {
+  if (stand_by_revision_ >= 0 || amend.number != list_.named) return false;
+  if (list_.named >= kMaxAmendments || !planned_.empty()) return false;
+  if (amend.kind == AmendmentKind::kPause)
+    return !is_open(list_.holds) && list_.holds.size() < kMaxHolds;
+  if (amend.kind == AmendmentKind::kResume) return is_open(list_.holds);
+  // Only two targets travel: the one that holds, and the next.
+  return list_.targets.empty() || list_.targets.back().from <= ticks.newest();
+}
+
+/// The content of an AMEND whose last part has arrived.
+std::optional<std::vector<std::byte>> Amending::completed(const Amend& amend) {
+  const Incarnation from = amend.header.incarnation;
+  const auto is_from = [from](const Collected& one) { return one.operator_incarnation == from; };
+  auto found = std::ranges::find_if(collected_, is_from);
+  if (found == collected_.end()) {
+    if (collected_.size() == kMostOperators) collected_.erase(collected_.begin());
+    found = collected_.insert(collected_.end(), Collected{from});
+  }
+  const auto count = static_cast<std::size_t>(amend.parts);
+  if (found->number != amend.number || found->parts.size() != count)
+    *found = {from, amend.number, decltype(found->parts)(count)};
+  found->parts[static_cast<std::size_t>(amend.part)] = amend.content;
+  std::vector<std::byte> content;
+  for (const auto& part : found->parts) {
+    if (!part) return std::nullopt;
+    content.insert(content.end(), part->begin(), part->end());
+  }
+  collected_.erase(found);
+  return content;
+}
+
+void Amending::obey(const Amend& amend, const Mission& mission, const TickWatch& ticks,
+                    const SignsOfLife& signs, Announcement& announcement) {
+  const Tick end = tick_after(list_.holds, mission.timing.tick_count);
+  if (!may_name(amend, ticks) || ticks.newest() + amend.delay_ticks >= end) return;
+  Wish wish{.kind = amend.kind, .delay_ticks = amend.delay_ticks};
+  if (wish.kind == AmendmentKind::kTarget) {
+    const auto content = completed(amend);
+    auto target = content ? decode_target(*content, mission) : std::nullopt;
+    if (!target) return;
+    wish.target = *std::move(target);
+  }
+  if (mission.timing.pace == Pace::kRealtime) {
+    const auto tick = tick_with_notice(mission.timing, ticks, signs);
+    if (tick) name(*tick, std::move(wish), announcement);
+    return;
+  }
+  wish_ = std::move(wish);
+  stand_by(announcement);
+}
+
+void Amending::stand_by(Announcement& announcement) {
+  announcement.change();
+  stand_by_revision_ = announcement.revision();
+}
+
+void Amending::note_world(const TickWatch& ticks, Announcement& announcement) {
+  if (stand_by_revision_ < 0) {
+    const bool last_holds = !planned_.empty() && list_.targets.back().from <= ticks.newest();
+    if (last_holds) stand_by(announcement);
+    return;
+  }
+  if (ticks.world_revision() < stand_by_revision_) return;
+  if (!wish_) return list_next(announcement);
+  // The world goes on once it knows the named tick. No agent answers the next tick before that.
+  name(ticks.tick() + 2, *std::exchange(wish_, std::nullopt), announcement);
+}
+
+/// Lists the next planned target in the place of one that holds no longer.
+void Amending::list_next(Announcement& announcement) {
+  stand_by_revision_ = -1;
+  list_.targets.erase(list_.targets.begin());
+  list_.targets.push_back(std::move(planned_.front()));
+  planned_.pop_front();
+  bytes_ = encode_amendments(list_);
+  announcement.change();
+}
+
+void Amending::name(Tick tick, Wish wish, Announcement& announcement) {
+  stand_by_revision_ = -1;
+  tick += wish.delay_ticks;
+  if (wish.kind == AmendmentKind::kTarget) {
+    name_target(list_, tick, std::move(wish.target));
+  } else {
+    name_pause(list_, tick);
+  }
+  bytes_ = encode_amendments(list_);
+  announcement.change();
+}
+
+}  // namespace ergocast

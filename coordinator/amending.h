@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Names the amendments of the mission: pauses, and new targets, each with the tick from which it
+// holds (core/mission/amendments.h).
+//
+// All agents must change at the same tick. In lockstep the world first stands by: it stays at a
+// tick until it knows which one is named. In real time the team gets notice.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "coordinator/announcement.h"
+#include "coordinator/members.h"
+#include "coordinator/tick_watch.h"
+#include "core/mission/amendments.h"
+#include "core/mission/mission.h"
+#include "team/messages.h"
+
+namespace ergocast {
+
+class Amending {
+ public:
+  const Amendments& list() const { return list_; }
+  /// The list as MISSION carries it.
+  const std::vector<std::byte>& bytes() const { return bytes_; }
+  /// See MissionPart.
+  std::int64_t stand_by_revision() const { return stand_by_revision_; }
+
+  /// The amendments that are known from the beginning. In lockstep there may be any number of
+  /// targets: the list has two at a time, as if an operator had sent each once the last one holds.
+  /// @pre are_amendments(list)
+  void plan(Amendments list);
+  /// Takes in the list of another coordinator, if it has named more amendments than we know. Agents
+  /// may have gone by them. @pre are_amendments(known)
+  void adopt(const Amendments& known);
+  /// Obeys a wish of the operator, once all its parts have arrived. It has no effect if it does not
+  /// follow the newest amendment, or another one waits for its tick, or the list is full, or the
+  /// content is no target of `mission`, or it would hold after the mission's end, or the tick of
+  /// the world is unknown in real time.
+  /// @pre the mission runs
+  void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks,
+            const SignsOfLife& signs, Announcement& announcement);
+
+  /// Lockstep: names a tick, or lists the next planned target, if the world stands by.
+  void note_world(const TickWatch& ticks, Announcement& announcement);
+
+ private:
+  /// What an operator wants.
+  struct Wish {
+    AmendmentKind kind = AmendmentKind::kPause;
+    Tick delay_ticks = 0;
+    TargetChange target{};  // of kTarget
+  };
+  /// The parts of one AMEND that have arrived.
+  struct Collected {
+    Incarnation operator_incarnation = 0;
+    std::int32_t number = -1;
+    std::vector<std::optional<std::vector<std::byte>>> parts{};
+  };
+
+  bool may_name(const Amend& amend, const TickWatch& ticks) const;
+  std::optional<std::vector<std::byte>> completed(const Amend& amend);
+  void stand_by(Announcement& announcement);
+  void name(Tick tick, Wish wish, Announcement& announcement);
+  void list_next(Announcement& announcement);
+  void replace(Amendments list);
+
+  Amendments list_;
+  std::vector<std::byte> bytes_;         // of list_
+  std::vector<Collected> collected_;     // of the operators that asked last
+  std::int64_t stand_by_revision_ = -1;  // lockstep: the tick of wish_ is to be named
+  std::optional<Wish> wish_;
+  std::deque<TargetChange> planned_;  // the targets that the list does not have yet
+};
+
+}  // namespace ergocast

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Appends to a mission's list of amendments, and checks lists that have arrived.
+#include "core/mission/amendments.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "core/base/require.h"
+
+namespace ergocast {
+namespace {
+
+/// |∫ f ρ| ≤ 1, up to the rounding of the quadrature.
+bool are_target(const Coefficients& numbers, int mode_count) {
+  return numbers.size() == mode_count && numbers[0] == 1 &&
+         std::ranges::all_of(numbers, [](double value) { return std::abs(value) <= 1 + 1e-9; });
+}
+
+bool equal(const Coefficients& a, const Coefficients& b) {
+  return a.size() == b.size() && std::ranges::equal(a, b);
+}
+
+void name(Amendments& list, Amendment amendment) {
+  ERGOCAST_REQUIRE(list.named < kMaxAmendments);
+  amendment.number = list.named++;
+  if (list.recent.size() == kMaxRecentAmendments) list.recent.erase(list.recent.begin());
+  list.recent.push_back(amendment);
+}
+
+/// Whether numbers ascend below `named`, and ticks are possible.
+bool ascend(const auto& entries, std::int32_t named) {
+  std::int32_t next = 0;
+  for (const auto& entry : entries) {
+    if (entry.number < next || entry.number >= named || entry.from < 0) return false;
+    next = entry.number + 1;
+  }
+  return true;
+}
+
+bool targets_follow(std::span<const TargetChange> targets) {
+  for (std::size_t i = 1; i < targets.size(); ++i)
+    if (targets[i].from <= targets[i - 1].from) return false;
+  return true;
+}
+
+}  // namespace
+
+const char* to_string(AmendmentKind kind) {
+  constexpr const char* kNames[] = {"pause", "resume", "target"};
+  return kNames[static_cast<int>(kind)];
+}
+
+bool TargetChange::operator==(const TargetChange& other) const {
+  return number == other.number && from == other.from && equal(target, other.target) &&
+         equal(cosine, other.cosine);
+}
+
+std::uint64_t target_hash(const TargetChange& change) {
+  std::uint64_t hash = 1;
+  for (const Coefficients* numbers : {&change.target, &change.cosine}) {
+    for (const double value : *numbers) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x9e3779b97f4a7c15;
+      hash ^= hash >> 29;
+    }
+  }
+  return hash;
+}
+
+bool is_target(const Coefficients& target, const Coefficients& cosine, const Mission& mission) {
+  const int count = mission.basis.mode_count();
+  if (!are_target(target, count)) return false;
+  return mission.basis.free_domain ? are_target(cosine, count) : cosine.size() == 0;
+}
+
+bool are_amendments(const Amendments& list, const Mission& mission) {
+  return list.named >= 0 && list.named <= kMaxAmendments && are_holds(list.holds) &&
+         named_changes(list.holds) <= list.named && list.recent.size() <= kMaxRecentAmendments &&
+         ascend(list.recent, list.named) && ascend(list.targets, list.named) &&
+         targets_follow(list.targets) &&
+         std::ranges::all_of(list.targets, [&mission](const TargetChange& change) {
+           return is_target(change.target, change.cosine, mission);
+         });
+}
+
+Amendments only_pauses(std::vector<Hold> holds) {
+  Amendments list;
+  for (const Hold& hold : holds) {
+    name(list, {.kind = AmendmentKind::kPause, .from = hold.from});
+    if (!hold.open()) name(list, {.kind = AmendmentKind::kResume, .from = hold.until});
+  }
+  list.holds = std::move(holds);
+  return list;
+}
+
+const TargetChange* target_at(std::span<const TargetChange> targets, Tick tick) {
+  const auto found =
+      std::find_if(targets.rbegin(), targets.rend(),
+                   [tick](const TargetChange& change) { return change.from <= tick; });
+  return found == targets.rend() ? nullptr : &*found;
+}
+
+Tick notice_ticks(const Timing& timing) {
+  constexpr double kNotice_s = 2;
+  if (timing.pace == Pace::kLockstep) return 0;
+  return static_cast<Tick>(kNotice_s * timing.realtime_factor / timing.dt_s);
+}
+
+void name_pause(Amendments& list, Tick tick) {
+  if (is_open(list.holds)) {
+    // Real time: the operator may resume before the hold has begun.
+    Hold& last = list.holds.back();
+    last.until = std::max(tick, last.from + 1);
+    return name(list, {.kind = AmendmentKind::kResume, .from = last.until});
+  }
+  ERGOCAST_REQUIRE(list.holds.size() < kMaxHolds);
+  list.holds.push_back({list.holds.empty() ? tick : std::max(tick, list.holds.back().until)});
+  name(list, {.kind = AmendmentKind::kPause, .from = list.holds.back().from});
+}
+
+void name_target(Amendments& list, Tick tick, TargetChange change) {
+  change.from = list.targets.empty() ? tick : std::max(tick, list.targets.back().from + 1);
+  change.number = list.named;
+  name(list, {.kind = AmendmentKind::kTarget, .from = change.from, .hash = target_hash(change)});
+  // The second newest holds until the newest one does.
+  if (list.targets.size() > 1) list.targets.erase(list.targets.begin(), list.targets.end() - 1);
+  list.targets.push_back(std::move(change));
+}
+
+}  // namespace ergocast

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What has changed in a mission since its plan: pauses, and new targets.
+//
+// The coordinator names each amendment: it gives it the next number, and the world's tick from
+// which it holds. All processes learn of an amendment before its tick, so all change at the same
+// tick. The list of one coordinator only grows.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/basis/basis.h"
+#include "core/mission/hold.h"
+#include "core/mission/mission.h"
+
+namespace ergocast {
+
+enum class AmendmentKind {
+  kPause,   ///< the mission is paused: a Hold begins
+  kResume,  ///< the mission goes on: the last Hold ends
+  kTarget,  ///< the team covers another target
+};
+const char* to_string(AmendmentKind kind);
+
+/// An amendment, as the list keeps it for people.
+struct Amendment {
+  std::int32_t number = 0;  ///< from 0
+  AmendmentKind kind = AmendmentKind::kPause;
+  Tick from = 0;           ///< the world's tick from which it holds
+  std::uint64_t hash = 0;  ///< kTarget: target_hash(); else 0
+
+  bool operator==(const Amendment&) const = default;
+};
+
+/// A target that replaces the plan's from a tick on.
+struct TargetChange {
+  std::int32_t number = 0;  ///< of the amendment
+  Tick from = 0;            ///< the world's tick from which it holds
+  Coefficients target;      ///< μ in the mission's basis
+  Coefficients cosine;      ///< with Basis::free_domain: μ in the basis (2), else empty
+
+  /// μ in the basis (2), in any mission.
+  const Coefficients& in_cosines() const { return cosine.size() > 0 ? cosine : target; }
+  bool operator==(const TargetChange& other) const;
+};
+
+/// A number that identifies a target.
+std::uint64_t target_hash(const TargetChange& change);
+
+struct Amendments {
+  /// How many amendments have been named: the number of the next one.
+  std::int32_t named = 0;
+  /// The newest kMaxRecentAmendments of all kinds, ascending by number.
+  std::vector<Amendment> recent;
+  /// All pauses.
+  std::vector<Hold> holds;
+  /// The newest targets, ascending by number. A coordinator keeps the two newest: no other one can
+  /// hold at the present tick.
+  std::vector<TargetChange> targets;
+
+  bool empty() const { return named == 0 && holds.empty() && targets.empty(); }
+  bool operator==(const Amendments&) const = default;
+};
+
+/// Limit (Team): amendments of a mission that its list names. Beyond it: the oldest are not listed;
+/// they still hold.
+inline constexpr std::size_t kMaxRecentAmendments = 32;
+/// Limit (Team): amendments of a mission. Beyond it: `ergocast amend` and `ergocast pause` end with
+/// code 4.
+inline constexpr std::int32_t kMaxAmendments = 1'000'000;
+
+/// Whether a coordinator can have named this list for `mission`: are_holds(), numbers and ticks
+/// ascend, and each target is one of the mission's basis within limits (is_target()).
+bool are_amendments(const Amendments& list, const Mission& mission);
+
+/// Whether the numbers are a target of `mission`: as many as its basis has modes, finite, |μ| ≤ 1
+/// up to rounding, and μ_00 = 1; and so in the basis (2), where the mission has one.
+bool is_target(const Coefficients& target, const Coefficients& cosine, const Mission& mission);
+
+/// The list of a mission that had only these pauses. @pre are_holds(holds)
+Amendments only_pauses(std::vector<Hold> holds);
+
+/// The target that holds at a tick of the world; null: the plan's.
+const TargetChange* target_at(std::span<const TargetChange> targets, Tick tick);
+
+// ---- for a coordinator ----
+
+/// How many ticks before it takes effect a change is announced. Lockstep needs no notice: an agent
+/// answers a tick only once it knows whether that tick counts.
+Tick notice_ticks(const Timing& timing);
+
+/// Names the next amendment, which pauses the mission or, if it is paused, resumes it.
+/// @pre the list has room: named < kMaxAmendments, and holds.size() < kMaxHolds for a pause
+void name_pause(Amendments& list, Tick tick);
+/// Names the next amendment, a target. Its number and tick are set here.
+void name_target(Amendments& list, Tick tick, TargetChange change);
+
+}  // namespace ergocast

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Replaces what a newer list replaces.
+#include "lab/target_memory.h"
+
+#include "core/law/target_shift.h"
+#include "core/mission/hold.h"
+
+namespace ergocast::lab {
+
+void TargetMemory::note(const Mission& mission, const Amendments& list) {
+  if (list.targets.empty()) return;
+  const TargetChange& first = list.targets.front();
+  std::erase_if(targets_, [&](const auto& known) {
+    return known.first >= first.number ||
+           known.second.first >= counted_ticks(list.holds, first.from);
+  });
+  for (const TargetChange& change : list.targets) {
+    targets_[change.number] = {counted_ticks(list.holds, change.from),
+                               change.target - mission.target_coefficients};
+  }
+  while (targets_.size() > TargetShift::kMostChanges) targets_.erase(targets_.begin());
+}
+
+Coefficients TargetMemory::shift_s(const Mission& mission, Tick counted) const {
+  Coefficients shift = Coefficients::Zero(mission.basis.mode_count());
+  for (const auto& [number, target] : targets_)
+    if (target.first <= counted) shift = mission.timing.dt_s * target.second;
+  return shift;
+}
+
+}  // namespace ergocast::lab

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes one amendment a line, and checks each one that is read.
+#include "logger/amendments_file.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "logger/json_file.h"
+#include "logger/run_record.h"
+
+namespace ergocast {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Limit (Record): length of `amendments.json` [bytes]: some thousand targets of 256 numbers.
+/// Beyond it: `verify`, `report` and other commands refuse the record.
+constexpr std::size_t kMostAmendmentBytes = std::size_t{64} << 20;
+/// Limit (Record): values in `amendments.json`. Beyond it: `verify`, `report` and other commands
+/// refuse the record.
+constexpr std::size_t kMostAmendmentValues = 2'500'000;
+
+Json without_numbers(const ReceivedAmendment& one, double dt_s) {
+  const Amendment& amendment = one.amendment;
+  Json json = {{"number", amendment.number},
+               {"kind", to_string(amendment.kind)},
+               {"from_tick", amendment.from},
+               {"t_s", static_cast<double>(amendment.from) * dt_s}};
+  if (amendment.kind == AmendmentKind::kTarget) json["hash"] = to_hex(amendment.hash);
+  if (one.is_void) json["void"] = true;
+  return json;
+}
+
+Json list_of(const Coefficients& numbers) {
+  return std::vector<double>(numbers.begin(), numbers.end());
+}
+
+// ---- reading ----
+
+/// No mission has so many ticks.
+constexpr Tick kMostTicks = Tick{1} << 53;
+
+/// The value of a key; null if there is none.
+const Json& value_in(const Json& object, const char* key) {
+  static const Json null;
+  const auto found = object.find(key);
+  return found == object.end() ? null : *found;
+}
+
+std::optional<std::int64_t> count_in(const Json& object, const char* key, std::int64_t most) {
+  const Json& value = value_in(object, key);
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > static_cast<std::uint64_t>(most))
+    return std::nullopt;
+  return value.get<std::int64_t>();
+}
+
+std::optional<AmendmentKind> kind_in(const Json& object) {
+  constexpr std::array kKinds{AmendmentKind::kPause, AmendmentKind::kResume,
+                              AmendmentKind::kTarget};
+  const Json& name = value_in(object, "kind");
+  const auto found =
+      std::ranges::find_if(kKinds, [&](AmendmentKind kind) { return name == to_string(kind); });
+  return found == kKinds.end() ? std::nullopt : std::optional(*found);
+}
+
+/// A number that to_hex() wrote.
+std::optional<std::uint64_t> hash_in(const Json& object) {
+  const Json& hash = value_in(object, "hash");
+  if (!hash.is_string()) return std::nullopt;
+  const auto& text = hash.get_ref<const std::string&>();
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, 16);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole ? std::optional(number) : std::nullopt;
+}
+
+/// The numbers of a list; nothing if it is none, or has other values.
+std::optional<Coefficients> numbers_in(const Json& list) {
+  if (!list.is_array()) return std::nullopt;
+  Coefficients numbers(static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!list[i].is_number()) return std::nullopt;
+    numbers[static_cast<Eigen::Index>(i)] = list[i].get<double>();
+  }
+  return numbers;
+}
+
+/// The target of an entry that has its numbers.
+Result<TargetChange> target_in(const Json& entry, const Amendment& amendment,
+                               const Mission& mission) {
+  static const Json kNone = Json::array();
+  auto target = numbers_in(value_in(entry, "target"));
+  auto cosine =
+      numbers_in(entry.contains("cosine_target") ? value_in(entry, "cosine_target") : kNone);
+  if (!target || !cosine || !is_target(*target, *cosine, mission))
+    return failure("its target is none of the mission of " + std::string(kPlanFile));
+  TargetChange change{amendment.number, amendment.from, *std::move(target), *std::move(cosine)};
+  if (target_hash(change) != amendment.hash) return failure("its target has another hash");
+  return change;
+}
+
+Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission) {
+  const std::string none = "is not an amendment";
+  if (!entry.is_object()) return failure(none);
+  const auto number = count_in(entry, "number", kMaxAmendments - 1);
+  const auto from = count_in(entry, "from_tick", kMostTicks);
+  const auto kind = kind_in(entry);
+  if (!number || !from || !kind) return failure(none);
+  ReceivedAmendment one{{static_cast<std::int32_t>(*number), *kind, *from, 0}, {}, false};
+  one.is_void = value_in(entry, "void") == true;
+  if (*kind != AmendmentKind::kTarget) return one;
+  const auto hash = hash_in(entry);
+  if (!hash) return failure("its target has no hash");
+  one.amendment.hash = *hash;
+  if (!entry.contains("target")) return one;
+  auto target = target_in(entry, one.amendment, mission);
+  if (!target) return failure(target.error());
+  one.target = *std::move(target);
+  return one;
+}
+
+/// Reads a list of holds_json(); nothing if its content is impossible.
+std::optional<std::vector<Hold>> holds_in(const Json& list) {
+  std::vector<Hold> holds;
+  if (!list.is_array()) return std::nullopt;
+  for (const Json& pair : list) {
+    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer()) return std::nullopt;
+    if (!pair[1].is_null() && !pair[1].is_number_integer()) return std::nullopt;
+    holds.push_back({pair[0].get<Tick>(), pair[1].is_null() ? -1 : pair[1].get<Tick>()});
+  }
+  return are_holds(holds) ? std::optional(std::move(holds)) : std::nullopt;
+}
+
+/// Whether numbers ascend, and of those that are not void also the ticks of targets.
+bool follow(const std::vector<ReceivedAmendment>& all) {
+  if (!std::ranges::is_sorted(all, {}, [](const auto& one) { return one.amendment.number; }))
+    return false;
+  std::int32_t number = -1;
+  Tick target_from = -1;
+  for (const auto& [amendment, target, is_void] : all) {
+    if (is_void) continue;
+    if (amendment.number == std::exchange(number, amendment.number)) return false;
+    if (amendment.kind != AmendmentKind::kTarget) continue;
+    if (amendment.from <= std::exchange(target_from, amendment.from)) return false;
+  }
+  return true;
+}
+
+Result<ReceivedAmendments> all_in(const Json& content, const Mission& mission) {
+  if (!content.is_object()) return failure("is not an object");
+  const Json& entries = value_in(content, "amendments");
+  auto holds = holds_in(value_in(content, "holds"));
+  if (!holds || !entries.is_array()) return failure("has no list of amendments, or no holds");
+  std::vector<ReceivedAmendment> all;
+  for (const Json& entry : entries) {
+    auto one = amendment_in(entry, mission);
+    if (!one) return failure("entry " + std::to_string(all.size()) + ": " + one.error());
+    all.push_back(*std::move(one));
+  }
+  if (!follow(all)) return failure("its amendments are not in their order");
+  return ReceivedAmendments(std::move(all), *std::move(holds));
+}
+
+}  // namespace
+
+Json holds_json(std::span<const Hold> holds) {
+  Json list = Json::array();
+  for (const Hold& hold : holds)
+    list.push_back({hold.from, hold.open() ? Json(nullptr) : Json(hold.until)});
+  return list;
+}
+
+Json amendments_json(const ReceivedAmendments& heard, double dt_s) {
+  Json list = Json::array();
+  for (const ReceivedAmendment& one : heard.all()) list.push_back(without_numbers(one, dt_s));
+  return list;
+}
+
+std::string amendments_text(const ReceivedAmendments& heard, double dt_s) {
+  std::string text = "{\"holds\": " + holds_json(heard.holds()).dump() + ",\n\"amendments\": [";
+  const char* separator = "\n";
+  for (const ReceivedAmendment& one : heard.all()) {
+    Json json = without_numbers(one, dt_s);
+    if (one.target) {
+      json["target"] = list_of(one.target->target);
+      if (one.target->cosine.size() > 0) json["cosine_target"] = list_of(one.target->cosine);
+    }
+    text += std::exchange(separator, ",\n") + json.dump();
+  }
+  return text + "]}\n";
+}
+
+Result<ReceivedAmendments> recorded_amendments(const std::filesystem::path& run_dir,
+                                               const Json& summary, const Mission& mission) {
+  const auto file = run_dir / kAmendmentsFile;
+  const auto content = read_json(file, {kMostAmendmentBytes, kMostAmendmentValues});
+  if (!content) return failure(content.error());
+  if (content->is_null()) {
+    auto holds = summary.is_object() ? holds_in(value_in(summary, "holds")) : std::nullopt;
+    ReceivedAmendments heard;
+    if (holds) heard.note(only_pauses(*std::move(holds)));
+    return heard;
+  }
+  auto heard = all_in(*content, mission);
+  if (!heard) return failure(file.string() + ": " + heard.error() + ": " + kCopyAgainOrRemove);
+  return heard;
+}
+
+std::optional<std::string> missing_target(const std::filesystem::path& run_dir, const Json& summary,
+                                          const ReceivedAmendments& heard) {
+  if (const ReceivedAmendment* const unknown = heard.unknown_target())
+    return "its logger did not receive the target of amendment " +
+           std::to_string(unknown->amendment.number);
+  const Json listed = summary.is_object() ? value_in(summary, "amendments") : Json();
+  const bool names_targets = listed.is_array() && std::ranges::any_of(listed, [](const Json& one) {
+                               return one.is_object() && kind_in(one) == AmendmentKind::kTarget;
+                             });
+  std::error_code ignored;
+  if (!names_targets || std::filesystem::exists(run_dir / kAmendmentsFile, ignored))
+    return std::nullopt;
+  return std::string(kAmendmentsFile) +
+         " is missing, which has the targets that its summary names; copy it from where the run "
+         "was recorded";
+}
+
+}  // namespace ergocast

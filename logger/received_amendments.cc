@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares each list with the amendments of former lists.
+#include "logger/received_amendments.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ergocast {
+
+ReceivedAmendments::ReceivedAmendments(std::vector<ReceivedAmendment> all, std::vector<Hold> holds)
+    : all_(std::move(all)), holds_(std::move(holds)) {}
+
+void ReceivedAmendments::note(const Amendments& list) {
+  if (list == newest_) return;
+  newest_ = list;
+  holds_ = list.holds;
+  compare(list);
+  for (const Amendment& amendment : list.recent) add(amendment);
+  for (const TargetChange& change : list.targets) {
+    const Amendment amendment{change.number, AmendmentKind::kTarget, change.from,
+                              target_hash(change)};
+    add(amendment);  // it may be older than those that the list names
+    const auto heard = std::ranges::find_if(
+        all_, [&](const ReceivedAmendment& one) { return one.amendment == amendment; });
+    if (!heard->target) heard->target = change;
+  }
+}
+
+/// Marks what the list lacks. It names its newest amendments; older ones are as they were.
+void ReceivedAmendments::compare(const Amendments& list) {
+  const std::int32_t first = list.recent.empty() ? list.named : list.recent.front().number;
+  for (ReceivedAmendment& one : all_) {
+    if (one.amendment.number < first) continue;
+    one.is_void = std::ranges::find(list.recent, one.amendment) == list.recent.end();
+  }
+}
+
+/// Adds an amendment that is not known. Others of its number are then void.
+void ReceivedAmendments::add(const Amendment& amendment) {
+  const auto precedes = [](const ReceivedAmendment& one, const ReceivedAmendment& other) {
+    return one.amendment.number < other.amendment.number;
+  };
+  const auto [begin, end] =
+      std::equal_range(all_.begin(), all_.end(), ReceivedAmendment{amendment}, precedes);
+  std::for_each(begin, end,
+                [&](ReceivedAmendment& one) { one.is_void = one.amendment != amendment; });
+  const bool known = std::any_of(begin, end, [](const auto& one) { return !one.is_void; });
+  if (!known) all_.insert(end, ReceivedAmendment{amendment});
+}
+
+const ReceivedAmendment* ReceivedAmendments::target_at(Tick tick) const {
+  const auto holds = [tick](const ReceivedAmendment& one) {
+    return one.target && !one.is_void && one.amendment.from <= tick;
+  };
+  const auto found = std::find_if(all_.rbegin(), all_.rend(), holds);
+  return found == all_.rend() ? nullptr : &*found;
+}
+
+const ReceivedAmendment* ReceivedAmendments::unknown_target() const {
+  const auto found = std::ranges::find_if(all_, [](const ReceivedAmendment& one) {
+    return one.amendment.kind == AmendmentKind::kTarget && !one.target && !one.is_void;
+  });
+  return found == all_.end() ? nullptr : &*found;
+}
+
+Amendments ReceivedAmendments::list() const {
+  Amendments list;
+  list.holds = holds_;
+  for (const ReceivedAmendment& one : all_) {
+    if (one.is_void) continue;
+    list.named = one.amendment.number + 1;
+    list.recent.push_back(one.amendment);
+    if (one.target) list.targets.push_back(*one.target);
+  }
+  list.named = std::max({list.named, named_changes(holds_)});
+  const auto spare = std::max<std::ptrdiff_t>(
+      0, std::ssize(list.recent) - static_cast<std::ptrdiff_t>(kMaxRecentAmendments));
+  list.recent.erase(list.recent.begin(), list.recent.begin() + spare);
+  return list;
+}
+
+}  // namespace ergocast

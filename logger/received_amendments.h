@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All amendments of a mission that its recorder has received.
+//
+// The list that MISSION carries names the newest amendments, and has the numbers of two targets. A
+// record needs all: rows are written some ticks after they are known, and read years later.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/mission/amendments.h"
+
+namespace ergocast {
+
+struct ReceivedAmendment {
+  Amendment amendment;
+  /// kTarget: its numbers; nothing if no list that was received has them.
+  std::optional<TargetChange> target{};
+  /// Whether a later list lacks it: its coordinator stopped before another process knew of it.
+  bool is_void = false;
+
+  bool operator==(const ReceivedAmendment&) const = default;
+};
+
+class ReceivedAmendments {
+ public:
+  ReceivedAmendments() = default;
+  /// Those of a record. @pre ascending by number
+  ReceivedAmendments(std::vector<ReceivedAmendment> all, std::vector<Hold> holds);
+
+  /// Takes in the newest list. @pre are_amendments(list, mission)
+  void note(const Amendments& list);
+
+  bool empty() const { return all_.empty() && holds_.empty(); }
+  /// Ascending by number; of equal numbers at most one is not void.
+  const std::vector<ReceivedAmendment>& all() const { return all_; }
+  /// Ticks that do not count.
+  const std::vector<Hold>& holds() const { return holds_; }
+  /// The target that holds at a tick of the world; null: the plan's. Its numbers are there.
+  const ReceivedAmendment* target_at(Tick tick) const;
+  /// The first that is not void and whose target was not received; null: there is none.
+  const ReceivedAmendment* unknown_target() const;
+  /// Those that are not void as one list, with all targets that were received.
+  Amendments list() const;
+
+ private:
+  void compare(const Amendments& list);
+  void add(const Amendment& amendment);
+
+  std::vector<ReceivedAmendment> all_;
+  std::vector<Hold> holds_;
+  std::optional<Amendments> newest_;  // the list that was noted last
+};
+
+}  // namespace ergocast

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copies numbers one after the other, with the length before each list.
+#include "plan/amendment_list.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace ergocast {
+namespace {
+
+// Numbers are copied as they are.
+static_assert(std::endian::native == std::endian::little);
+
+/// No list has more elements than that; the numbers of a target are the most.
+constexpr std::uint32_t kMostElements = kMaxModes;
+
+class ListWriter {
+ public:
+  template <class T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void value(const T& number) {
+    const auto* const at = reinterpret_cast<const std::byte*>(&number);
+    bytes_.insert(bytes_.end(), at, at + sizeof number);
+  }
+  template <class Elements>
+  void list(const Elements& elements, const auto& write) {
+    value(static_cast<std::uint32_t>(elements.size()));
+    for (const auto& element : elements) write(*this, element);
+  }
+  std::vector<std::byte> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// Missing numbers are read as 0.
+class ListReader {
+ public:
+  explicit ListReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  /// Whether all numbers were there, and no bytes after the last.
+  bool complete() const { return complete_ && bytes_.empty(); }
+
+  template <class T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void value(T& number) {
+    complete_ = complete_ && sizeof number <= bytes_.size();
+    if (!complete_) return;
+    std::memcpy(&number, bytes_.data(), sizeof number);
+    bytes_ = bytes_.subspan(sizeof number);
+  }
+  template <class Elements>
+  void list(Elements& elements, const auto& read) {
+    std::uint32_t count = 0;
+    value(count);
+    // Each element has bytes of its own, so a forged length allocates nothing.
+    complete_ = complete_ && count <= kMostElements && count <= bytes_.size();
+    elements.resize(static_cast<decltype(elements.size())>(complete_ ? count : 0));
+    for (auto& element : elements) read(*this, element);
+  }
+
+ private:
+  std::span<const std::byte> bytes_;
+  bool complete_ = true;
+};
+
+constexpr auto kNumber = [](auto& io, auto& number) { io.value(number); };
+
+/// All fields of a list, for the writer and the reader.
+void list_fields(auto& io, auto& amendments) {
+  io.value(amendments.named);
+  io.list(amendments.recent, [](auto& wire, auto& one) {
+    wire.value(one.number);
+    wire.value(one.kind);
+    wire.value(one.from);
+    wire.value(one.hash);
+  });
+  io.list(amendments.holds, [](auto& wire, auto& hold) {
+    wire.value(hold.from);
+    wire.value(hold.until);
+  });
+  io.list(amendments.targets, [](auto& wire, auto& change) {
+    wire.value(change.number);
+    wire.value(change.from);
+    wire.list(change.target, kNumber);
+    wire.list(change.cosine, kNumber);
+  });
+}
+
+bool is_kind(const Amendment& amendment) {
+  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kTarget;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_amendments(const Amendments& list) {
+  if (list.empty()) return {};
+  ListWriter writer;
+  list_fields(writer, list);
+  return writer.take();
+}
+
+std::optional<Amendments> decode_amendments(std::span<const std::byte> bytes,
+                                            const Mission& mission) noexcept try {
+  Amendments list;
+  if (bytes.empty()) return list;
+  ListReader reader(bytes);
+  list_fields(reader, list);
+  if (!reader.complete() || !std::ranges::all_of(list.recent, is_kind)) return std::nullopt;
+  if (list.empty() || !are_amendments(list, mission)) return std::nullopt;
+  return list;
+} catch (...) {
+  return std::nullopt;  // memory is missing
+}
+
+std::size_t target_bytes(const Mission& mission) {
+  const auto count = static_cast<std::size_t>(mission.basis.mode_count());
+  return sizeof(double) * (mission.basis.free_domain ? 2 * count : count);
+}
+
+std::vector<std::byte> encode_target(const TargetChange& change) {
+  ListWriter writer;
+  for (const Coefficients* numbers : {&change.target, &change.cosine})
+    for (const double number : *numbers) writer.value(number);
+  return writer.take();
+}
+
+std::optional<TargetChange> decode_target(std::span<const std::byte> bytes,
+                                          const Mission& mission) noexcept try {
+  if (bytes.size() != target_bytes(mission)) return std::nullopt;
+  TargetChange change;
+  change.target.resize(mission.basis.mode_count());
+  if (mission.basis.free_domain) change.cosine.resize(mission.basis.mode_count());
+  ListReader reader(bytes);
+  for (Coefficients* numbers : {&change.target, &change.cosine})
+    for (double& number : *numbers) reader.value(number);
+  if (!is_target(change.target, change.cosine, mission)) return std::nullopt;
+  return change;
+} catch (...) {
+  return std::nullopt;  // memory is missing
+}
+
+}  // namespace ergocast

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The list of a mission's amendments as bytes, which MISSION carries beside the plan.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/mission/amendments.h"
+#include "core/mission/mission.h"
+
+namespace ergocast {
+
+/// The bytes of a list; none for an empty list.
+std::vector<std::byte> encode_amendments(const Amendments& list);
+
+/// The list of these bytes, bit for bit. Nothing if they are no list, or one that no coordinator
+/// names for `mission` (are_amendments()). Lists come from the network.
+std::optional<Amendments> decode_amendments(std::span<const std::byte> bytes,
+                                            const Mission& mission) noexcept;
+
+/// How many bytes a target of `mission` has in AMEND.
+std::size_t target_bytes(const Mission& mission);
+/// A target as AMEND carries it: μ, then μ in the basis (2), where the mission has one.
+std::vector<std::byte> encode_target(const TargetChange& change);
+/// The target of these bytes, without number and tick; nothing if it is none of `mission`.
+std::optional<TargetChange> decode_target(std::span<const std::byte> bytes,
+                                          const Mission& mission) noexcept;
+
+}  // namespace ergocast

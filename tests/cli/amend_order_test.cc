@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the order of a new target sends, and what it reports of the team's messages.
+#include "cli/operate/amend_order.h"
+
+#include <gtest/gtest.h>
+
+#include "plan/amendment_list.h"
+#include "tests/support/team.h"
+
+namespace ergocast::cli {
+namespace {
+
+using namespace test;
+using State = OrderReport::State;
+
+class Amended : public ::testing::Test {
+ protected:
+  Amended() { announce(mission_); }
+
+  /// A target of the mission whose second coefficient is that number.
+  TargetChange target(double number) const {
+    TargetChange change{.target = mission_.target_coefficients};
+    change.target[1] = number;
+    return change;
+  }
+  /// The coordinator announces the list.
+  void announce_list() {
+    MissionPart part = mission_part(++revision_, MissionState::kRunning, roster_of(2));
+    part.amendments = encode_amendments(list_);
+    part.content_hash = hash_of(part);
+    give(team_, part, now_);
+  }
+  void move_to(Tick tick) { give(team_, world_state(tick, {{1, 1, 0}}), now_); }
+  /// Turns the order for that time; returns the last report.
+  OrderReport turn(AmendOrder& order, Instant::duration time) {
+    OrderReport report;
+    for (const Instant until = now_ + time; now_ < until && !report.ended(); now_ += 20ms) {
+      Outbox out;
+      order.send(team_, now_, out);
+      for (const Amend& amend : only<Amend>(out)) sent_.push_back(amend);
+      report = order.report(team_, now_);
+    }
+    return report;
+  }
+
+  Mission mission_ = small_mission(2);
+  Instant now_ = at(1s);
+  MonitoredRun team_{kRun, at(0s)};
+  Amendments list_;
+  std::int64_t revision_ = -1;
+  std::vector<Amend> sent_;
+};
+
+TEST_F(Amended, IsAskedForUntilItIsNamedAndDoneWhenItHolds) {
+  AmendOrder order(target(0.5), 7, now_);
+  EXPECT_EQ(turn(order, 500ms).state, State::kSent);
+  EXPECT_TRUE(sent_.empty()) << "the number is not known";
+  announce_list();
+  move_to(10);
+  EXPECT_EQ(turn(order, 450ms).state, State::kSent);
+  ASSERT_EQ(sent_.size(), 5U);
+  EXPECT_EQ(sent_[0].number, 0);
+  EXPECT_EQ(sent_[0].delay_ticks, 7);
+  EXPECT_EQ(sent_[0].kind, AmendmentKind::kTarget);
+  EXPECT_EQ(sent_[0].header.tick, 10);
+  EXPECT_EQ(decode_target(sent_[0].content, mission_), target(0.5));
+  name_target(list_, 30, target(0.5));
+  announce_list();
+  EXPECT_EQ(turn(order, 1s).state, State::kAnswered);
+  EXPECT_EQ(sent_.size(), 5U);
+  move_to(30);
+  const OrderReport report = turn(order, 1s);
+  EXPECT_EQ(report.state, State::kDone);
+  EXPECT_NE(report.text.find("holds since tick 30, t = 3.0 s"), std::string::npos) << report.text;
+}
+
+TEST_F(Amended, GoesInPartsThatMakeUpTheTarget) {
+  mission_.basis.modes_x = mission_.basis.modes_y = 16;
+  mission_.target_coefficients = Coefficients::Zero(256);
+  mission_.target_coefficients[0] = 1;
+  announce(mission_);
+  announce_list();
+  AmendOrder order(target(0.25), 0, now_);
+  turn(order, 20ms);
+  ASSERT_EQ(sent_.size(), 4U);
+  std::vector<std::byte> content;
+  for (const Amend& part : sent_) {
+    EXPECT_EQ(part.parts, 4);
+    content.insert(content.end(), part.content.begin(), part.content.end());
+  }
+  EXPECT_EQ(decode_target(content, mission_), target(0.25));
+}
+
+TEST_F(Amended, FailsIfItsNumberWasTaken) {
+  announce_list();
+  AmendOrder order(target(0.5), 0, now_);
+  turn(order, 100ms);
+  name_target(list_, 5, target(-0.5));
+  announce_list();
+  OrderReport report = turn(order, 1s);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("another operator was first: amendment 0, target "), std::string::npos)
+      << report.text;
+
+  AmendOrder later(target(0.5), 0, now_);
+  turn(later, 100ms);
+  name_pause(list_, 20);
+  announce_list();
+  report = turn(later, 1s);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("another operator was first: amendment 1, a pause"), std::string::npos)
+      << report.text;
+}
+
+TEST_F(Amended, FailsWithTheCauseIfNoTickIsNamed) {
+  announce_list();
+  AmendOrder order(target(0.5), 0, now_);
+  OrderReport report = turn(order, 20s);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("no coordinator answers"), std::string::npos) << report.text;
+
+  TeamStatus status;
+  status.header = {kRun, kCoordinator, kCoordinatorLife, next_sequence(), 0};
+  give(team_, status, now_);
+  AmendOrder first(target(0.5), 0, now_);
+  report = turn(first, 20s);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("the coordinator names no tick"), std::string::npos) << report.text;
+
+  name_target(list_, 50, target(0.1));
+  announce_list();
+  AmendOrder second(target(0.5), 0, now_);
+  report = turn(second, 20s);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("another target, amendment 0, waits for tick 50, t = 5.0 s"),
+            std::string::npos)
+      << report.text;
+}
+
+TEST_F(Amended, IsNotSentIfItCannotHold) {
+  announce_list();
+  move_to(10);
+  AmendOrder order(target(0.5), 90, now_);
+  OrderReport report = turn(order, 1s);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("the mission ends before that, at tick 100"), std::string::npos)
+      << report.text;
+  list_.named = kMaxAmendments;
+  announce_list();
+  AmendOrder one_too_many(target(0.5), 0, now_);
+  report = turn(one_too_many, 1s);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("can be amended 1000000 times"), std::string::npos) << report.text;
+  EXPECT_TRUE(sent_.empty());
+}
+
+TEST_F(Amended, SurvivesThatItsProcessIsStopped) {
+  announce_list();
+  AmendOrder order(target(0.5), 0, now_);
+  turn(order, 20ms);
+  now_ += 1h;
+  EXPECT_EQ(turn(order, 1s).state, State::kSent) << "it has not listened since";
+}
+
+}  // namespace
+}  // namespace ergocast::cli

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A new target: it is named once all its parts have come, and only if it follows the newest one.
+#include <gtest/gtest.h>
+
+#include "team/amend_parts.h"
+#include "tests/coordinator/driven_coordinator.h"
+#include "tests/coordinator/successor.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+Mission wide_mission() {
+  Mission mission = small_mission(2);
+  mission.basis.modes_x = mission.basis.modes_y = 15;
+  mission.target_coefficients = Coefficients::Zero(225);
+  mission.target_coefficients[0] = 1;
+  mission.timing.tick_count = 1000;
+  return mission;
+}
+
+TargetChange target(double first) {
+  TargetChange change;
+  change.target = wide_mission().target_coefficients;
+  change.target[1] = first;
+  return change;
+}
+
+/// The parts of an AMEND by one operator.
+std::vector<Amend> wish(double first, std::int32_t number, Incarnation by = 1) {
+  return in_parts({.header = {kRun, kOperator, by, next_sequence(), 0},
+                   .number = number,
+                   .kind = AmendmentKind::kTarget},
+                  encode_target(target(first)));
+}
+
+/// Lockstep: the world stands by, and the coordinator names the tick.
+void let_world_stand_by(Coordinator& coordinator, Tick tick) {
+  const auto parts = only<MissionPart>(advance(coordinator, at(1s)));
+  ASSERT_FALSE(parts.empty());
+  WorldState world = world_where(tick, {9, 9});
+  world.roster_revision = parts[0].revision;
+  give(coordinator, world, at(1s));
+}
+
+TEST(Amending, NamesATargetOnceAllItsPartsHaveCome) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  auto parts = wish(0.5, 0);
+  ASSERT_EQ(parts.size(), 4U);
+  std::swap(parts[0], parts[3]);
+  for (const Amend& part : parts) {
+    EXPECT_TRUE(coordinator.amendments().targets.empty());
+    give(coordinator, part, at(1s));
+    give(coordinator, part, at(1s));
+  }
+  let_world_stand_by(coordinator, 11);
+  ASSERT_EQ(coordinator.amendments().targets.size(), 1U);
+  EXPECT_EQ(coordinator.amendments().targets[0].from, 13);
+  EXPECT_EQ(coordinator.amendments().recent[0].hash, target_hash(target(0.5)));
+  for (const Amend& part : parts) give(coordinator, part, at(1s));
+  EXPECT_EQ(coordinator.amendments().named, 1) << "it is obeyed once";
+}
+
+TEST(Amending, MissionCarriesTheListAfterThePlan) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  for (const Amend& part : wish(0.5, 0)) give(coordinator, part, at(1s));
+  let_world_stand_by(coordinator, 11);
+  MissionFollower follower;
+  for (const MissionPart& part : only<MissionPart>(advance(coordinator, at(2s))))
+    follower.receive(part);
+  ASSERT_TRUE(follower.mission());
+  EXPECT_EQ(follower.amendments(), coordinator.amendments());
+}
+
+TEST(Amending, PartsOfTwoOperatorsDoNotMix) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  const auto one = wish(0.25, 0, 1), other = wish(0.75, 0, 2);
+  for (std::size_t i = 0; i < 3; ++i) {
+    give(coordinator, one[i], at(1s));
+    give(coordinator, other[3 - i], at(1s));
+  }
+  give(coordinator, other[0], at(1s));
+  let_world_stand_by(coordinator, 11);
+  ASSERT_EQ(coordinator.amendments().named, 1);
+  EXPECT_EQ(coordinator.amendments().recent[0].hash, target_hash(target(0.75)));
+}
+
+TEST(Amending, RefusesWhatIsNoTargetOfTheMission) {
+  for (const double first : {1.5, std::nan("")}) {
+    Coordinator coordinator = running_coordinator(wide_mission());
+    give(coordinator, world_where(10, {9, 9}), at(1s));
+    for (const Amend& part : wish(first, 0)) give(coordinator, part, at(1s));
+    for (Amend part : wish(0.5, 0, 2)) {
+      if (part.part == 3) part.content.pop_back();
+      give(coordinator, part, at(1s));
+    }
+    let_world_stand_by(coordinator, 11);
+    EXPECT_EQ(coordinator.amendments().named, 0);
+  }
+}
+
+TEST(Amending, NamesNoTargetWhileAnotherOneWaitsForItsTick) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  auto late = wish(0.5, 0);
+  for (Amend& part : late) part.delay_ticks = 100;
+  for (const Amend& part : late) give(coordinator, part, at(1s));
+  let_world_stand_by(coordinator, 11);
+  ASSERT_EQ(coordinator.amendments().targets.at(0).from, 113);
+  for (const Amend& part : wish(0.75, 1)) give(coordinator, part, at(1s));
+  let_world_stand_by(coordinator, 12);
+  EXPECT_EQ(coordinator.amendments().named, 1);
+  give(coordinator, world_where(113, {113, 113}), at(1s));
+  for (const Amend& part : wish(0.75, 1)) give(coordinator, part, at(1s));
+  let_world_stand_by(coordinator, 114);
+  EXPECT_EQ(coordinator.amendments().named, 2);
+}
+
+// Until it holds, no other target can be named.
+TEST(Amending, NamesNoTargetAfterTheMissionsEnd) {
+  for (const Tick delay : {989, 990}) {
+    Coordinator coordinator = running_coordinator(wide_mission());
+    give(coordinator, world_where(10, {9, 9}), at(1s));
+    for (Amend part : wish(0.5, 0)) {
+      part.delay_ticks = delay;
+      give(coordinator, part, at(1s));
+    }
+    let_world_stand_by(coordinator, 11);
+    EXPECT_EQ(coordinator.amendments().named, 10 + delay < 1000 ? 1 : 0);
+  }
+}
+
+TEST(Amending, ASuccessorKnowsTheTargets) {
+  MissionPart memory = memory_of(3);
+  TargetChange change;
+  change.target = small_mission(2).target_coefficients;
+  change.target[1] = 0.5;
+  Amendments list;
+  name_target(list, 2, change);
+  memory.amendments = encode_amendments(list);
+  Coordinator coordinator = taken_over(memory);
+  EXPECT_EQ(coordinator.amendments(), list);
+}
+
+}  // namespace
+}  // namespace ergocast
