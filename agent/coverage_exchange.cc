@@ -83,9 +83,8 @@ void CoverageExchange::broadcast(bool all, const AgentStep& step, Participant& m
   all = all || (rests_ && !step.recalled);
   rests_ = step.recalled;
   for (int b = 0; b < table_.block_count(); ++b) {
-    Contribution& published = published_[static_cast<std::size_t>(b)];
-    const bool counted_less = counted < published.header.tick;
-    if (!all && !counted_less && counted < published.next_broadcast_tick) continue;
+    auto& [published, tick, next] = published_[static_cast<std::size_t>(b)];
+    if (!all && counted >= tick && counted < next) continue;
     Contribution block = table_.block(self_, b);
     if (rests_ && block.steps == 0) continue;  // it has rested since its admission
     // Repeats keep it: forecasts count a block's age from it, and receivers how often the block has
@@ -93,8 +92,9 @@ void CoverageExchange::broadcast(bool all, const AgentStep& step, Participant& m
     block.header.tick = std::max(counted, block.header.tick);
     if (block.encoding == ContributionEncoding::kFixed16)
       note_gains(published, table_.half_life(), block);
-    block.next_broadcast_tick =
-        rests_ ? end : next_broadcast(me.mission(), self_.agent, counted, b);
+    tick = counted;
+    next = rests_ ? end : next_broadcast(me.mission(), self_.agent, counted, b);
+    block.next_broadcast_tick = next - counted + block.header.tick;
     me.publish(Bus::kSwarm, block, block.header.tick, out);
     published = std::move(block);
   }
@@ -102,7 +102,7 @@ void CoverageExchange::broadcast(bool all, const AgentStep& step, Participant& m
 
 /// Newer sums would make a tick depend on losses.
 void CoverageExchange::repeat(Participant& me, Outbox& out) const {
-  for (const Contribution& block : published_) {
+  for (const auto& [block, tick, next] : published_) {
     if (block.steps > 0) me.publish(Bus::kSwarm, block, block.header.tick, out);
   }
 }

@@ -14,6 +14,8 @@ namespace ergocast {
 // clang-format off
 WRAPPED(void, make_table, "_ZN8ergocast13CoverageTableC1ERKNS_5BasisEdl", CoverageTable*, const Basis&, double, Tick)
 WRAPPED(void, set_now, "_ZN8ergocast13CoverageTable7set_nowEl", CoverageTable*, Tick)
+WRAPPED(void, fade, "_ZN8ergocast11CoverageRow4fadeERKNS_8GainRuleE", CoverageRow*, const GainRule&)
+WRAPPED(CoverageBlock::Gains, gains, "_ZNK8ergocast13CoverageTable5gainsEmi", const CoverageTable*, std::size_t, int)
 WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtEPKd", CoverageTable*, const Author&, const BasisAt&, const double*)
 WRAPPED(void, set_quality, "_ZN8ergocast13CoverageTable11set_qualityERKNS_6AuthorEd", CoverageTable*, const Author&, double)
 WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl", CoverageTable*, const Contribution&, std::int64_t)
@@ -26,7 +28,21 @@ WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTabl
 // ---- coverage ----
 
 void bug_set_now(CoverageTable* self, Tick counted) {
-  real_set_now(self, bug("a half-life passes unnoticed") ? 0 : counted);
+  if (bug("a half-life passes unnoticed")) counted = 0;
+  if (bug("a half-life passes a tick early")) ++counted;
+  real_set_now(self, counted);
+}
+
+void bug_fade(CoverageRow* self, const GainRule& rule) {
+  const bool is_own = !self->samples().empty();
+  if (bug("a receiver halves nothing") && !is_own) return;
+  real_fade(self, rule);
+}
+
+CoverageBlock::Gains bug_gains(const CoverageTable* self, std::size_t row, int block) {
+  CoverageBlock::Gains gains = real_gains(self, row, block);
+  if (bug("the time of gains is not halved")) gains.time_steps = static_cast<double>(gains.steps);
+  return gains;
 }
 
 void bug_set_quality(CoverageTable* self, const Author& author, double quality) {
@@ -109,6 +125,7 @@ Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t ma
 Contribution bug_block(const CoverageTable* self, const Author& author, int block) {
   Contribution out = real_block(self, author, block);
   if (bug("a sum runs away")) out.sums.edit()[5] += 2 * out.elapsed_s;
+  if (bug("time is not halved with its sums") && self->halvings() > 0) out.elapsed_s *= 2;
   return out;
 }
 
@@ -167,6 +184,7 @@ CoverageTable mistaken(const CoverageTable& table, Tick tick) {
 void bug_make_forecast(Forecast* self, const Mission& mission, const Author& author) {
   Mission changed = mission;
   if (the_dead_are_foreseen()) changed.timing.broadcast_period_ticks = kForEver;
+  if (bug("former targets are not halved")) changed.law.memory_half_life_s = 0;
   if (bug("a footprint is not foreseen")) {
     for (AgentKind& kind : changed.kinds) kind.footprint_sigma_m = 0;
   }

@@ -121,6 +121,20 @@ TEST(HalfLife, DoesNotMoveTheCoverageOfARowThatRests) {
   }
 }
 
+TEST(HalfLife, SumsUpWhatTicksWeigh) {
+  const HalfLife half_life(0.7, 0.1);
+  for (const auto& [from, until, halved] :
+       {std::tuple<Tick, Tick, std::int64_t>{0, 5, 0}, {3, 16, 2}, {-4, 30, 9}, {20, 21, 1}}) {
+    double expected = 0;
+    for (Tick tick = from; tick < until; ++tick)
+      expected += HalfLife::factor(half_life.halvings(tick), halved);
+    EXPECT_EQ(half_life.remembered_ticks(from, until, halved), expected) << from << ' ' << until;
+  }
+  EXPECT_EQ(half_life.remembered_ticks(5, 5, 0), 0);
+  EXPECT_NEAR(half_life.remembered_ticks(0, Tick{7} << 40, Tick{1} << 40), 7, 1e-15);
+  EXPECT_EQ(HalfLife().remembered_ticks(3, 16, 0), 13);
+}
+
 // ---- rows that travel ----
 
 /// Halving and merging commute, bit for bit, for rows of every age.
