@@ -14,8 +14,6 @@ namespace ergocast {
 // clang-format off
 WRAPPED(void, make_table, "_ZN8ergocast13CoverageTableC1ERKNS_5BasisEdl", CoverageTable*, const Basis&, double, Tick)
 WRAPPED(void, set_now, "_ZN8ergocast13CoverageTable7set_nowEl", CoverageTable*, Tick)
-WRAPPED(void, fade, "_ZN8ergocast11CoverageRow4fadeERKNS_8GainRuleE", CoverageRow*, const GainRule&)
-WRAPPED(CoverageBlock::Gains, gains, "_ZNK8ergocast13CoverageTable5gainsEmi", const CoverageTable*, std::size_t, int)
 WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtEPKd", CoverageTable*, const Author&, const BasisAt&, const double*)
 WRAPPED(void, set_quality, "_ZN8ergocast13CoverageTable11set_qualityERKNS_6AuthorEd", CoverageTable*, const Author&, double)
 WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl", CoverageTable*, const Contribution&, std::int64_t)
@@ -31,18 +29,6 @@ void bug_set_now(CoverageTable* self, Tick counted) {
   if (bug("a half-life passes unnoticed")) counted = 0;
   if (bug("a half-life passes a tick early")) ++counted;
   real_set_now(self, counted);
-}
-
-void bug_fade(CoverageRow* self, const GainRule& rule) {
-  const bool is_own = !self->samples().empty();
-  if (bug("a receiver halves nothing") && !is_own) return;
-  real_fade(self, rule);
-}
-
-CoverageBlock::Gains bug_gains(const CoverageTable* self, std::size_t row, int block) {
-  CoverageBlock::Gains gains = real_gains(self, row, block);
-  if (bug("the time of gains is not halved")) gains.time_steps = static_cast<double>(gains.steps);
-  return gains;
 }
 
 void bug_set_quality(CoverageTable* self, const Author& author, double quality) {
@@ -129,7 +115,30 @@ Contribution bug_block(const CoverageTable* self, const Author& author, int bloc
   return out;
 }
 
+namespace {
+
+/// c_k of the blocks as they were sent. Slots are modes, and no row is weighted.
+void average_unhalved(const CoverageTable& table, Coefficients& coverage) {
+  for (int b = 0; b < table.block_count(); ++b) {
+    const Eigen::Index first = b * table.block_size();
+    Coefficients sums_s = Coefficients::Zero(coverage.size());
+    double elapsed_s = 0;
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      const Contribution sent = real_block(&table, table.author(row), b);
+      elapsed_s += sent.elapsed_s;
+      for (std::size_t k = 0; k < sent.sums.size(); ++k)
+        sums_s[first + static_cast<Eigen::Index>(k)] += sent.sums[k];
+    }
+    const Eigen::Index last = std::min(coverage.size(), first + table.block_size());
+    for (Eigen::Index k = first; k < last && elapsed_s > 0; ++k)
+      coverage[k] = sums_s[k] / elapsed_s;
+  }
+}
+
+}  // namespace
+
 void bug_average(const CoverageTable* self, Coefficients& coverage) {
+  if (bug("a receiver halves nothing")) return average_unhalved(*self, coverage);
   if (bug("a replaced incarnation counts twice")) {
     CoverageTable other = *self;
     for (std::size_t row = 0; row < other.row_count(); ++row) {
@@ -156,6 +165,7 @@ bool foresees_itself() { return bug("an agent foresees itself"); }
 CoverageTable mistaken(const CoverageTable& table, Tick tick) {
   const Sent& sent = sent_to.at(&table);
   CoverageTable other(sent.basis, sent.dt_s, sent.joined);
+  other.set_half_life(table.half_life());
   const auto merge = [&](Contribution block) {
     if (the_dead_are_foreseen()) block.next_broadcast_tick += kForEver;
     real_merge(&other, block, kForEver);
@@ -196,8 +206,8 @@ void bug_make_forecast(Forecast* self, const Mission& mission, const Author& aut
 
 void bug_look_ahead(Forecast* self, const CoverageTable& table,
                     const std::vector<RosterEntry>& roster, Tick tick, Coefficients& coverage) {
-  const bool mistakes_it = the_dead_are_foreseen() || foresees_itself() ||
-                           bug("a late block becomes the one before") ||
+  const bool mistakes_it = bug("a forecast halves nothing") || the_dead_are_foreseen() ||
+                           foresees_itself() || bug("a late block becomes the one before") ||
                            bug("a relayed block becomes the one before");
   static const TargetShift kNoShift((Mission()));
   if (bug("teammates go on with the former target")) self->note_shift(kNoShift);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forgetting by halving: a row is the same whether its author halves it or whoever uses it, and
+// Forgetting by halving: a row is the same whether its author or a receiver halves it, and
 // nothing that is stored or relayed changes.
 #include "core/law/half_life.h"
 
