@@ -450,6 +450,33 @@ TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {
   EXPECT_EQ(wait_for(mission), 0);
 }
 
+// A φ² of the positions that arrived would be another one.
+TEST_F(PageInABrowser, ShowsWhatTheAgentsReportIfPositionsWereLost) {
+  Child mission = launch_endless(scenario("pace: REALTIME realtime_factor: 10"),
+                                 {"--watch", "--port", "8818", "--lcm-url",
+                                  "udpm://239.255.76.67:24701?ttl=0&recv_buf_size=20000"});
+  browser_->open("http://127.0.0.1:8818/");
+  EXPECT_TRUE(browser_->becomes("return window.ergocast?.S.facts?.state?.world_tick > 300"));
+  const std::vector<std::string> page = {"ergocast run-page"};
+  const std::string lacks_rows =
+      "const [{ last, p }] = ergocast.S.run.tracks;"
+      "return p.slice(0, 2 * last).some(Number.isNaN)";
+  EXPECT_TRUE(eventually([&] {
+    signal_to(page, SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    signal_to(page, SIGCONT);
+    return js(lacks_rows) == true;
+  }));
+  EXPECT_TRUE(browser_->becomes(
+      "const { run, facts } = ergocast.S;"
+      "return Math.abs(run.metricAt(run.end) / facts.state.ergodic_metric - 1) < 0.01"));
+  expect_no_errors();
+  mission.send(SIGINT);
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
+}
+
 TEST_F(PageInABrowser, AnotherSitesPageGetsNothing) {
   ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "5", "--out",
                       out()}),

@@ -59,17 +59,24 @@ export function addLog(lines) {
   if (low) log.scrollTop = log.scrollHeight;
 }
 
-// φ² each mission second from all positions; if the page lacks the beginning, a target, or the modes of the
-// free domain, what the agents report.
+// φ² each mission second from all positions; if the page lacks some of them, a target, or the modes of the free
+// domain, what the agents report. A few lost rows would change a small φ² much.
 function addMetrics(run) {
   const { told } = run,
     every = Math.max(1, Math.round(1 / run.step)),
-    whole = !run.mission.free_domain && run.knowsTargets && run.tracks.some(track => track.first === 0);
+    whole =
+      !run.mission.free_domain &&
+      run.knowsTargets &&
+      run.tracks.some(track => track.first === 0) &&
+      !run.tracks.some(track => track.hasGaps);
   if (!whole) {
     run.metrics = told;
     return;
   }
-  if (run.metrics === told) run.metrics = emptyCurves();
+  if (run.metrics === told) {
+    run.metrics = emptyCurves();
+    run.nextMetric = 0;
+  }
   const { metrics } = run;
   for (let row = run.nextMetric ?? 0; row < run.rows; row += every) {
     const value = run.coverage.metric(row),

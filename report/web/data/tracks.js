@@ -19,6 +19,7 @@ export class Track {
     this.h = null;
     this.first = Infinity;
     this.last = -1;
+    this.count = 0; // of known rows
     this.member = [[0, Infinity]]; // rows in which its coverage counts, ascending
     this.way = new Float64Array(0); // metres gone up to a row, filled on demand
     this.known = 0;
@@ -39,6 +40,10 @@ export class Track {
   }
   has(row) {
     return row >= 0 && 2 * row < this.p.length && this.p[2 * row] === this.p[2 * row];
+  }
+  // Whether rows between known ones were never received.
+  get hasGaps() {
+    return this.count < this.last + 1 - this.first;
   }
   // The newest row up to `row` that is known; −1: none.
   rowAt(row) {
@@ -87,6 +92,7 @@ export function addTracks(run, block) {
       const from = runs[i],
         count = runs[i + 1];
       track.reserve(from + count > run.capacity ? from + count : Math.min(run.capacity, 2 * (from + count)));
+      for (let k = from; k < from + count; k++) if (!track.has(k)) track.count++;
       const lists = [
         ...run.size.map((l, axis) => ({ scale: l / full, put: coordinateOf(track, axis) })),
         ...(block.headings ? [{ scale: 1, put: (k, v) => (track.h[k] = v) }] : []),
