@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "core/law/half_life.h"
 #include "core/law/look_ahead.h"
 #include "core/mission/station.h"
 
@@ -19,17 +20,28 @@ constexpr auto kDigestPeriod = 1s;
 constexpr double kDigestMissionPeriod_s = 1.0;
 
 /// Writes into `block` what it has gained since the broadcast `before`. A block that is sent again
-/// within a tick keeps its gains.
-void note_gains(const Contribution& before, Contribution& block) {
+/// within a tick keeps its gains. Gains travel as averages over their steps at the row's mean time
+/// a step, so with a half-life they are scaled to that time.
+void note_gains(const Contribution& before, const HalfLife& half_life, Contribution& block) {
+  const double kept = HalfLife::factor(half_life.halvings(before.header.tick),
+                                       half_life.halvings(block.header.tick));
   if (before.steps == block.steps) {
     block.gains = before.gains;
     block.gained_steps = before.gained_steps;
+    if (kept == 1) return;
+    for (double& gain : block.gains.edit()) gain *= kept;
     return;
   }
   block.gained_steps = block.steps - before.steps;
   const std::span<double> gains = block.gains.set_all(block.sums.size());
   const double *now = block.sums.data(), *then = before.sums.data();
-  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = now[k] - then[k];
+  double scale = 1;
+  if (half_life.any()) {
+    const double gained_share = 1 - before.elapsed_s * kept / block.elapsed_s;
+    scale =
+        static_cast<double>(block.gained_steps) / (static_cast<double>(block.steps) * gained_share);
+  }
+  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = (now[k] - kept * then[k]) * scale;
 }
 
 }  // namespace
@@ -43,6 +55,7 @@ CoverageExchange::CoverageExchange(const Mission& mission, const RosterEntry& se
       anti_entropy_(self.author, mission.seed, mission.timing.dt_s),
       team_coverage_(Coefficients::Zero(mission.basis.mode_count())) {
   table_.set_layout(BlockLayout(mission));
+  table_.set_half_life(HalfLife(mission));
   if (!looks_ahead(mission)) table_.forgo_gains();
   table_.add_row(self_);  // before any other incarnation could take its place
   table_.set_quality(self_, sensors_.of(kind_).quality);
@@ -70,23 +83,26 @@ void CoverageExchange::broadcast(bool all, const AgentStep& step, Participant& m
   all = all || (rests_ && !step.recalled);
   rests_ = step.recalled;
   for (int b = 0; b < table_.block_count(); ++b) {
-    Contribution& published = published_[static_cast<std::size_t>(b)];
-    const bool counted_less = counted < published.header.tick;
-    if (!all && !counted_less && counted < published.next_broadcast_tick) continue;
+    auto& [published, tick, next] = published_[static_cast<std::size_t>(b)];
+    if (!all && counted >= tick && counted < next) continue;
     Contribution block = table_.block(self_, b);
     if (rests_ && block.steps == 0) continue;  // it has rested since its admission
-    if (block.encoding == ContributionEncoding::kFixed16) note_gains(published, block);
-    block.header.tick = counted;  // repeats keep it: forecasts count a block's age from it
-    block.next_broadcast_tick =
-        rests_ ? end : next_broadcast(me.mission(), self_.agent, counted, b);
-    me.publish(Bus::kSwarm, block, counted, out);
+    // Repeats keep it: forecasts count a block's age from it, and receivers how often the block has
+    // been halved. So it is not before the block's last halving, also if ticks are counted again.
+    block.header.tick = std::max(counted, block.header.tick);
+    if (block.encoding == ContributionEncoding::kFixed16)
+      note_gains(published, table_.half_life(), block);
+    tick = counted;
+    next = rests_ ? end : next_broadcast(me.mission(), self_.agent, counted, b);
+    block.next_broadcast_tick = next - counted + block.header.tick;
+    me.publish(Bus::kSwarm, block, block.header.tick, out);
     published = std::move(block);
   }
 }
 
 /// Newer sums would make a tick depend on losses.
 void CoverageExchange::repeat(Participant& me, Outbox& out) const {
-  for (const Contribution& block : published_) {
+  for (const auto& [block, tick, next] : published_) {
     if (block.steps > 0) me.publish(Bus::kSwarm, block, block.header.tick, out);
   }
 }

@@ -34,6 +34,9 @@ class CoverageExchange {
   /// c_k of the rows that count, computed at each call.
   const Coefficients& team_coverage() const;
 
+  /// The counted tick has come; see CoverageTable.
+  void set_now(Tick counted) { table_.set_now(counted); }
+
   // ---- the own coverage ----
   /// @param shift  the changes of the target
   void add_sample(const AgentStep& step, const TargetShift& shift);
@@ -77,14 +80,19 @@ class CoverageExchange {
   Tick oldest_update_age(const AgentStep& step, const Participant& me) const;
 
  private:
+  struct Broadcast {
+    Contribution block;
+    Tick tick = 0, next = 0;  // when it was sent, and when the next one is due, as counted
+  };
+
   Author self_;
   int kind_;
   bool realtime_;
   Sensors sensors_;
   CoverageTable table_;
   AntiEntropy anti_entropy_;
-  std::vector<Contribution> published_;  // own blocks as last broadcast
-  AuthorMap<Tick> last_update_;          // counted tick at which a teammate's coverage last grew
+  std::vector<Broadcast> published_;  // own blocks as last broadcast
+  AuthorMap<Tick> last_update_;       // counted tick at which a teammate's coverage last grew
   Deadline next_digest_;
   bool rests_ = false;              // it was recalled at the newest tick that it has begun, …
   bool own_repeat_wanted_ = false;  // … and a teammate lacks some of its coverage

@@ -78,8 +78,7 @@ const std::vector<RosterEntry>& MissionRun::counted_roster(const Participant& me
   return me.follower().holds().empty() ? me.follower().roster() : held_roster_;
 }
 
-std::int64_t MissionRun::max_steps(const RosterEntry& author, const Participant& me,
-                                   Instant now) const {
+Tick MissionRun::lead(const Participant& me, Instant now) const {
   const Timing& timing = me.timing();
   Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
   if (timing.pace == Pace::kRealtime && step_.tick >= 0) {
@@ -90,6 +89,11 @@ std::int64_t MissionRun::max_steps(const RosterEntry& author, const Participant&
     const double unheard_s = std::chrono::duration<double>(now - heard).count();
     lead += static_cast<Tick>(2 * unheard_s * timing.realtime_factor / timing.dt_s);
   }
+  return lead;
+}
+
+std::int64_t MissionRun::max_steps(const RosterEntry& author, const Participant& me,
+                                   Tick lead) const {
   const Tick current = me.counted(step_.tick) + 1;
   return lead + (author.active_until < 0 ? current
                                          : std::min(current, me.counted(author.active_until) + 1));
@@ -99,12 +103,17 @@ void MissionRun::on(const Contribution& theirs, const Arrival& arrival, Particip
   const RosterEntry* const entry = me.member(theirs.header);
   if (entry == nullptr) return;  // not a member as far as we know
   exchange_.note_received(theirs, arrival.transmitter);
-  const std::int64_t limit = max_steps(*entry, me, arrival.now);
+  const Tick lead = this->lead(me, arrival.now);
+  const std::int64_t limit = max_steps(*entry, me, lead);
+  // With a half-life, a row of a far tick would weigh more than all others.
+  const bool is_far = exchange_.table().half_life().any() &&
+                      theirs.header.tick > me.counted(std::max<Tick>(step_.tick, 0)) + lead;
   // Before our first tick we do not know the mission's time. The count may be right, so it is
   // ignored and not counted as refused.
-  if (step_.tick < 0 && theirs.steps > limit) return;
+  if (step_.tick < 0 && (theirs.steps > limit || is_far)) return;
   // Its author may not know yet that it was sent out of the mission.
   if (entry->leaves && theirs.steps > limit) return;
+  if (is_far) return me.count_refused(Refusal::kRange);
   const auto refusal = exchange_.merge(theirs, entry->kind, limit, step_.counted);
   if (refusal) me.count_refused(*refusal);
 }
@@ -183,6 +192,7 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   if (step_.tick >= 0) missed_ticks_ += own.tick - step_.tick - 1;
   step_.tick = own.tick;
   step_.counted = me.counted(own.tick);
+  exchange_.set_now(step_.counted);
   step_.held = me.is_held(own.tick);
   step_.begun = now;
   step_.roster_revision = own.roster_revision;

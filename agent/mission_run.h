@@ -98,7 +98,8 @@ class MissionRun {
   const BeaconBook* beacons() const { return motion_.bodies().beacons(); }
 
  private:
-  std::int64_t max_steps(const RosterEntry& author, const Participant& me, Instant now) const;
+  Tick lead(const Participant& me, Instant now) const;
+  std::int64_t max_steps(const RosterEntry& author, const Participant& me, Tick lead) const;
   bool may_begin(const Participant& me) const;
   std::optional<MissionOver> begin_tick(Participant& me, Instant now, Outbox& out);
   AgentId awaited(const Participant& me) const;

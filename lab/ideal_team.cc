@@ -32,6 +32,7 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
       earlier_(static_cast<std::size_t>(mission_.basis.mode_count())),
       shift_(in_basis_order(mission_)),
       sensors_(mission_) {
+  table_.set_half_life(HalfLife(mission_));
   controllers_.emplace_back(mission_);
   for (std::size_t kind = 1; kind < mission_.kinds.size(); ++kind)
     controllers_.emplace_back(mission_, static_cast<int>(kind));
@@ -125,6 +126,10 @@ Eigen::Vector3d IdealTeam::kept_apart(Agent& agent, const Eigen::Vector3d& v_mps
 
 /// The sums of all agents at this tick, and what they gained since the last.
 void IdealTeam::sample() {
+  const std::int64_t halvings = table_.halvings();
+  table_.set_now(tick_);
+  const double kept = HalfLife::factor(halvings, table_.halvings());
+  const double before_steps = table_.view(0, 0).remembered_steps;
   const TargetShift::Change* const change = shift_.at(tick_);
   for (Agent& agent : agents_) {
     agent.at.emplace(agent.x_m, mission_.domain, mission_.basis);
@@ -140,10 +145,11 @@ void IdealTeam::sample() {
     }
     const double* sums = table_.sums_of(agent.author);
     for (std::size_t k = 0; k < agent.gain.size(); ++k) {
-      agent.gain[k] = sums[k] - agent.sent[k];
+      agent.gain[k] = sums[k] - kept * agent.sent[k];
       agent.sent[k] = sums[k];
     }
   }
+  gained_steps_ = mission_.dead_reckoning ? 1 : table_.view(0, 0).remembered_steps - before_steps;
 }
 
 /// Computes the parts of ĉ in core/law/forecast.h, in its order of additions, where every row was
@@ -152,7 +158,7 @@ ERGOCAST_VECTORIZED
 void IdealTeam::look_ahead() {
   const auto n = static_cast<int>(agents_.size());
   weight_s_ = look_ahead_.weight_s(look_ahead_.horizon_s(n, tick_), 1, 0, 1);
-  share_ = weight_s_ / mission_.timing.dt_s;
+  share_ = weight_s_ / (gained_steps_ * mission_.timing.dt_s);
   weigh(agents_.front());
   std::fill(earlier_.begin(), earlier_.end(), 0);
   for (std::size_t i = agents_.size() - 1; i > 0; --i) {
@@ -169,7 +175,8 @@ void IdealTeam::look_ahead() {
 /// Sets the factors of all sums in the forecast of `agent`.
 void IdealTeam::weigh(const Agent& agent) {
   double steps = 0;
-  for (const Agent& each : agents_) steps += quality(each) * static_cast<double>(tick_ + 1);
+  const double remembered_steps = table_.view(0, 0).remembered_steps;
+  for (const Agent& each : agents_) steps += quality(each) * remembered_steps;
   double covered_s = steps * mission_.timing.dt_s;
   unshifted_s_ = 0;
   for (const Agent& other : agents_) {

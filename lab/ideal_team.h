@@ -101,6 +101,7 @@ class IdealTeam {
   LookAhead look_ahead_;
   Coefficients coverage_;                             // known or foreseen
   std::vector<double> earlier_;                       // what all earlier agents will have covered
+  double gained_steps_ = 1;                           // the time that all gains cover
   double weight_s_ = 0, share_ = 0, per_second_ = 0;  // of gains, share of gains, and factor of all
   double unshifted_s_ = 0;                            // of the forecast gains
   TargetShift shift_;

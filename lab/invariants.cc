@@ -171,7 +171,10 @@ void Invariants::check(double t_s, const Command& command, const TableView& spea
 
 void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
                        const TableView* speaker) {
-  const double covered_s = static_cast<double>(block.steps) * mission_.timing.dt_s;
+  if (mission_.law.memory_half_life_s > 0) check_memory(t_s, block);
+  const double covered_s = mission_.law.memory_half_life_s > 0
+                               ? block.elapsed_s
+                               : static_cast<double>(block.steps) * mission_.timing.dt_s;
   // Samples are shifted once the team has had another target.
   const double range = shifted_ ? kShiftedRange : 1;
   const double most_s = range * covered_s * (1 + 1e-9 + rounding(block.steps));
@@ -181,8 +184,8 @@ void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
       block.block == 0 && std::abs(block.sums[0] - covered_s) > covered_s * rounding(block.steps);
   if (!(largest_s <= most_s) || zeroth_is_off) {
     violate(t_s, Invariant::kSumsBounded, name_of(block.author()),
-            text("largest |S| = ", largest_s, " s, S_00 = ", block.sums[0],
-                 " s, steps dt = ", covered_s, " s, block ", block.block));
+            text("largest |S| = ", largest_s, " s, S_00 = ", block.sums[0], " s, time covered ",
+                 covered_s, " s, block ", block.block));
   }
   if (relayer == kUnassigned || speaker == nullptr) return;
   ++relayed_;
@@ -191,6 +194,29 @@ void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
       t_s, Invariant::kRelaysAnswerDigests, name_of(speaker->self),
       text("has relayed more blocks than the digests it received could ask for; the last one of ",
            name_of(block.author())));
+}
+
+/// Between two blocks of an author that has sampled each tick from the one to the other, the time
+/// is halved at the ticks of the half-life, and grows by dt at each tick.
+void Invariants::check_memory(double t_s, const Contribution& block) {
+  const double dt_s = mission_.timing.dt_s;
+  Sent& before = sent_[{block.author(), block.block}];
+  const Sent now{block.steps, block.header.tick, block.elapsed_s};
+  if (now.steps <= before.steps) return;
+  const bool whole = before.steps > 0 && now.steps - before.steps == now.tick - before.tick;
+  double expected_s = before.elapsed_s;
+  for (Tick tick = before.tick + 1; whole && tick <= now.tick; ++tick) {
+    if (halvings_at(mission_, tick) != halvings_at(mission_, tick - 1)) expected_s /= 2;
+    expected_s += dt_s;
+  }
+  const double error_s = whole ? std::abs(now.elapsed_s - expected_s) : 0;
+  const bool possible = now.elapsed_s <= static_cast<double>(now.steps) * dt_s * (1 + 1e-9);
+  if (error_s > 1e-9 * expected_s || !possible) {
+    violate(t_s, Invariant::kSumsBounded, name_of(block.author()),
+            text("remembers ", now.elapsed_s, " s of ", now.steps, " steps at tick ", now.tick,
+                 ", expected ", expected_s));
+  }
+  before = now;
 }
 
 void Invariants::check(double t_s, const Digest& digest, const TableView& speaker) {

@@ -81,7 +81,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kWallsKept, "bodies keep out of walls"},
         {Invariant::kHomeInTime, "agents are home in time"},
         {Invariant::kRecalledComeHome, "recalled agents come home"},
-        {Invariant::kSumsBounded, "S_00 = steps dt, |S_mn| <= S_00, or 3 S_00 after a change"},
+        {Invariant::kSumsBounded, "S_00 = time covered, |S_mn| <= S_00, or 3 S_00 after a change"},
         {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
         {Invariant::kDigestsSayWhatIsHeld, "a digest lists what is held"},
         {Invariant::kWholeMessagesAccepted, "no whole message is refused"},
@@ -161,8 +161,9 @@ class Invariants {
   /// ≤ u_max, or |v| ≤ the speed limit where a distance is kept or on the way home; in lockstep
   /// agents with a station are there from the reserve before the end on, or where others may be in
   /// the way, at the last tick, as near as vehicles that stand for good let them; |S| ≤ S_00 =
-  /// steps · dt; while the mission is paused no body moves once it has braked; a digest matches
-  /// what its sender holds; each entry of a received digest gets at most one answer.
+  /// steps · dt, or with a half-life the time that is remembered, which is halved at its ticks;
+  /// while the mission is paused no body moves once it has braked; a digest matches what its sender
+  /// holds; each entry of a received digest gets at most one answer.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has received a digest.
@@ -226,6 +227,14 @@ class Invariants {
   struct Best {
     std::int64_t steps = 0;
     BlockSums sums;
+    double elapsed_s = 0;
+    Tick halvings = 0;  ///< of these two
+  };
+  /// What an author has sent of its memory.
+  struct Sent {
+    std::int64_t steps = 0;
+    Tick tick = 0;
+    double elapsed_s = 0;
   };
   void violate(double t_s, Invariant invariant, const std::string& who, std::string numbers);
   void check(double t_s, const WorldState& world);
@@ -233,6 +242,7 @@ class Invariants {
   void check_paused(double t_s, const Command& command);
   void check_paused(double t_s, const WorldState& world);
   void check(double t_s, const Contribution& block, AgentId relayer, const TableView* speaker);
+  void check_memory(double t_s, const Contribution& block);
   void check(double t_s, const Digest& digest, const TableView& speaker);
   void check_steps(double t_s, const TableView& holder);
   void check_average(double t_s, const TableView& holder);
@@ -240,6 +250,8 @@ class Invariants {
   void check_forecast(double t_s, const TableView& holder);
   std::map<Author, std::vector<Best>> best_of(const std::vector<TableView>& living) const;
   double quality_of(const Author& author) const;
+  double remembered_s(const Best& block) const;
+  Tick most_halvings(const std::map<Author, std::vector<Best>>& rows) const;
   Coefficients average_of(const std::map<Author, std::vector<Best>>& rows) const;
   void check_rows(double t_s, const TableView& holder,
                   const std::map<Author, std::vector<Best>>& best);
@@ -272,6 +284,7 @@ class Invariants {
   bool shifted_ = false;                                   // a target has been named
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, std::int64_t> own_steps_;               // after the tick begun last
+  std::map<std::pair<Author, int>, Sent> sent_;            // of each block, with a half-life
   std::map<Author, Shadow>
       shadows_;  // of each incarnation of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;

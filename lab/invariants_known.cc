@@ -126,7 +126,8 @@ std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
       for (int b = 0; b < block_count_; ++b) {
         const Contribution held = holder.table->block(author, b);
         Best& known = blocks[static_cast<std::size_t>(b)];
-        if (held.steps > known.steps) known = {held.steps, held.sums};
+        if (held.steps > known.steps)
+          known = {held.steps, held.sums, held.elapsed_s, halvings_at(mission_, held.header.tick)};
       }
     }
   }
@@ -139,17 +140,33 @@ double Invariants::quality_of(const Author& author) const {
   return mission_.kinds[static_cast<std::size_t>(planned_kind(mission_, author.agent))].quality;
 }
 
+/// The time that a block covered when it was sent.
+double Invariants::remembered_s(const Best& block) const {
+  if (mission_.law.memory_half_life_s > 0) return block.elapsed_s;
+  return static_cast<double>(block.steps) * mission_.timing.dt_s;
+}
+
+Tick Invariants::most_halvings(const std::map<Author, std::vector<Best>>& rows) const {
+  Tick most = 0;
+  for (const auto& [author, blocks] : rows) {
+    for (const Best& block : blocks) most = std::max(most, block.halvings);
+  }
+  return most;
+}
+
 /// (4) from the blocks alone, weighted by quality and by the time that each covers.
 Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& rows) const {
   Coefficients c = Coefficients::Zero(mission_.basis.mode_count());
+  const Tick most = most_halvings(rows);
   for (std::size_t b = 0; b < wire_modes_.size(); ++b) {
     for (std::size_t i = 0; i < wire_modes_[b].size(); ++i) {
-      double sum_s = 0, steps = 0;
+      double sum_s = 0, time_s = 0;
       for (const auto& [author, blocks] : rows) {
-        sum_s += quality_of(author) * blocks[b].sums[i];
-        steps += quality_of(author) * static_cast<double>(blocks[b].steps);
+        const double weight = quality_of(author) * left_after(most - blocks[b].halvings);
+        sum_s += weight * blocks[b].sums[i];
+        time_s += weight * remembered_s(blocks[b]);
       }
-      if (steps > 0) c.data()[wire_modes_[b][i]] = sum_s / (steps * mission_.timing.dt_s);
+      if (time_s > 0) c.data()[wire_modes_[b][i]] = sum_s / time_s;
     }
   }
   return c;
@@ -198,9 +215,11 @@ void Invariants::check_view(double t_s, const TableView& holder,
                             const std::map<Author, std::vector<Best>>& best,
                             const Coefficients& c_true) {
   double stale_s = 0, covered_s = 0;
+  const Tick most_halved = most_halvings(best);
   for (const auto& [author, blocks] : best) {
     const double weight_s = quality_of(author) * mission_.timing.dt_s;
-    covered_s += static_cast<double>(blocks.front().steps) * weight_s;
+    covered_s += quality_of(author) * remembered_s(blocks.front()) *
+                 left_after(most_halved - blocks.front().halvings);
     const RosterEntry* entry = entry_of(*holder.roster, author);
     if (mission_.radio_range_m > 0) {
       const std::int64_t lacks = blocks.front().steps - steps_of(*holder.table, author);

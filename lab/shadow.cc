@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "core/law/forecast.h"
 
@@ -174,6 +175,12 @@ Coefficients seen_at(const Mission& mission, int kind, const Eigen::Vector3d& x_
   return gain;
 }
 
+/// The time that sums of so many steps cover: what was sent with them only where it is forgotten.
+double covered_s(const Mission& mission, std::int64_t steps, double elapsed_s) {
+  if (mission.law.memory_half_life_s > 0) return elapsed_s;
+  return static_cast<double>(steps) * mission.timing.dt_s;
+}
+
 int block_size(const Mission& mission) {
   return block_size_of(mission.timing.contribution_encoding);
 }
@@ -225,7 +232,7 @@ void Shadow::take(const Mission& mission, const TableView& agent, const Contribu
   if (theirs.steps <= block.held.steps) return;
   if (agent.table->block(theirs.author(), theirs.block).steps != theirs.steps) return;
   block.before = block.held;
-  block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick,
+  block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick, theirs.elapsed_s,
                 theirs.sums,  theirs.gains,       theirs.gained_steps};
   block.gains_possible = gains_are_possible(mission, agent, block);
 }
@@ -234,8 +241,8 @@ void Shadow::take(const Mission& mission, const TableView& agent, const Contribu
 bool Shadow::gains_are_possible(const Mission& mission, const TableView& agent,
                                 const Block& block) const {
   if (agent.table->allows_shifts()) return true;
-  const Part part = part_of(mission, block);
-  const double most_s = static_cast<double>(part.gained_steps) * mission.timing.dt_s * (1 + kRoom);
+  const Part part = part_of(mission, block, halvings_at(mission, block.held.tick));
+  const double most_s = part.gained_s * (1 + kRoom);
   return std::ranges::all_of(part.gains,
                              [most_s](double gain_s) { return std::abs(gain_s) <= most_s; });
 }
@@ -322,13 +329,18 @@ void Shadow::add_shift(const Mission& mission, int block, Tick tick, double fact
   for (std::size_t k = 0; k < shift.size(); ++k) numbers[k] += factor * shift[k];
 }
 
-/// A teammate will gain with the shift of `tick`, and has gained with those of its steps.
+/// A teammate will gain with the shift of `tick`, and has gained with those of its steps, each as
+/// far as it was remembered at the last of them.
 void Shadow::correct_gains(const Mission& mission, int block, Tick tick, Part& part) const {
   if (targets_.empty()) return;
-  for (Tick step = part.tick - part.gained_steps + 1; step <= part.tick; ++step) {
-    add_shift(mission, block, step, 1, part.gains);
-    add_shift(mission, block, tick, -1, part.gains);
-  }
+  const Tick first = part.tick - part.gained_steps + 1, halvings = halvings_at(mission, part.tick);
+  const auto left = [&](Tick step) { return left_after(halvings - halvings_at(mission, step)); };
+  double steps = 0;
+  for (Tick step = first; step <= part.tick; ++step) steps += left(step);
+  const double gained = part.gained_s / mission.timing.dt_s;
+  for (Tick step = first; step <= part.tick; ++step)
+    add_shift(mission, block, step, left(step) / steps * gained, part.gains);
+  add_shift(mission, block, tick, -gained, part.gains);
 }
 
 // ---- the own row ----
@@ -339,12 +351,15 @@ double Shadow::sample_error_s(const Mission& mission, const TableView& agent,
   const RosterEntry* const entry = entry_of(*agent.roster, agent.self);
   std::vector<double> sums_s = vector_of(own.sums, block_size(mission));
   double error_s = 0;
+  // The row's tick is that of its last halving.
+  const Tick halvings = halvings_at(mission, own.header.tick);
+  const double left = left_after(halvings - std::exchange(own_halvings_, halvings));
   if (own.steps == own_steps_ + 1 && own_steps_ > 0 && entry != nullptr) {
     auto expected_s =
         block_of(seen_at(mission, entry->kind, x_m), modes(mission)[0], block_size(mission));
     add_shift(mission, 0, agent.counted, -1, expected_s);
     for (std::size_t k = 0; k < sums_s.size(); ++k) {
-      const double sample_s = sums_s[k] - own_sums_s_[k];
+      const double sample_s = sums_s[k] - left * own_sums_s_[k];
       error_s = std::max(error_s, std::abs(sample_s - expected_s[k]));
     }
   }
@@ -355,24 +370,34 @@ double Shadow::sample_error_s(const Mission& mission, const TableView& agent,
 
 // ---- the equation ----
 
-/// The part of a block without dead reckoning.
-Shadow::Part Shadow::part_of(const Mission& mission, const Block& block) const {
+/// The part of a block without dead reckoning, as remembered after so many halvings.
+Shadow::Part Shadow::part_of(const Mission& mission, const Block& block, Tick halvings) const {
   const Snapshot& held = block.held;
   // A block from before the agent's first tick may differ with the way on which it arrived, so it
   // is not used.
   const Snapshot before = block.before.tick >= active_from_ ? block.before : Snapshot{};
   const int size = block_size(mission);
+  const double left = left_after(halvings - halvings_at(mission, held.tick));
+  const double left_before = left_after(halvings - halvings_at(mission, before.tick));
   Part part{vector_of(held.sums, size),
             vector_of(held.gains, size),
-            held.steps,
+            covered_s(mission, held.steps, held.elapsed_s),
+            0,
             held.gained_steps,
             held.tick,
             held.next_tick - held.tick};
+  // Announced gains are averages over their steps at the row's mean time a step.
+  if (held.steps > 0)
+    part.gained_s =
+        part.time_s * static_cast<double>(held.gained_steps) / static_cast<double>(held.steps);
+  part.time_s *= left;
+  for (double& sum : part.sums) sum *= left;
   if (mission.timing.contribution_encoding == ContributionEncoding::kFixed16) return part;
   part.gained_steps = held.steps - before.steps;
+  part.gained_s = part.time_s - left_before * covered_s(mission, before.steps, before.elapsed_s);
   const std::vector<double> sums_before = vector_of(before.sums, size);
   for (std::size_t k = 0; k < part.gains.size(); ++k) {
-    part.gains[k] = part.sums[k] - sums_before[k];
+    part.gains[k] = part.sums[k] - left_before * sums_before[k];
   }
   return part;
 }
@@ -381,7 +406,7 @@ Shadow::Part Shadow::part_of(const Mission& mission, const Block& block) const {
 /// @param forecast_tick  of the forecast, if the row has one
 std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& row,
                                            const RosterEntry* entry,
-                                           std::optional<Tick> forecast_tick) const {
+                                           std::optional<Tick> forecast_tick, Tick halvings) const {
   std::map<Tick, Coefficients> gains;
   const auto gain = [&](const Place& place, int b) {
     auto found = gains.find(place.tick);
@@ -393,7 +418,7 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
   std::vector<Part> parts;
   for (int b = 0; b < static_cast<int>(row.blocks.size()); ++b) {
     const Block& block = row.blocks[static_cast<std::size_t>(b)];
-    Part& part = parts.emplace_back(part_of(mission, block));
+    Part& part = parts.emplace_back(part_of(mission, block, halvings));
     part.quality = quality_of(mission, entry);
     if (entry != nullptr) part.until = covers_until(mission, entry->author.agent);
     if (!forecast_tick) part.gained_steps = 0;
@@ -407,13 +432,16 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
     Tick step = row.newest->tick - std::ssize(block.since);
     for (const Place& place : block.since) {
       const auto more = gain(place, b);
-      for (std::size_t k = 0; k < more.size(); ++k) part.sums[k] += more[k];
-      add_shift(mission, b, ++step, -1, part.sums);
+      const double left = left_after(halvings - halvings_at(mission, place.tick));
+      for (std::size_t k = 0; k < more.size(); ++k) part.sums[k] += left * more[k];
+      part.time_s += left * mission.timing.dt_s;
+      ++step;
+      add_shift(mission, b, step, -left_after(halvings - halvings_at(mission, step)), part.sums);
     }
-    part.steps += std::ssize(block.since);
     part.gains = gain(*row.newest, b);
     add_shift(mission, b, *forecast_tick, -1, part.gains);
     part.gained_steps = 1;
+    part.gained_s = mission.timing.dt_s;
     part.tick = row.newest->tick;
   }
   return parts;
@@ -422,19 +450,23 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
 std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
                                                     const TableView& agent) const {
   std::vector<std::vector<Part>> team(1);
+  // An agent that has learned late of a pause has halved its sums too early, and they stay so.
+  const Tick halvings =
+      halvings_at(mission, std::max(agent.counted, agent.table->block(agent.self, 0).header.tick));
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const Contribution own = agent.table->block(agent.self, b);
     const int size = block_size(mission);
     const std::vector<double> nothing(static_cast<std::size_t>(size));
-    team[0].push_back({vector_of(own.sums, size), nothing, own.steps});
+    team[0].push_back(
+        {vector_of(own.sums, size), nothing, covered_s(mission, own.steps, own.elapsed_s)});
     team[0].back().quality = quality_of(mission, entry_of(*agent.roster, agent.self));
   }
   for (const auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
     if (entry != nullptr && is_forgotten(*entry, agent)) continue;
     const bool forecast = entry != nullptr && has_forecast(mission, agent, *entry);
-    team.push_back(
-        parts_of(mission, row, entry, forecast ? std::optional(agent.counted) : std::nullopt));
+    team.push_back(parts_of(mission, row, entry,
+                            forecast ? std::optional(agent.counted) : std::nullopt, halvings));
   }
   return team;
 }
@@ -455,14 +487,14 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
     std::vector<double> sums(static_cast<std::size_t>(size));
     for (const auto& parts : team) {
       const Part& part = parts[at];
-      const double gained_s = static_cast<double>(part.gained_steps) * dt_s;
+      const double gained_s = part.gained_steps > 0 ? part.gained_s : 0;
       const Tick age = std::max<Tick>(0, agent.counted - part.tick);
       const double till_rest_s = static_cast<double>(part.until - agent.counted) * dt_s;
       const double w_s = gained_s > 0 ? weight_s(mission, std::min(h_s, till_rest_s),
                                                  part.gained_steps, age, part.period)
                                       : 0;
       const double share = w_s > 0 ? w_s / gained_s : 0;
-      time_s += part.quality * (static_cast<double>(part.steps) * dt_s + w_s);
+      time_s += part.quality * (part.time_s + w_s);
       for (std::size_t k = 0; k < sums.size(); ++k) {
         sums[k] += part.quality * (part.sums[k] + share * part.gains[k]);
       }

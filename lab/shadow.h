@@ -57,6 +57,7 @@ class Shadow {
   struct Snapshot {
     std::int64_t steps = 0;
     Tick tick = 0, next_tick = 0;
+    double elapsed_s = 0;
     BlockSums sums, gains;  ///< `gains` and their steps as the author has sent them
     std::int64_t gained_steps = 0;
   };
@@ -75,7 +76,8 @@ class Shadow {
   /// What one row adds to one block of ĉ.
   struct Part {
     std::vector<double> sums, gains;
-    std::int64_t steps = 0, gained_steps = 0;  ///< gained_steps 0: it has no forecast
+    double time_s = 0, gained_s = 0;  ///< what they cover
+    std::int64_t gained_steps = 0;    ///< 0: it has no forecast
     Tick tick = 0, period = 0;
     double quality = 1;
     Tick until = std::numeric_limits<Tick>::max();  ///< its author rests from then on
@@ -86,13 +88,13 @@ class Shadow {
   void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void dead_reckon(const RosterEntry& entry, Row& row) const;
-  Part part_of(const Mission& mission, const Block& block) const;
+  Part part_of(const Mission& mission, const Block& block, Tick halvings) const;
   /// Adds `factor` times the shift of a tick.
   void add_shift(const Mission& mission, int block, Tick tick, double factor,
                  std::vector<double>& numbers) const;
   void correct_gains(const Mission& mission, int block, Tick tick, Part& part) const;
   std::vector<Part> parts_of(const Mission& mission, const Row& row, const RosterEntry* entry,
-                             std::optional<Tick> forecast_tick) const;
+                             std::optional<Tick> forecast_tick, Tick halvings) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
   /// The modes of the one mission that this shadow follows.
@@ -103,7 +105,8 @@ class Shadow {
   Tick active_from_;
   TargetMemory targets_;
   std::int64_t own_steps_ = -1;     // of the own row at the last call of sample_error_s(), …
-  std::vector<double> own_sums_s_;  // … and the sums of its first block
+  std::vector<double> own_sums_s_;  // … the sums of its first block, …
+  Tick own_halvings_ = 0;           // … and how often they had been halved
   std::map<Author, Row> rows_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest are dropped
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // for the radio range, of the newest …

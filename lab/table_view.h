@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -34,6 +35,15 @@ struct TableView {
 
 /// How far a sum of `steps` terms ≤ dt may be from the exact one, relative.
 inline double rounding(std::int64_t steps) { return 1e-12 + static_cast<double>(steps) * 0x1p-53; }
+
+/// How often coverage has been halved by the sample of a counted tick.
+inline Tick halvings_at(const Mission& mission, Tick counted) {
+  if (mission.law.memory_half_life_s <= 0) return 0;
+  const double ticks = std::round(mission.law.memory_half_life_s / mission.timing.dt_s);
+  return std::max<Tick>(0, counted) / std::max<Tick>(1, static_cast<Tick>(ticks));
+}
+/// What is left of coverage after so many halvings more.
+inline double left_after(Tick halvings) { return std::pow(0.5, static_cast<double>(halvings)); }
 
 inline std::int64_t steps_of(const CoverageTable& table, const Author& author) {
   return table.steps_held(author).value_or(0);

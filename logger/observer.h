@@ -2,10 +2,15 @@
 // φ² of the team for an outside observer, computed from the true positions of the vehicles. If
 // kinds have footprints or qualities, it is of what the team has seen (core/mission/kinds.h). If
 // the target changes, each moment counts against the target of its own time
-// (core/law/target_shift.h).
+// (core/law/target_shift.h). With a half-life it is of what the team remembers
+// (core/law/half_life.h).
 #pragma once
 
+#include <cstdint>
+
+#include "core/base/ids.h"
 #include "core/basis/basis.h"
+#include "core/law/half_life.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
 
@@ -19,12 +24,15 @@ class Observer {
     sums_ = {Coefficients::Zero(mission.basis.mode_count()), 0};
     before_ = sums_;
     sensors_ = Sensors(mission);
+    half_life_ = HalfLife(mission);
   }
   bool begun() const { return weights_.size() > 0; }
 
-  /// A member of `kind` was at `x_m` for a tick. Places outside of the domain cover nothing.
-  void see(const Mission& mission, int kind, const Eigen::Vector3d& x_m) {
+  /// A member of `kind` was at `x_m` for a tick, `counted` among those that count; they ascend.
+  /// Places outside of the domain cover nothing.
+  void see(const Mission& mission, Tick counted, int kind, const Eigen::Vector3d& x_m) {
     if (!mission.domain.contains(x_m)) return;
+    fade(half_life_.halvings(counted));
     const double worth_s =
         sensors_.of(kind).sample(CosinesAt(x_m, mission.domain, mission.basis), mission.basis,
                                  mission.timing.dt_s, sums_.f_s.data());
@@ -61,11 +69,24 @@ class Observer {
     Coefficients f_s;
     double covered_s = 0;
   };
+
+  void fade(std::int64_t halvings) {
+    if (halvings <= halvings_) return;
+    const double factor = HalfLife::factor(halvings_, halvings);
+    halvings_ = halvings;
+    for (Sums* const sums : {&sums_, &before_}) {
+      sums->f_s *= factor;
+      sums->covered_s *= factor;
+    }
+  }
+
   Sums sums_;
-  Sums before_;         // at the newest change of the target
+  Sums before_;         // at the newest change of the target, halved since as `sums_`
   Coefficients shift_;  // μ − μ₀; empty: 0
   Coefficients weights_;
   Sensors sensors_;
+  HalfLife half_life_;
+  std::int64_t halvings_ = 0;
 };
 
 }  // namespace ergocast

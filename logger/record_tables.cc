@@ -194,8 +194,9 @@ void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vect
   if (rests(mission, id, context.row.counted())) {
     note_home(mission, id, x_m);
   } else if (covers) {
-    observer_.see(mission, entry->kind, x_m);
-    if (in_cosines_) cosines_.see(*in_cosines_, entry->kind, x_m);
+    const Tick counted = context.row.counted();
+    observer_.see(mission, counted, entry->kind, x_m);
+    if (in_cosines_) cosines_.see(*in_cosines_, counted, entry->kind, x_m);
   }
   if (keeps_distance(mission)) row_places_m_.push_back(x_m);
 }

@@ -39,6 +39,8 @@ inline constexpr Limits kTimeout_s = above(0, 86400);
 inline constexpr Limits kDuration_s = above(0, 1e7);
 /// Limit (Time): steps of a mission. Beyond it: the scenario is refused.
 inline constexpr double kMaxTicks = 1e8;
+/// The least law.memory_half_life_s other than 0 [steps].
+inline constexpr double kLeastHalfLife_ticks = 10;
 /// Ticks between two broadcasts of any block.
 inline constexpr Limits kPeriod_ticks = between(1, 1000);
 /// In real time, the least wall time of a step.

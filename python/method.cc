@@ -178,7 +178,9 @@ void add_law(py::module_& module) {
       .def_readonly("noise_intensity", &ControlLaw::noise_intensity, "σ [m/√s].")
       .def_readonly("noise_ceiling", &ControlLaw::noise_ceiling, "Greatest σ [m/√s].")
       .def_readonly("contraction_gain_per_s", &ControlLaw::contraction_gain_per_s, "k [1/s].")
-      .def_readonly("anticipation", &ControlLaw::anticipation, "How far agents look ahead.");
+      .def_readonly("anticipation", &ControlLaw::anticipation, "How far agents look ahead.")
+      .def_readonly("memory_half_life_s", &ControlLaw::memory_half_life_s,
+                    "Half-life of coverage [s]; 0: nothing is forgotten.");
 }
 
 void add_mission(py::module_& module) {

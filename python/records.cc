@@ -154,7 +154,8 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
     const bool counts =
         !is_held(record.rows.holds(), point.tick) && !record.rows.rests(mission, agent, point.tick);
     if (counts && is_member(agent, point.tick)) {
-      observer.see(mission, planned_kind(mission, agent), point.x_m);
+      const Tick counted = counted_ticks(record.rows.holds(), point.tick);
+      observer.see(mission, counted, planned_kind(mission, agent), point.x_m);
     }
   });
   write_before(std::numeric_limits<Tick>::max());

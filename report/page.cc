@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/law/half_life.h"
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
@@ -43,6 +44,8 @@ std::string law_text(const ControlLaw& law) {
   if (law.perturbation == Perturbation::kAdaptive) text += " to " + readable(law.noise_ceiling);
   text += " m/√s";
   text += ", k = " + readable(law.contraction_gain_per_s) + " /s";
+  if (law.memory_half_life_s > 0)
+    text += ", half-life of coverage " + readable(law.memory_half_life_s) + " s";
   if (law.contraction_gain_per_s == 0) return text;
   return text + " towards " + point_text(law.contraction_center_m.head<2>()) + " m";
 }
@@ -113,6 +116,8 @@ Json conventions(const Mission& mission, bool free_domain) {
   for (const AgentKind& kind : mission.kinds) add("kind", kind_text(kind));
   if (!Sensors(mission).uniform())
     add("seen", "coverage and φ² are of what the agents’ sensors have seen, weighted by quality");
+  if (HalfLife(mission).any())
+    add("memory", "coverage and φ² are of what is remembered: halved once in each half-life");
   if (mission.speed_limit_mps > 0) {
     add("speed limit", readable(mission.speed_limit_mps) + " m/s; faster commands are cut to it");
   }
@@ -332,6 +337,8 @@ Json page_mission(const Mission& flown, const Field& density) {
   if (!mission.walls.empty()) page["walls"] = rings_of(mission);
   if (keeps_distance(mission)) page["body_radius_m"] = mission.separation.distance_m / 2;
   if (any_station(mission)) page["stations"] = stations_of(mission);
+  if (const HalfLife half_life(mission); half_life.any())
+    page["half_life_ticks"] = half_life.ticks();
   return page;
 }
 

@@ -47,7 +47,7 @@ class Judge {
 
   void see(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m) {
     const auto id = static_cast<AgentId>(agent);
-    if (!rests(mission_, id, tick)) observer_.see(mission_, planned_kind(mission_, id), x_m);
+    if (!rests(mission_, id, tick)) observer_.see(mission_, tick, planned_kind(mission_, id), x_m);
   }
   double metric() const { return observer_.metric(mission_); }
 

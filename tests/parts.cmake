@@ -22,6 +22,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/forecast_order_test.cc
     core/forecast_test.cc
     core/geometry_test.cc
+    core/half_life_test.cc
     core/hold_test.cc
     core/kinds_test.cc
     core/look_ahead_test.cc

@@ -36,7 +36,7 @@ struct Contribution {
   Header header;
   std::int64_t steps = 0;        ///< samples in the sums; more steps win
   Tick next_broadcast_tick = 0;  ///< when its sender will broadcast again
-  double elapsed_s = 0;          ///< time the sums cover, steps · dt
+  double elapsed_s = 0;          ///< time the sums cover: steps · dt, or what is remembered of it
   std::int32_t block = 0;
   std::int32_t mode_count = 0;
   BlockSums sums;  ///< Σ f_k(x) dt, not divided by h_k [s]; BlockLayout::size_of() numbers

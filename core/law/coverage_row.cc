@@ -26,31 +26,53 @@ bool gains_within(std::span<const double> sums, const double* before, double lim
   return beyond == 0;
 }
 
-bool sums_are_possible(const Contribution& c, double dt_s, double range) {
+/// A time that has no effect beside a step [s].
+constexpr double kFaded_s = 0x1p-400;
+
+/// Multiplies sums by a power of two.
+ERGOCAST_VECTORIZED
+void multiply(std::span<double> sums, double factor) {
+  for (double& sum : sums) sum *= factor;
+}
+
+/// With a half-life any time up to a longest one is possible.
+bool elapsed_is_possible(const Contribution& c, double dt_s, const HalfLife& half_life) {
   const double expected_s = static_cast<double>(c.steps) * dt_s;
   const double margin_s = expected_s * rounding_margin(c.steps);
-  if (!(std::abs(c.elapsed_s - expected_s) <= margin_s)) return false;
+  if (!half_life.any()) return std::abs(c.elapsed_s - expected_s) <= margin_s;
+  return c.elapsed_s > 0 && c.elapsed_s <= expected_s + margin_s &&
+         c.elapsed_s <= half_life.longest_memory_s(dt_s);
+}
+
+bool sums_are_possible(const Contribution& c, double dt_s, double range,
+                       const HalfLife& half_life) {
+  if (!elapsed_is_possible(c, dt_s, half_life)) return false;
+  const double expected_s = half_life.any() ? c.elapsed_s : static_cast<double>(c.steps) * dt_s;
+  const double margin_s = expected_s * rounding_margin(c.steps);
   // f_00 = 1, so S_00 is the time covered.
   if (c.block == 0 && !(std::abs(c.sums[0] - expected_s) <= margin_s)) return false;
   return c.sums.largest() <= range * (expected_s + margin_s);
 }
 
 /// Numbers that travelled in 16 bits may have been rounded up, but not beyond 1.
-bool gains_are_possible(const Contribution& c, double dt_s, double range) {
-  const double gained_s = static_cast<double>(c.gained_steps) * dt_s;
+bool gains_are_possible(const Contribution& c, double dt_s, double range,
+                        const HalfLife& half_life) {
+  const double step_s = half_life.any() ? c.elapsed_s / static_cast<double>(c.steps) : dt_s;
+  const double gained_s = static_cast<double>(c.gained_steps) * step_s;
   return c.gained_steps >= 0 && c.gained_steps <= c.steps &&
          c.gains.largest() <= range * gained_s * (1 + rounding_margin(c.steps));
 }
 
 }  // namespace
 
-bool is_possible(const Contribution& theirs, double dt_s, double range) {
-  return sums_are_possible(theirs, dt_s, range) && gains_are_possible(theirs, dt_s, range);
+bool is_possible(const Contribution& theirs, double dt_s, double range, const HalfLife& half_life) {
+  return sums_are_possible(theirs, dt_s, range, half_life) &&
+         gains_are_possible(theirs, dt_s, range, half_life);
 }
 
 bool CoverageBlock::looks_like(const CoverageBlock& other) const {
-  return steps_ == other.steps_ && tick_ == other.tick_ &&
-         next_broadcast_tick_ == other.next_broadcast_tick_;
+  return steps_ == other.steps_ && remembered_steps_ == other.remembered_steps_ &&
+         tick_ == other.tick_ && next_broadcast_tick_ == other.next_broadcast_tick_;
 }
 
 void CoverageBlock::replace(const Contribution& theirs, const GainRule& rule) {
@@ -58,21 +80,68 @@ void CoverageBlock::replace(const Contribution& theirs, const GainRule& rule) {
   if (theirs.encoding == ContributionEncoding::kFixed16) {
     announced_gains_ = theirs.gains;
     gained_steps = theirs.gained_steps;
+    announced_time_steps_ = static_cast<double>(gained_steps);
+    // The gains of a row that forgets are rates, times so many of its mean steps.
+    if (rule.half_life.any())
+      announced_time_steps_ *= theirs.elapsed_s / (static_cast<double>(theirs.steps) * rule.dt_s);
   } else if (rule.noted) {
     gained_steps = compare(theirs, rule);
   }
-  replace(theirs);
+  replace_sums(theirs, rule);
   gained_steps_ = gained_steps;
 }
 
-void CoverageBlock::replace(const Contribution& theirs) {
+void CoverageBlock::replace_sums(const Contribution& theirs, const GainRule& rule) {
   steps_ = theirs.steps;
+  elapsed_s_ = theirs.elapsed_s;
   gained_steps_ = 0;
   sequence_ = theirs.header.sequence;
   tick_ = theirs.header.tick;
   next_broadcast_tick_ = theirs.next_broadcast_tick;
   range_ = theirs.range;
   sums_ = theirs.sums;
+  fade(rule);
+}
+
+/// Sets the time that the sums cover at the present tick, where they have this factor.
+void CoverageBlock::weigh(const GainRule& rule, double factor) {
+  remembered_s_ = elapsed_s_ * factor;
+  remembered_steps_ =
+      rule.half_life.any() ? remembered_s_ / rule.dt_s : static_cast<double>(steps_);
+}
+
+void CoverageBlock::fade(const GainRule& rule) {
+  const double factor = HalfLife::factor(rule.half_life.halvings(tick_), rule.halvings);
+  weigh(rule, factor);
+  faded_ = factor != 1 && steps_ > 0;
+  faded_sums_ = faded_ ? sums_ : BlockSums();
+  if (faded_) multiply(faded_sums_.edit(), factor);
+  fade_before(rule.halvings);
+}
+
+void CoverageBlock::fade_before(std::int64_t halvings) {
+  const double factor = HalfLife::factor(halvings_before_, halvings);
+  halvings_before_ = halvings;
+  if (factor == 1 || steps_before_ == 0) return;
+  steps_before_ *= factor;
+  multiply(sums_before_.edit(), factor);
+}
+
+double CoverageBlock::halve(const GainRule& rule) {
+  const std::int64_t had = rule.half_life.halvings(tick_);
+  if (had == rule.halvings) return 1;
+  // A row that rests for ever fades no further than this: c_k stays a ratio of normal numbers.
+  const double factor = elapsed_s_ < kFaded_s ? 1 : HalfLife::factor(had, rule.halvings);
+  tick_ = rule.half_life.tick_of(rule.halvings);
+  elapsed_s_ *= factor;
+  weigh(rule, 1);
+  return factor;
+}
+
+void CoverageBlock::add_step(const GainRule& rule) {
+  ++steps_;
+  if (rule.half_life.any()) elapsed_s_ += rule.dt_s;
+  weigh(rule, 1);
 }
 
 /// Keeps the sums that `theirs` is compared with; returns the steps gained.
@@ -83,7 +152,18 @@ std::int64_t CoverageBlock::compare(const Contribution& theirs, const GainRule& 
   sums_before_ = comparable ? std::move(sums_) : BlockSums();
   const double margin_s =
       static_cast<double>(theirs.steps) * rule.dt_s * rounding_margin(theirs.steps);
-  const double most_s = rule.range * (static_cast<double>(steps) * rule.dt_s + 2 * margin_s);
+  double gained_s = static_cast<double>(steps) * rule.dt_s;
+  if (rule.half_life.any()) {
+    // Both as halved as theirs.
+    steps_before_ = comparable ? elapsed_s_ / rule.dt_s : 0;
+    halvings_before_ = rule.half_life.halvings(tick_);
+    fade_before(rule.half_life.halvings(theirs.header.tick));
+    gained_s = theirs.elapsed_s - steps_before_ * rule.dt_s;
+    if (!(gained_s > 2 * margin_s)) return 0;
+  } else {
+    steps_before_ = comparable ? static_cast<double>(steps_) : 0;
+  }
+  const double most_s = rule.range * (gained_s + 2 * margin_s);
   return gains_within(theirs.sums, sums_before_.data(), most_s) ? steps : 0;
 }
 
@@ -100,7 +180,7 @@ CoverageRow::CoverageRow(const Author& author, const BlockLayout& layout)
       block_size_(layout.block_size()),
       blocks_(static_cast<std::size_t>(layout.block_count())) {}
 
-double* CoverageRow::sampled() {
+double* CoverageRow::sampled(const GainRule& rule) {
   if (samples_.empty()) {
     samples_.resize(blocks_.size() * static_cast<std::size_t>(block_size_));
     double* at = samples_.data();
@@ -109,13 +189,28 @@ double* CoverageRow::sampled() {
       block.forgo_gains();
       at += block_size_;
     }
+    halve_samples(rule);
   }
   return samples_.data();
 }
 
-void CoverageRow::add_step() {
-  for (CoverageBlock& block : blocks_) block.add_step();
+void CoverageRow::add_step(const GainRule& rule) {
+  for (CoverageBlock& block : blocks_) block.add_step(rule);
   sum_up();
+}
+
+void CoverageRow::fade(const GainRule& rule) {
+  if (!samples_.empty()) return halve_samples(rule);
+  for (CoverageBlock& block : blocks_) block.fade(rule);
+}
+
+void CoverageRow::halve_samples(const GainRule& rule) {
+  double* at = samples_.data();
+  for (CoverageBlock& block : blocks_) {
+    const double factor = block.halve(rule);
+    if (factor != 1) multiply({at, static_cast<std::size_t>(block_size_)}, factor);
+    at += block_size_;
+  }
 }
 
 void CoverageRow::replace(const Contribution& theirs, const GainRule& rule) {
@@ -124,7 +219,8 @@ void CoverageRow::replace(const Contribution& theirs, const GainRule& rule) {
     block.replace(theirs, rule);
   } else {
     std::ranges::copy(theirs.sums, samples_.data() + theirs.block * block_size_);
-    block.replace(theirs);
+    block.replace_sums(theirs, rule);
+    halve_samples(rule);
   }
   sum_up();
 }
@@ -163,7 +259,10 @@ bool CoverageRow::uniform_blocks() const {
 
 bool CoverageRow::uniform_gains() const {
   return std::all_of(blocks_.begin() + 1, blocks_.end(), [&](const CoverageBlock& block) {
-    return block.gained_steps() == blocks_.front().gained_steps();
+    const CoverageBlock& first = blocks_.front();
+    return block.gained_steps() == first.gained_steps() &&
+           block.gained_time_steps(true) == first.gained_time_steps(true) &&
+           block.gained_time_steps(false) == first.gained_time_steps(false);
   });
 }
 

@@ -51,6 +51,19 @@ CoverageTable::CoverageTable(const Basis& basis, double dt_s, Tick joined)
       layout_(basis, ContributionEncoding::kDouble),
       gain_rule_{.dt_s = dt_s, .joined = joined} {}
 
+void CoverageTable::set_half_life(const HalfLife& half_life) {
+  ERGOCAST_REQUIRE(rows_.empty());
+  gain_rule_.half_life = half_life;
+}
+
+void CoverageTable::set_now(Tick counted) {
+  // An agent that learns late of a pause counts a tick again. Samples that were halved stay so.
+  const std::int64_t halvings = gain_rule_.half_life.halvings(counted);
+  if (halvings <= gain_rule_.halvings) return;
+  gain_rule_.halvings = halvings;
+  for (CoverageRow& row : rows_) row.fade(gain_rule_);
+}
+
 void CoverageTable::set_layout(const BlockLayout& layout) {
   ERGOCAST_REQUIRE(rows_.empty());
   layout_ = layout;
@@ -106,7 +119,7 @@ void CoverageTable::set_quality(const Author& author, double quality) {
 void CoverageTable::add_sample(const Author& author, const BasisAt& at, const double* footprint) {
   CoverageRow* const row = find_or_add(author);
   ERGOCAST_REQUIRE(row != nullptr);
-  double* const samples = row->sampled();
+  double* const samples = row->sampled(gain_rule_);
   if (!layout_.in_basis_order()) {
     add_in_slots(at, footprint, samples);
   } else if (footprint == nullptr) {
@@ -114,13 +127,13 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at, const do
   } else {
     accumulate_basis(at, basis_, gain_rule_.dt_s, footprint, samples);
   }
-  row->add_step();
+  row->add_step(gain_rule_);
 }
 
 void CoverageTable::shift_sample(const Author& author, const double* shift) {
   CoverageRow* const row = find(author);
   ERGOCAST_REQUIRE(row != nullptr && allows_shifts());
-  double* const samples = row->sampled();
+  double* const samples = row->sampled(gain_rule_);
   for (int slot = 0; slot < layout_.slot_count(); ++slot)
     samples[slot] -= shift[slot] * gain_rule_.dt_s;
 }
@@ -149,10 +162,11 @@ bool CoverageTable::fits(const Contribution& theirs) const {
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (theirs.encoding != layout_.encoding()) return Merge::kRefusedEncoding;
   if (theirs.steps < 1 || theirs.steps > max_steps || theirs.next_broadcast_tick < 0 ||
-      !fits(theirs) || !is_possible(theirs, gain_rule_.dt_s, kShiftedRange)) {
+      !fits(theirs) || !is_possible(theirs, gain_rule_.dt_s, kShiftedRange, gain_rule_.half_life)) {
     return Merge::kRefusedRange;
   }
-  if (!is_possible(theirs, gain_rule_.dt_s, gain_rule_.range)) return Merge::kRefusedShift;
+  if (!is_possible(theirs, gain_rule_.dt_s, gain_rule_.range, gain_rule_.half_life))
+    return Merge::kRefusedShift;
   CoverageRow* const row = find_or_add(theirs.author());
   if (row == nullptr) return Merge::kRefusedLimit;
   const CoverageBlock& held = row->block(theirs.block);
@@ -166,8 +180,8 @@ CoverageTable::Gains CoverageTable::gains(std::size_t row, int block) const {
   const CoverageBlock& held = rows_[row].block(block);
   const std::int64_t steps = gain_rule_.noted ? held.gained_steps() : 0;
   if (layout_.encoding() == ContributionEncoding::kFixed16)
-    return {nullptr, held.announced_gains().data(), steps};
-  return {held.sums_before().data(), nullptr, steps};
+    return {nullptr, held.announced_gains().data(), steps, held.gained_time_steps(true)};
+  return {held.sums_before().data(), nullptr, steps, held.gained_time_steps(false)};
 }
 
 Contribution CoverageTable::block(const Author& author, int block) const {
@@ -180,7 +194,8 @@ Contribution CoverageTable::block(const Author& author, int block) const {
   if (const CoverageRow* row = find(author)) {
     row->write(out, static_cast<std::size_t>(layout_.size_of(block)));
     if (!row->samples().empty() && allows_shifts()) out.range = kShiftedRange;
-    out.elapsed_s = static_cast<double>(out.steps) * gain_rule_.dt_s;
+    out.elapsed_s = gain_rule_.half_life.any() ? row->block(block).elapsed_s()
+                                               : static_cast<double>(out.steps) * gain_rule_.dt_s;
   }
   return out;
 }
@@ -205,7 +220,7 @@ void CoverageTable::average_slots(double* coverage) const {
     std::size_t count = 0;
     for (const CoverageRow& row : rows_) {
       if (!row.counts()) continue;
-      steps += row.quality() * static_cast<double>(row.block(b).steps());
+      steps += row.quality() * row.block(b).remembered_steps();
       scratch_.qualities[count] = row.quality();
       scratch_.counted[count++] = row.sums(b);
     }
@@ -244,7 +259,7 @@ const double* CoverageTable::sums_of(const Author& author) const {
 double CoverageTable::covered_s() const {
   double steps = 0;
   for (const CoverageRow& row : rows_) {
-    if (row.counts()) steps += row.quality() * static_cast<double>(row.block(0).steps());
+    if (row.counts()) steps += row.quality() * row.block(0).remembered_steps();
   }
   return steps * gain_rule_.dt_s;
 }

@@ -18,6 +18,7 @@
 #include "core/basis/basis.h"
 #include "core/law/block_layout.h"
 #include "core/law/coverage_row.h"
+#include "core/law/half_life.h"
 
 namespace ergocast {
 
@@ -44,6 +45,24 @@ class CoverageTable {
   /// call they are doubles in the order of the basis.
   /// @pre no rows
   void set_layout(const BlockLayout& layout);
+
+  /// From now on rows are forgotten by halving. Without it, or with no half-life, nothing is.
+  /// @pre no rows
+  void set_half_life(const HalfLife& half_life);
+  const HalfLife& half_life() const { return gain_rule_.half_life; }
+
+  /// The counted tick has come: all that the table returns but block() is as it is remembered at
+  /// this tick. Call it before the tick's sample. An earlier tick has no effect. With a half-life
+  /// it may allocate at ticks at which sums are halved.
+  void set_now(Tick counted);
+
+  /// How often sums have been halved by the present tick.
+  std::int64_t halvings() const { return gain_rule_.halvings; }
+  /// What a step at a counted tick weighs at the present tick: a power of two; 1 without a
+  /// half-life.
+  double weight_at(Tick counted) const {
+    return HalfLife::factor(half_life().halvings(counted), halvings());
+  }
 
   int block_count() const { return layout_.block_count(); }
   int block_size() const { return layout_.block_size(); }
@@ -75,7 +94,8 @@ class CoverageTable {
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
   /// One block of a row as its author sent it, with the header except for the run. If the block is
-  /// unknown, steps is 0.
+  /// unknown, steps is 0. With a half-life, the tick of a row with samples is that of its last
+  /// halving.
   Contribution block(const Author& author, int block) const;
 
   /// From now on the row of `author` does not count, even if it arrives later. It is kept and
@@ -85,7 +105,7 @@ class CoverageTable {
   void remember_all();
 
   /// c_k = Σ_j q_j S_j / Σ_j q_j elapsed_j per block, (4) weighted by quality and by the time that
-  /// each row covers.
+  /// each row covers, both as remembered at the present tick.
   /// Entries of blocks without any samples are 0. Does not allocate.
   /// @param coverage  in the order of the basis, for every layout
   void average(Coefficients& coverage) const;

@@ -34,6 +34,7 @@ Forecast::Forecast(const Mission& mission, const Author& self)
     : self_(self),
       sampling_(mission),
       look_ahead_(mission),
+      half_life_(mission),
       dead_reckons_(mission.dead_reckoning),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
       team_sum_(sampling_.layout()) {
@@ -95,7 +96,7 @@ bool Forecast::uniform_blocks(const CoverageTable& table) const {
 /// One row's part in one block, without its share and the places of its numbers.
 Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView sent = table.view(row, block);
-  Term term{.steps = sent.steps,
+  Term term{.remembered_steps = sent.remembered_steps,
             .tick = sent.tick,
             .period = sent.period,
             .rest_from = rest_from(table.author(row).agent),
@@ -103,12 +104,16 @@ Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) c
   const Outlook& outlook = outlooks_[row];
   if (!outlook.any || sent.steps == 0) return term;
   if (!outlook.by_places(sent.tick)) {
-    term.gained_steps = table.gains(row, block).steps;
+    const CoverageTable::Gains gains = table.gains(row, block);
+    term.gained_steps = gains.steps;
+    term.gained_time_steps = gains.time_steps;
     return term;
   }
   term.track = outlook.track;
-  term.steps = outlook.track->steps(block);
+  term.added_steps = outlook.track->added_steps(block);
+  term.remembered_steps = outlook.track->remembered_steps(block);
   term.gained_steps = 1;
+  term.gained_time_steps = 1;
   term.tick = outlook.track->newest_tick();
   return term;
 }
@@ -121,7 +126,7 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row)) continue;
     const Term term = term_of(table, row, block);
-    steps += term.quality * static_cast<double>(term.steps);
+    steps += term.quality * term.remembered_steps;
     n += term.gained_steps > 0;
     if (const Author& author = table.author(row); author == self_) {
       terms_.own = term;
@@ -145,7 +150,7 @@ double Forecast::weigh(Term& term, double horizon_s, Tick tick) const {
   const double till_rest_s = static_cast<double>(term.rest_from - tick) * dt_s;
   const double weight_s =
       look_ahead_.weight_s(std::min(horizon_s, till_rest_s), term.gained_steps, age, term.period);
-  term.share = weight_s / (static_cast<double>(term.gained_steps) * dt_s);
+  term.share = weight_s / (term.gained_time_steps * dt_s);
   return term.quality * weight_s;
 }
 
@@ -170,32 +175,37 @@ void Forecast::point(Term& term, const CoverageTable& table, std::size_t row, in
   term.announced_gains = gains.announced != nullptr ? gains.announced - first : nullptr;
 }
 
-/// Adds `each_s` to a change for each of the last `steps` ticks up to `newest` in which it held.
-void Forecast::add_steps(Tick newest, std::int64_t steps, double each_s, Correction& sum) const {
+/// Adds `each_s` to a change for each of the last `steps` ticks up to `newest` in which it held,
+/// times what that tick weighs once all has been halved so many times.
+void Forecast::add_steps(Tick newest, std::int64_t steps, std::int64_t halvings, double each_s,
+                         Correction& sum) const {
   const std::span<const TargetShift::Change> changes = shift_->changes();
   Tick until = newest + 1;
   for (std::size_t i = changes.size(); i-- > 0;) {
     const Tick from = std::max(changes[i].from, newest + 1 - steps);
-    if (from < until) sum[i] += static_cast<double>(until - from) * each_s;
+    if (from < until) sum[i] += half_life_.remembered_ticks(from, until, halvings) * each_s;
     until = std::min(until, changes[i].from);
   }
 }
 
 /// Adds what a term lacks of the shifts.
-void Forecast::add_correction(const Term& term, const CoverageTable::BlockView& sent, Tick tick,
+void Forecast::add_correction(const Term& term, Tick sent, Tick tick, std::int64_t halvings,
                               Correction& sum) const {
   if (term.gained_steps == 0) return;
+  const std::int64_t now = half_life_.halvings(tick), then = half_life_.halvings(sent);
   const double step_s = term.quality * sampling_.dt_s();
   if (term.track != nullptr) {
     // Places are f without a shift: those that extend the row, and the newest, where it goes on.
-    add_steps(term.tick, term.steps - sent.steps, step_s, sum);
-    add_steps(tick, 1, term.share * step_s, sum);
+    add_steps(term.tick, term.added_steps, halvings, step_s, sum);
+    add_steps(tick, 1, now, term.share * step_s, sum);
     return;
   }
   // Its gains have the shifts of their ticks, and it will gain with the present one.
-  const double gained = static_cast<double>(term.gained_steps);
-  add_steps(sent.tick, term.gained_steps, -term.share * step_s, sum);
-  add_steps(tick, 1, gained * (term.share * step_s), sum);
+  const Tick first = sent + 1 - term.gained_steps;
+  const double gained = term.gained_time_steps;
+  const double each = gained / half_life_.remembered_ticks(first, sent + 1, then);
+  add_steps(sent, term.gained_steps, then, each * (-term.share * step_s), sum);
+  add_steps(tick, 1, now, gained * (term.share * step_s), sum);
 }
 
 Forecast::Correction Forecast::correction(const CoverageTable& table, int block, Tick tick) const {
@@ -205,7 +215,7 @@ Forecast::Correction Forecast::correction(const CoverageTable& table, int block,
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row) || table.author(row) == self_) continue;
     const Term& term = table.author(row) < self_ ? *earlier++ : *later++;
-    add_correction(term, table.view(row, block), tick, sum);
+    add_correction(term, table.view(row, block).tick, tick, table.halvings(), sum);
   }
   return sum;
 }

@@ -96,8 +96,9 @@ class Forecast {
   Tick rest_from(AgentId id) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
   Correction correction(const CoverageTable& table, int block, Tick tick) const;
-  void add_steps(Tick newest, std::int64_t steps, double each_s, Correction& sum) const;
-  void add_correction(const Term& term, const CoverageTable::BlockView& sent, Tick tick,
+  void add_steps(Tick newest, std::int64_t steps, std::int64_t halvings, double each_s,
+                 Correction& sum) const;
+  void add_correction(const Term& term, Tick sent, Tick tick, std::int64_t halvings,
                       Correction& sum) const;
   void correct(const Correction& correction, int block, double per_second, double* coverage) const;
   double weigh(Term& term, double horizon_s, Tick tick) const;
@@ -107,6 +108,7 @@ class Forecast {
   Author self_;
   Sampling sampling_;
   LookAhead look_ahead_;
+  HalfLife half_life_;
   bool dead_reckons_;
   std::size_t most_places_;
   std::int64_t revision_ = 0;

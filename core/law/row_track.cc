@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/law/half_life.h"
+
 namespace ergocast {
 
 void RowTrack::see(Tick tick, const Eigen::Vector3d& x_m) {
@@ -24,11 +26,27 @@ void RowTrack::extend(const CoverageTable& table, std::size_t row, const RosterE
                        look_ + 1 == look && !blocks_.empty();
   look_ = look;
   if (!goes_on) restart(entry, sampling.layout());
+  fade(table, sampling);
   take_newer_blocks(table, row);
   for (auto place = first_to_add(); place != places_.end(); ++place) {
     if (!entry.active_at(place->tick)) continue;
     if (place->tick != newest_tick_) move_to(*place, sampling);
-    add_step(place->tick, table, row, sampling.layout());
+    add_step(place->tick, table, row, sampling);
+    const double weight = table.weight_at(place->tick);
+    if (weight != 1) add_due_steps(sampling, weight);
+  }
+}
+
+/// Halves all that was added before the present tick as often as the row.
+void RowTrack::fade(const CoverageTable& table, const Sampling& sampling) {
+  if (halvings_ == table.halvings()) return;
+  add_due_steps(sampling);
+  const double factor = HalfLife::factor(halvings_, table.halvings());
+  halvings_ = table.halvings();
+  for (double& sum : sums_) sum *= factor;
+  for (Block& block : blocks_) {
+    block.elapsed_s *= factor;
+    block.remembered_steps *= factor;
   }
 }
 
@@ -47,7 +65,11 @@ void RowTrack::take_newer_blocks(const CoverageTable& table, std::size_t row) {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const CoverageTable::BlockView sent = table.view(row, static_cast<int>(b));
     if (blocks_[b].sent_steps == sent.steps) continue;
-    blocks_[b] = {.sent_steps = sent.steps, .steps = sent.steps, .until = sent.tick};
+    blocks_[b] = {.sent_steps = sent.steps,
+                  .steps = sent.steps,
+                  .elapsed_s = sent.remembered_s,
+                  .remembered_steps = sent.remembered_steps,
+                  .until = sent.tick};
   }
 }
 
@@ -73,37 +95,49 @@ void RowTrack::move_to(const Place& place, Sampling& sampling) {
   sampling.set_in_slots(*newest_, kind_, in_slots_.data());
 }
 
-void RowTrack::add_due_steps(const Sampling& sampling) {
+/// @param weight  of these steps, where they have been halved since: a power of two
+void RowTrack::add_due_steps(const Sampling& sampling, double weight) {
   for (int b = 0; b < std::ssize(blocks_); ++b) {
     if (!take_due_step(b)) continue;
     const sums::Modes modes = sampling.layout().slots_of(b);
     if (sampling.layout().in_basis_order()) {
-      sums::add_gain(newest_gain(sampling), modes, sums());
-    } else {
+      sums::PlaceGain gain = newest_gain(sampling);
+      gain.dt_s *= weight;
+      sums::add_gain(gain, modes, sums());
+    } else if (weight == 1) {
       sums::add_sums(in_slots_.data(), {modes, sums(), sums()});
+    } else {
+      for (int slot = modes.first; slot < modes.first + modes.count; ++slot)
+        sums()[slot] += weight * in_slots_[static_cast<std::size_t>(slot)];
     }
   }
 }
 
 /// Counts a step at the newest place in every block that does not contain it.
 void RowTrack::add_step(Tick tick, const CoverageTable& table, std::size_t row,
-                        const BlockLayout& layout) {
+                        const Sampling& sampling) {
+  const double weight = table.weight_at(tick);
   for (int b = 0; b < std::ssize(blocks_); ++b) {
     Block& block = blocks_[static_cast<std::size_t>(b)];
     if (block.sent_steps == 0 || tick <= block.until) continue;
     if (!extends(b)) {
-      const sums::Modes modes = layout.slots_of(b);
+      const sums::Modes modes = sampling.layout().slots_of(b);
       std::copy_n(table.view(row, b).sums, modes.count, sums() + modes.first);
     }
     block.due = true;
     block.until = tick;
     ++block.steps;
+    block.elapsed_s += sampling.dt_s() * weight;
+    block.remembered_steps = table.half_life().any() ? block.elapsed_s / sampling.dt_s()
+                                                     : static_cast<double>(block.steps);
   }
 }
 
 bool RowTrack::uniform() const {
   return std::all_of(blocks_.begin() + 1, blocks_.end(), [&](const Block& block) {
-    return block.steps == blocks_.front().steps && block.due == blocks_.front().due;
+    const Block& first = blocks_.front();
+    return block.steps == first.steps && block.remembered_steps == first.remembered_steps &&
+           block.due == first.due;
   });
 }
 

@@ -39,10 +39,12 @@ class RowTrack {
 
   /// The tick of the newest place; −1 without one.
   Tick newest_tick() const { return newest_tick_; }
-  /// Steps of a block, with those at places.
-  std::int64_t steps(int block) const { return of(block).steps; }
+  /// The time that a block covers, with the steps at places [steps].
+  double remembered_steps(int block) const { return of(block).remembered_steps; }
+  /// The steps of a block that are at places.
+  std::int64_t added_steps(int block) const { return of(block).steps - of(block).sent_steps; }
   /// Whether any step of a block is at a place. If so, sums() has the block.
-  bool extends(int block) const { return of(block).steps > of(block).sent_steps; }
+  bool extends(int block) const { return added_steps(block) > 0; }
   /// Whether all blocks have the same steps, and the same ones due.
   bool uniform() const;
 
@@ -66,17 +68,20 @@ class RowTrack {
   struct Block {
     std::int64_t sent_steps = -1;  // of the block that was taken from the row
     std::int64_t steps = 0;        // with the places added since
-    Tick until = 0;                // the tick of the last step
-    bool due = false;              // whether that step counts, but is not in the sums yet
+    double elapsed_s = 0;          // the time that they cover, halved as the sums …
+    double remembered_steps = 0;  // … and the same in steps, which is `steps` without a half-life
+    Tick until = 0;               // the tick of the last step
+    bool due = false;             // whether that step counts, but is not in the sums yet
   };
 
   const Block& of(int block) const { return blocks_[static_cast<std::size_t>(block)]; }
   void restart(const RosterEntry& entry, const BlockLayout& layout);
   void take_newer_blocks(const CoverageTable& table, std::size_t row);
+  void fade(const CoverageTable& table, const Sampling& sampling);
   std::vector<Place>::const_iterator first_to_add() const;
   void move_to(const Place& place, Sampling& sampling);
-  void add_due_steps(const Sampling& sampling);
-  void add_step(Tick tick, const CoverageTable& table, std::size_t row, const BlockLayout& layout);
+  void add_due_steps(const Sampling& sampling, double weight = 1);
+  void add_step(Tick tick, const CoverageTable& table, std::size_t row, const Sampling& sampling);
 
   std::size_t most_places_;
   std::vector<Place> places_;  // ascending by tick; the last most_places_ count
@@ -86,6 +91,7 @@ class RowTrack {
   std::uint64_t look_ = 0;     // of the forecast that extended it last
   std::vector<Block> blocks_;
   AlignedDoubles sums_;              // with the places; not set for blocks that are not extended
+  std::int64_t halvings_ = 0;        // of these sums
   std::optional<CosinesAt> newest_;  // at the newest place, and its tick
   Tick newest_tick_ = -1;
   AlignedDoubles in_slots_;  // g f dt there, by slot; only where that is not the mode

@@ -14,8 +14,10 @@ namespace ergocast {
 struct Term {
   // How it counts: equal in all blocks that have the same age.
   RowTrack* track = nullptr;      ///< what extends the row by places; null: it gains by its blocks
-  std::int64_t steps = 0;         ///< in its sums
+  std::int64_t added_steps = 0;   ///< those at places, which extend the row
+  double remembered_steps = 0;    ///< the time that its sums cover [steps]
   std::int64_t gained_steps = 0;  ///< those of its gains; 0: no forecast
+  double gained_time_steps = 0;   ///< the time that its gains cover [steps]
   Tick tick = 0;                  ///< when its sums were known
   Tick period = 0;                ///< until its author's next broadcast, as announced
   Tick rest_from = std::numeric_limits<Tick>::max();  ///< of its author, core/mission/station.h

@@ -39,6 +39,7 @@ struct ControlLaw {
       0;  ///< a of core/law/look_ahead.h; 0: agents answer to the known coverage c
   bool ends_with_plan = false;  ///< no agent looks beyond the mission's end
   bool paired_pushes = false;   ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
+  double memory_half_life_s = 0;  ///< of coverage, core/law/half_life.h; 0: it is never forgotten
 
   /// What σ never exceeds [m/√s].
   double max_noise() const {

@@ -190,6 +190,19 @@ class Validator {
     }
     ceiling();
     contraction();
+    memory();
+  }
+
+  /// Some steps are needed between two halvings.
+  void memory() {
+    const double half_life_s = scenario_.law().memory_half_life_s();
+    if (half_life_s == 0 || !sound("law.memory_half_life_s") || !sound("time.dt_s")) return;
+    const double least_s = limits::kLeastHalfLife_ticks * scenario_.time().dt_s();
+    if (half_life_s >= least_s) return;
+    problem("law.memory_half_life_s",
+            shortest(half_life_s) + " is below 10 steps of dt_s, " + shortest(rounded_up(least_s)) +
+                " s",
+            "write at least that, or 0: nothing is forgotten");
   }
 
   void ceiling() {

@@ -128,6 +128,19 @@ void warn_of_flat_weights(const Mission& mission, Findings& findings) {
           ", or law.anticipation: " + shortest(kLittleAnticipation));
 }
 
+/// An agent forgets what it has covered before it is back there: docs/law.md.
+void warn_of_short_memory(const Mission& mission, Findings& findings) {
+  const double half_life_s = mission.law.memory_half_life_s;
+  const double crossing_s = mission.domain.size_m.maxCoeff() / mission.law.u_max_mps;
+  if (half_life_s == 0 || half_life_s >= crossing_s) return;
+  findings.add("law.memory_half_life_s",
+               shortest(half_life_s) + " is shorter than the " + shortest(rounded_up(crossing_s)) +
+                   " s that an agent takes to cross the domain: the team then forgets coverage "
+                   "before it is used, and covers worse",
+               "write at least " + shortest(rounded_up(crossing_s)) +
+                   ", better several times as much, or leave it out");
+}
+
 /// Agents find ways around each other only if there is room.
 void warn_of_packing(const Mission& mission, Findings& findings) {
   if (!keeps_distance(mission)) return;
@@ -269,6 +282,7 @@ void warn(const Mission& mission, Findings& findings) {
   warn_of_speed_limits(mission, findings);
   warn_of_coarse_steps(mission, findings);
   warn_of_flat_weights(mission, findings);
+  warn_of_short_memory(mission, findings);
   warn_of_packing(mission, findings);
   warn_of_crowded_ways_home(mission, findings);
   warn_of_tight_stations(mission, findings);

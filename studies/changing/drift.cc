@@ -15,7 +15,13 @@ namespace {
 
 constexpr Tick kRenewal = 20, kWindow = 1000, kFirstWindow = 3000, kEnd = 20'000;
 constexpr double kSpeeds_mps[] = {1, 3, 10};
-const MissionOptions kOptions{.agents = 16, .duration_s = 2100};
+
+/// How a team remembers.
+struct Memory {
+  const char* name;
+  const char* law;
+};
+constexpr Memory kMemories[] = {{"for ever", ""}, {"half-life 100 s", "memory_half_life_s: 100"}};
 
 /// The targets of a whole mission, one for each renewal.
 std::vector<Coefficients> drifting_targets(double speed_mps) {
@@ -27,8 +33,10 @@ std::vector<Coefficients> drifting_targets(double speed_mps) {
 }
 
 /// φ² of a window, in the mean of all windows of a mission.
-double mean_metric(const std::vector<Coefficients>& targets, std::uint64_t seed) {
-  const Mission mission = mission_of(kOptions, Peaks::kCorners, seed);
+double mean_metric(const std::vector<Coefficients>& targets, const Memory& memory,
+                   std::uint64_t seed) {
+  const Mission mission =
+      mission_of({.agents = 16, .duration_s = 2100, .law = memory.law}, Peaks::kCorners, seed);
   lab::IdealTeam team(mission);
   Judge judge(mission);
   Amendments list;
@@ -52,16 +60,18 @@ double mean_metric(const std::vector<Coefficients>& targets, std::uint64_t seed)
 }  // namespace
 
 void study_drifts(int seeds, Results& results) {
-  std::printf("| peaks drift at | φ² of a window of 100 s |\n|---|---|\n");
+  std::printf("| peaks drift at | the team remembers | φ² of a window of 100 s |\n|---|---|---|\n");
   for (const double speed_mps : kSpeeds_mps) {
     const std::vector<Coefficients> targets = drifting_targets(speed_mps);
     char name[40];
     std::snprintf(name, sizeof name, "%g m/s", speed_mps);
-    const CaseName one(name, "window of 100 s");
-    for (int seed = 1; seed <= seeds; ++seed)
-      results.add(one, mean_metric(targets, static_cast<std::uint64_t>(seed)));
-    std::printf("| %s | %s |\n", name, to_string(results.mean(one)).c_str());
-    std::fflush(stdout);
+    for (const Memory& memory : kMemories) {
+      const CaseName one(std::string(name) + ", " + memory.name, "window of 100 s");
+      for (int seed = 1; seed <= seeds; ++seed)
+        results.add(one, mean_metric(targets, memory, static_cast<std::uint64_t>(seed)));
+      std::printf("| %s | %s | %s |\n", name, memory.name, to_string(results.mean(one)).c_str());
+      std::fflush(stdout);
+    }
   }
 }
 

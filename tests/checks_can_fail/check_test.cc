@@ -81,7 +81,7 @@ basis { modes_x: 8 modes_y: 8 modes_z: 8 }
 law {
   u_max_mps: 5 regularization: RELATIVE epsilon: 0.2 perturbation: ADAPTIVE noise_intensity: 0.1 noise_ceiling: 2
   contraction_gain_per_s: 0.001 contraction_center: POINT contraction_x_m: 50 contraction_y_m: 25 contraction_z_m: 20
-  anticipation: 2
+  anticipation: 2 memory_half_life_s: 30
 }
 time {
   dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 high_mode_period_factor: 4 contribution_encoding: FIXED16 pace: REALTIME
@@ -302,6 +302,16 @@ class CheckCanFail : public Scenarios {
         << output();
   }
 
+  void expect_warning_of_short_memory() {
+    std::string text = kGood;
+    write("s.textproto", text.insert(text.find("u_max_mps"), "memory_half_life_s: 5 "));
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_NE(output().find("law.memory_half_life_s: 5 is shorter than the 20 s"),
+              std::string::npos)
+        << output();
+  }
+
   void expect_warning_of_rare_modes(const std::string& basis, const std::string& what) {
     std::string text = kGood + "basis { " + basis + " }\n";
     write("s.textproto", text.insert(text.find(kTime), "high_mode_period_factor: 60 "));
@@ -388,6 +398,7 @@ class CheckCanFail : public Scenarios {
     expect_warning("noise_ceiling: 0.5", "6", "m/s held for 1 step)");
     expect_warning_of_coarse_steps();
     expect_warning_of_flat_weights();
+    expect_warning_of_short_memory();
     expect_warning_of_rare_modes("modes_x: 8 modes_y: 8", "has no effect: the basis has 64 modes");
     expect_warning_of_rare_modes("modes_x: 9", "makes 600 ticks between two broadcasts");
     expect_warning_of_packing();

@@ -13,6 +13,7 @@ namespace ergocast {
 
 // clang-format off
 WRAPPED(void, make_table, "_ZN8ergocast13CoverageTableC1ERKNS_5BasisEdl", CoverageTable*, const Basis&, double, Tick)
+WRAPPED(void, set_now, "_ZN8ergocast13CoverageTable7set_nowEl", CoverageTable*, Tick)
 WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtEPKd", CoverageTable*, const Author&, const BasisAt&, const double*)
 WRAPPED(void, set_quality, "_ZN8ergocast13CoverageTable11set_qualityERKNS_6AuthorEd", CoverageTable*, const Author&, double)
 WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl", CoverageTable*, const Contribution&, std::int64_t)
@@ -23,6 +24,12 @@ WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTabl
 // clang-format on
 
 // ---- coverage ----
+
+void bug_set_now(CoverageTable* self, Tick counted) {
+  if (bug("a half-life passes unnoticed")) counted = 0;
+  if (bug("a half-life passes a tick early")) ++counted;
+  real_set_now(self, counted);
+}
 
 void bug_set_quality(CoverageTable* self, const Author& author, double quality) {
   real_set_quality(self, author, bug("a quality does not count") ? 1 : quality);
@@ -104,10 +111,34 @@ Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t ma
 Contribution bug_block(const CoverageTable* self, const Author& author, int block) {
   Contribution out = real_block(self, author, block);
   if (bug("a sum runs away")) out.sums.edit()[5] += 2 * out.elapsed_s;
+  if (bug("time is not halved with its sums") && self->halvings() > 0) out.elapsed_s *= 2;
   return out;
 }
 
+namespace {
+
+/// c_k of the blocks as they were sent. Slots are modes, and no row is weighted.
+void average_unhalved(const CoverageTable& table, Coefficients& coverage) {
+  for (int b = 0; b < table.block_count(); ++b) {
+    const Eigen::Index first = b * table.block_size();
+    Coefficients sums_s = Coefficients::Zero(coverage.size());
+    double elapsed_s = 0;
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      const Contribution sent = real_block(&table, table.author(row), b);
+      elapsed_s += sent.elapsed_s;
+      for (std::size_t k = 0; k < sent.sums.size(); ++k)
+        sums_s[first + static_cast<Eigen::Index>(k)] += sent.sums[k];
+    }
+    const Eigen::Index last = std::min(coverage.size(), first + table.block_size());
+    for (Eigen::Index k = first; k < last && elapsed_s > 0; ++k)
+      coverage[k] = sums_s[k] / elapsed_s;
+  }
+}
+
+}  // namespace
+
 void bug_average(const CoverageTable* self, Coefficients& coverage) {
+  if (bug("a receiver halves nothing")) return average_unhalved(*self, coverage);
   if (bug("a replaced incarnation counts twice")) {
     CoverageTable other = *self;
     for (std::size_t row = 0; row < other.row_count(); ++row) {
@@ -134,6 +165,7 @@ bool foresees_itself() { return bug("an agent foresees itself"); }
 CoverageTable mistaken(const CoverageTable& table, Tick tick) {
   const Sent& sent = sent_to.at(&table);
   CoverageTable other(sent.basis, sent.dt_s, sent.joined);
+  other.set_half_life(table.half_life());
   const auto merge = [&](Contribution block) {
     if (the_dead_are_foreseen()) block.next_broadcast_tick += kForEver;
     real_merge(&other, block, kForEver);
@@ -162,6 +194,7 @@ CoverageTable mistaken(const CoverageTable& table, Tick tick) {
 void bug_make_forecast(Forecast* self, const Mission& mission, const Author& author) {
   Mission changed = mission;
   if (the_dead_are_foreseen()) changed.timing.broadcast_period_ticks = kForEver;
+  if (bug("former targets are not halved")) changed.law.memory_half_life_s = 0;
   if (bug("a footprint is not foreseen")) {
     for (AgentKind& kind : changed.kinds) kind.footprint_sigma_m = 0;
   }
@@ -173,8 +206,8 @@ void bug_make_forecast(Forecast* self, const Mission& mission, const Author& aut
 
 void bug_look_ahead(Forecast* self, const CoverageTable& table,
                     const std::vector<RosterEntry>& roster, Tick tick, Coefficients& coverage) {
-  const bool mistakes_it = the_dead_are_foreseen() || foresees_itself() ||
-                           bug("a late block becomes the one before") ||
+  const bool mistakes_it = bug("a forecast halves nothing") || the_dead_are_foreseen() ||
+                           foresees_itself() || bug("a late block becomes the one before") ||
                            bug("a relayed block becomes the one before");
   static const TargetShift kNoShift((Mission()));
   if (bug("teammates go on with the former target")) self->note_shift(kNoShift);

@@ -35,6 +35,9 @@ const char* const kTargetsAndPauses = "targets_per_s = 0.3\npauses_per_s = 0.3\n
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
+const char* const kHalfLife = "law { memory_half_life_s: 3 }";
+const char* const kHalfLifeByRowsAlone =
+    "law { memory_half_life_s: 3 }\nagents { dead_reckoning: false }";
 
 const char* const kCrowd =
     "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1";
@@ -146,6 +149,15 @@ const Plant kPlants[] = {
     {Invariant::kForecastOfWhatIsKnown, "the resting are foreseen", "", kStations},
     {Invariant::kForecastOfWhatIsKnown, "the recalled are foreseen", kRecalls},
     {Invariant::kSumsBounded, "a sum runs away"},
+    {Invariant::kSumsBounded, "a half-life passes unnoticed", "", kHalfLife, "remembers"},
+    {Invariant::kSumsBounded, "a half-life passes a tick early", "", kHalfLife, "remembers"},
+    {Invariant::kSumsBounded, "time is not halved with its sums", "", kHalfLife},
+    {Invariant::kAverageOfWhatIsHeld, "a receiver halves nothing", "", kHalfLife},
+    {Invariant::kForecastOfWhatIsKnown, "a forecast halves nothing", "", kHalfLife},
+    {Invariant::kForecastOfWhatIsKnown, "a forecast halves nothing", "", kHalfLifeByRowsAlone},
+    {Invariant::kForecastOfWhatIsKnown, "former targets are not halved", kTargets, kHalfLife},
+    {Invariant::kForecastOfWhatIsKnown, "former targets are not halved", kTargets,
+     kHalfLifeByRowsAlone},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},
     {Invariant::kWholeMessagesAccepted, "whole messages are refused"},

@@ -64,8 +64,11 @@ inline Eigen::Vector3d place(AgentId agent, Tick tick, const Mission& mission) {
 class Life {
  public:
   Life(const Author& author, const Mission& mission)
-      : author_(author), mission_(mission), own_(mission.basis, kDt) {}
+      : author_(author), mission_(mission), own_(mission.basis, kDt) {
+    own_.set_half_life(HalfLife(mission));
+  }
   void cover(Tick tick) {
+    own_.set_now(tick);
     own_.add_sample(author_,
                     BasisAt(place(author_.agent, tick, mission_), mission_.domain, mission_.basis));
   }
@@ -96,7 +99,14 @@ struct Known {
 
 inline CoverageTable table_of(const Known& known, const Mission& mission) {
   CoverageTable table(mission.basis, kDt, known.joined);
-  for (const Contribution& block : known.heard) table.merge(block, kManySteps);
+  table.set_half_life(HalfLife(mission));
+  // The tick comes while half of the messages are still on their way.
+  std::size_t arrived = 0;
+  for (const Contribution& block : known.heard) {
+    if (2 * arrived++ >= known.heard.size()) table.set_now(known.tick);
+    table.merge(block, kManySteps);
+  }
+  table.set_now(known.tick);
   for (const Author& author : known.forgotten) table.forget(author);
   return table;
 }
@@ -115,29 +125,49 @@ inline Coefficients foreseen(const Known& known, const Mission& mission) {
 
 struct Row {
   std::int64_t steps = 0, gained_steps = 0;
+  double time_s = 0, gained_s = 0;  // as halved as the sums at `tick`, later as of the present tick
   Tick tick = 0, period = 0;
   std::vector<double> sums = std::vector<double>(kBlockSize), gains = sums;
 };
 
-/// The block held of each author, and what it has gained since the one held before.
-inline std::map<std::pair<Author, int>, Row> rows_of(const Known& known) {
+/// What is left at tick `now` of what was covered at `tick`.
+inline double left_at(Tick now, Tick tick, const Mission& mission) {
+  const double half_life_s = mission.law.memory_half_life_s;
+  if (half_life_s == 0) return 1;
+  const auto ticks = static_cast<Tick>(std::round(half_life_s / kDt));
+  const auto halvings = std::max<Tick>(now, 0) / ticks - std::max<Tick>(tick, 0) / ticks;
+  return std::pow(0.5, static_cast<double>(std::clamp<Tick>(halvings, -64, 512)));
+}
+
+/// The block held of each author, and what it has gained since the one held before, as remembered
+/// at the present tick.
+inline std::map<std::pair<Author, int>, Row> rows_of(const Known& known, const Mission& mission) {
   std::map<std::pair<Author, int>, Row> rows;
   for (const Contribution& sent : known.heard) {
     Row& row = rows[{sent.author(), sent.block}];
     if (sent.steps <= row.steps) continue;
     const bool has_before = row.steps > 0 && row.tick >= known.joined;
     const std::int64_t before = has_before ? row.steps : 0;
-    bool possible = true;
+    const double kept = has_before ? left_at(sent.header.tick, row.tick, mission) : 0;
+    row.gained_s = sent.elapsed_s - kept * row.time_s;
+    row.time_s = sent.elapsed_s;
+    bool possible = row.gained_s > 0;
     for (std::size_t k = 0; k < kBlockSize; ++k) {
-      row.gains[k] = sent.sums[k] - (has_before ? row.sums[k] : 0);
+      row.gains[k] = sent.sums[k] - kept * row.sums[k];
       row.sums[k] = sent.sums[k];
-      possible &=
-          std::abs(row.gains[k]) < static_cast<double>(sent.steps - before) * kDt * (1 + 1e-6);
+      possible &= std::abs(row.gains[k]) < row.gained_s * (1 + 1e-6);
     }
     row.steps = sent.steps;
     row.gained_steps = possible ? sent.steps - before : 0;
     row.tick = sent.header.tick;
     row.period = sent.next_broadcast_tick - sent.header.tick;
+  }
+  for (auto& [key, row] : rows) {
+    const double left = left_at(known.tick, row.tick, mission);
+    row.time_s *= left;
+    row.gained_s *= left;
+    for (double& sum : row.sums) sum *= left;
+    for (double& gain : row.gains) gain *= left;
   }
   return rows;
 }
@@ -165,15 +195,17 @@ inline void dead_reckon(const Author& author, int block, const Known& known, con
     if (tick < row.tick || !entry->active_at(tick)) continue;
     const Coefficients f =
         basis_values(place(author.agent, tick, mission), mission.domain, mission.basis);
+    const double left = left_at(known.tick, tick, mission);
     std::fill(row.gains.begin(), row.gains.end(), 0);
     for (int k = block * kBlockSize;
          k < std::min((block + 1) * kBlockSize, mission.basis.mode_count()); ++k) {
       const auto at = static_cast<std::size_t>(k - block * kBlockSize);
       row.gains[at] = f.data()[k] * kDt;
-      if (tick > row.tick) row.sums[at] += f.data()[k] * kDt;
+      if (tick > row.tick) row.sums[at] += left * f.data()[k] * kDt;
     }
     row.gained_steps = 1;
-    row.steps += tick > row.tick;
+    row.gained_s = kDt;
+    if (tick > row.tick) row.time_s += left * kDt;
     row.tick = tick;
   }
 }
@@ -191,7 +223,7 @@ inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
   const double spread_m = target_spread_m(covariance_m2);
   const double dimensions = shared_dimensions(covariance_m2);
   Coefficients foreseen = Coefficients::Zero(144);
-  auto rows = rows_of(known);
+  auto rows = rows_of(known, mission);
   for (int b = 0; b < 2; ++b) {
     int n = 1;
     std::vector<Row*> counting, with_forecast;
@@ -213,11 +245,11 @@ inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
       double above = 0, below_s = 0;
       for (const Row* row : counting) {
         above += row->sums[at];
-        below_s += static_cast<double>(row->steps) * kDt;
+        below_s += row->time_s;
       }
       for (const Row* row : with_forecast) {
         const double w_s = weight_s(*row, horizon_s, known.tick);
-        above += w_s * row->gains[at] / (static_cast<double>(row->gained_steps) * kDt);
+        above += w_s * row->gains[at] / row->gained_s;
         below_s += w_s;
       }
       if (below_s > 0) foreseen.data()[k] = above / below_s;

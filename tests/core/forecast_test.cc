@@ -20,7 +20,7 @@ using namespace test;
 
 /// Changes one sum of a broadcast block to another value that its range still allows.
 void forge(Contribution& block, Dice& dice) {
-  const double elapsed_s = static_cast<double>(block.steps) * kDt;
+  const double elapsed_s = block.elapsed_s;
   block.sums.edit()[1 + dice.below(10)] = dice.one_in(2) ? elapsed_s : -elapsed_s;
 }
 
@@ -80,9 +80,17 @@ Known drawn(std::uint64_t history, const Mission& mission) {
   return known;
 }
 
-class Foreseen : public ::testing::TestWithParam<bool> {
+struct Law {
+  const char* name;
+  bool dead_reckoning;
+  double half_life_s;
+};
+
+class Foreseen : public ::testing::TestWithParam<Law> {
  protected:
-  Mission mission_ = mission_of(GetParam());
+  Foreseen() { mission_.law.memory_half_life_s = GetParam().half_life_s; }
+
+  Mission mission_ = mission_of(GetParam().dead_reckoning);
 
   /// Looks at what is known in each of many histories.
   void in_every_history(const std::function<void(const Known&, Dice&)>& check) {
@@ -93,9 +101,13 @@ class Foreseen : public ::testing::TestWithParam<bool> {
     }
   }
 };
-INSTANTIATE_TEST_SUITE_P(Forecast, Foreseen, ::testing::Bool(), [](const auto& reckoning) {
-  return std::string(reckoning.param ? "WithDeadReckoning" : "FromRowsAlone");
-});
+INSTANTIATE_TEST_SUITE_P(Forecast, Foreseen,
+                         ::testing::Values(Law{"WithDeadReckoning", true, 0},
+                                           Law{"FromRowsAlone", false, 0},
+                                           Law{"WithDeadReckoningForgetting", true, 1.3},
+                                           Law{"FromRowsAloneForgetting", false, 1.3},
+                                           Law{"WithDeadReckoningForgettingAtOnce", true, 0.1}),
+                         [](const auto& law) { return std::string(law.param.name); });
 
 TEST_P(Foreseen, IsTheFormula) {
   double largest = 0;

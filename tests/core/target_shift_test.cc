@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/law/coverage_table.h"
@@ -45,6 +47,7 @@ Eigen::Vector3d place(Tick tick) { return {100.0 + 31 * static_cast<double>(tick
 /// Adds a tick at place() to the row of `author`, as an agent does.
 void cover(CoverageTable& table, const Author& author, const Mission& mission,
            const TargetShift& shift, Tick tick) {
+  table.set_now(tick);
   table.add_sample(author, BasisAt(place(tick), mission.domain, mission.basis));
   const auto* const change = shift.at(tick);
   if (change != nullptr) table.shift_sample(author, change->by_slot.data());
@@ -117,17 +120,61 @@ TEST(ShiftedRow, OfAnUnknownTargetIsNotTakenAsANormalOne) {
   EXPECT_EQ(receiver.merge(block, 10), Merge::kRefusedRange);
 }
 
-class ShiftedForecast : public ::testing::TestWithParam<bool> {};
+TEST(ShiftedRow, HalvesShiftsWithTheirSamples) {
+  Mission mission = small_mission(1);
+  mission.law.memory_half_life_s = 3 * mission.timing.dt_s;
+  const Amendments list = changed_at(mission, {{4, {300, 900, 0}}, {7, {50, 1700, 0}}});
+  TargetShift shift(mission);
+  shift.note(list);
+  CoverageTable author(mission.basis, mission.timing.dt_s);
+  author.set_half_life(HalfLife(mission));
+  CoverageTable receiver = author;
+  author.allow_shifts(), receiver.allow_shifts();
+  Coefficients sums = Coefficients::Zero(20);
+  double steps = 0;
+  for (Tick tick = 0; tick < 11; ++tick) {
+    cover(author, kOwn, mission, shift, tick);
+    const TargetChange* const change = target_at(list.targets, tick);
+    const Coefficients& target = change ? change->target : mission.target_coefficients;
+    const double weight = std::pow(0.5, static_cast<double>(10 / 3 - tick / 3));
+    sums += weight * (basis_values(place(tick), mission.domain, mission.basis) - target +
+                      mission.target_coefficients);
+    steps += weight;
+  }
+  Contribution block = author.block(kOwn, 0);
+  block.header.tick = 10;
+  EXPECT_EQ(receiver.merge(block, 100), Merge::kNewer);
+  for (CoverageTable* const table : {&author, &receiver}) {
+    Coefficients coverage = Coefficients::Zero(20);
+    for (const Tick now : {10, 12, 40}) {
+      table->set_now(now);
+      table->average(coverage);
+      EXPECT_LT((coverage - sums / steps).cwiseAbs().maxCoeff(), 1e-14) << now;
+    }
+  }
+}
+
+struct Teammate {
+  const char* name;
+  bool seen;
+  int half_life_ticks = 0;
+};
+class ShiftedForecast : public ::testing::TestWithParam<Teammate> {};
 
 /// ĉ a tick after a change is that of a team whose target never changed, but for the shift of each
 /// tick: known rows have the shifts of their ticks, and the teammate goes on with the present one.
 TEST_P(ShiftedForecast, GoesOnWithThePresentShift) {
-  const Mission mission = mission_with(GetParam());
+  const bool seen = GetParam().seen;
+  const int half_life = GetParam().half_life_ticks;
+  Mission mission = mission_with(seen);
+  mission.law.memory_half_life_s = half_life * mission.timing.dt_s;
   for (const Tick change : {3, 6, 8, 9, 10}) {
     TargetShift none(mission), shift(mission);
     shift.note(changed_at(mission, {{2, {1500, 300, 0}}, {change, {300, 1500, 0}}}));
     const auto foreseen = [&](const TargetShift& by) {
-      CoverageTable mate(mission.basis, mission.timing.dt_s), own = mate;
+      CoverageTable mate(mission.basis, mission.timing.dt_s);
+      mate.set_half_life(HalfLife(mission));
+      CoverageTable own = mate;
       mate.allow_shifts(), own.allow_shifts();
       Forecast forecast(mission, kOwn);
       for (Tick tick = 0; tick <= 10; ++tick) {
@@ -155,21 +202,31 @@ TEST_P(ShiftedForecast, GoesOnWithThePresentShift) {
         by = Eigen::Map<const Coefficients>(one->by_slot.data(), 20);
       return by;
     };
-    const Tick known = GetParam() ? 10 : 8;
-    for (Tick tick = 0; tick <= 10; ++tick) lacks_s += dt_s * shift_at(tick);
-    for (Tick tick = 0; tick <= known; ++tick) lacks_s += dt_s * shift_at(tick);
+    const Tick known = seen ? 10 : 8;
+    double known_s = 0;
+    for (const Tick last : {Tick{10}, known}) {
+      for (Tick tick = 0; tick <= last; ++tick) {
+        const Tick halvings = half_life > 0 ? 10 / half_life - tick / half_life : 0;
+        const double step_s = dt_s * std::pow(0.5, static_cast<double>(halvings));
+        known_s += step_s;
+        lacks_s += step_s * shift_at(tick);
+      }
+    }
     LookAhead look_ahead(mission);
-    const double known_s = dt_s * static_cast<double>(11 + known + 1);
     const double weight_s =
-        look_ahead.weight_s(look_ahead.horizon_s(2, 10), GetParam() ? 1 : 4, 10 - known, 4);
+        look_ahead.weight_s(look_ahead.horizon_s(2, 10), seen ? 1 : 4, 10 - known, 4);
     const Coefficients expected =
         plain - (lacks_s + weight_s * shift_at(10)) / (known_s + weight_s);
     EXPECT_LT((shifted - expected).cwiseAbs().maxCoeff(), 1e-13) << change;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Teammate, ShiftedForecast, ::testing::Bool(),
-                         [](const auto& one) { return one.param ? "Seen" : "Received"; });
+INSTANTIATE_TEST_SUITE_P(Teammate, ShiftedForecast,
+                         ::testing::Values(Teammate{"Seen", true}, Teammate{"Received", false},
+                                           Teammate{"SeenByOneThatForgets", true, 3},
+                                           Teammate{"ReceivedByOneThatForgets", false, 3},
+                                           Teammate{"ReceivedAtAHalving", false, 5}),
+                         [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
 }  // namespace ergocast

@@ -227,7 +227,7 @@ TEST_F(InvariantsTest, SumsAreAtMostTheTimeCovered) {
   EXPECT_EQ(violated(), "");
   block.sums.edit()[5] = 2.1;
   team_.sent(1, {Bus::kSwarm, block}, nullptr);
-  EXPECT_EQ(violated(), "S_00 = steps dt, |S_mn| <= S_00, or 3 S_00 after a change");
+  EXPECT_EQ(violated(), "S_00 = time covered, |S_mn| <= S_00, or 3 S_00 after a change");
 }
 
 TEST_F(InvariantsTest, RelaysAnswerDigests) {

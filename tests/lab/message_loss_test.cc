@@ -169,6 +169,20 @@ TEST(MessageLoss, HowOftenAgentsBroadcastDoesNotShowWhereTheyReckon) {
   }
 }
 
+/// A team that halves its coverage every 13 ticks.
+TEST(MessageLoss, NorWhereTheyForget) {
+  const std::string text = with(kScenario, "law {", "law { memory_half_life_s: 1.3");
+  const std::string trajectory = simulated({}, each(1, text)).trajectory;
+  EXPECT_NE(trajectory, lossless());
+  for (const int period : {2, 7, 13, 40, 1000}) {
+    EXPECT_EQ(simulated({}, each(period, text)).trajectory, trajectory) << period;
+    for (const std::size_t kind : {kContribution, kWorldState}) {
+      EXPECT_EQ(simulated(dropping(kind, 33), each(period, text)).trajectory, trajectory)
+          << period << ' ' << kKinds[kind];
+    }
+  }
+}
+
 TEST(MessageLoss, NorInATeamWhoseWorldSendsItsStateInParts) {
   std::string large = with(kScenario, "agents {", "agents { random_count: 15");
   large =
@@ -228,7 +242,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Knowing{"FromRows", "anticipation: 2", false, 1},
                       Knowing{"FromRowsSeldom", "anticipation: 2", false, 7},
                       Knowing{"Reckoning", "anticipation: 2", true, 1},
-                      Knowing{"ReckoningSeldom", "anticipation: 2 ends_with_plan: true", true, 7}),
+                      Knowing{"ReckoningSeldom", "anticipation: 2 ends_with_plan: true", true, 7},
+                      Knowing{"ClassicalForgetting", "anticipation: 0 memory_half_life_s: 1.3",
+                              false, 7},
+                      Knowing{"FromRowsForgetting", "memory_half_life_s: 1.3", false, 7},
+                      Knowing{"ReckoningForgetting", "memory_half_life_s: 1.3", true, 7}),
     [](const auto& knowing) { return std::string(knowing.param.name); });
 
 bool is_command_of(const Message& message, AgentId agent) {

@@ -29,9 +29,9 @@ class AmendedMissionInABrowser : public PageInABrowser {
 
   /// A minute in which the target changes after 20 s to the domain's middle, and after 40 s to its
   /// east.
-  void open_amended(const std::string& fragment = "") {
+  void open_amended(const std::string& fragment = "", const std::string& half_life_s = "0") {
     ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "60",
-                        "--out", out()}),
+                        "--set", "law.memory_half_life_s=" + half_life_s, "--out", out()}),
               0)
         << output();
     const Mission mission = read_mission(out()).value();
@@ -104,6 +104,16 @@ TEST_F(AmendedMissionInABrowser, AddsUpTheMetricOfTheRecord) {
       true);
   js("ergocast.set('layer', 'difference')");
   screenshot("amended_difference");
+  expect_no_errors();
+}
+
+/// The sums and counts of each target are halved.
+TEST_F(AmendedMissionInABrowser, AddsUpTheMetricOfATeamThatForgets) {
+  open_amended("", "15");
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
+  EXPECT_EQ(js("const { run } = ergocast.S, at = row => run.coverage.metric(row);"
+               "const late = at(590); at(100); return late === at(590)"),
+            true);
   expect_no_errors();
 }
 

@@ -53,6 +53,7 @@ inline Mission rich_mission() {
   law.contraction_gain_per_s = 0.0002;
   law.contraction_center_m = {33, 34, 0};
   law.anticipation = 3.5;
+  law.memory_half_life_s = 321.5;
   Timing& timing = mission.timing;
   timing.dt_s = 0.125;
   timing.tick_count = 480;

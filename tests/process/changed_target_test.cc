@@ -89,13 +89,14 @@ class ChangedTargets : public RunningMission {
  protected:
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// A whole mission in lockstep in which the target changes four times.
-  void fly(const std::function<void(int)>& between) {
+  void fly(const std::function<void(int)>& between, const std::string& law = "") {
     // The scenario's own target is its mirror image.
     const auto file = scenario();
     std::string text = text_of(file);
     const std::string first = "mean_x_m: 500   mean_y_m: 500";
     ASSERT_NE(text.find(first), text.npos);
     text.replace(text.find(first), first.size(), "mean_x_m: 300   mean_y_m: 700");
+    text.insert(text.find("law {") + 5, " " + law);
     std::ofstream(file) << text;
     Child mission = launch_endless(file, {"--lcm-url", kUrl});
     Amender amender(kUrl);
@@ -159,6 +160,17 @@ TEST_F(ChangedTargets, AreRepeatedBySimulationWhateverProcessesStop) {
   std::ofstream(file) << changed.dump();
   EXPECT_EQ(ergocast({"verify", out()}), 1) << output();
   EXPECT_TRUE(answered("differs from its simulation, first at")) << output();
+}
+
+TEST_F(ChangedTargets, AreRepeatedBySimulationWhereTheTeamForgets) {
+  fly(
+      [this](int i) {
+        if (i == 1) kill_next({"ergocast-logger"});
+      },
+      "memory_half_life_s: 0.7");
+  if (HasFatalFailure()) return;
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  EXPECT_TRUE(answered("identical to its simulation")) << output();
 }
 
 }  // namespace

@@ -81,6 +81,20 @@ TEST(Warnings, OfCoarseStepsForAgentsThatLookAhead) {
       "covered worse than without looking ahead (write at most 0.5, or law.anticipation: 0)\n");
 }
 
+TEST(Warnings, OfAMemoryThatIsShorterThanTheWayThroughTheDomain) {
+  // 100 m at 5 m/s.
+  const auto forgetting = [](const std::string& half_life_s) {
+    return warnings_of(small_with("law {", "law { memory_half_life_s: " + half_life_s + " "));
+  };
+  EXPECT_EQ(forgetting("0"), "");
+  EXPECT_EQ(forgetting("20"), "");
+  EXPECT_EQ(forgetting("19"),
+            "small.textproto:4:7: law.memory_half_life_s: 19 is shorter than the 20 s that an "
+            "agent takes to cross the domain: the team then forgets coverage before it is used, "
+            "and covers worse (write at least 20, better several times as much, or leave it "
+            "out)\n");
+}
+
 TEST(Warnings, OfWeightsThatHardlyFallForAgentsThatLookAhead) {
   const auto weighted = [](const std::string& basis, const std::string& law) {
     return warnings_of(small_with("law {", "basis { " + basis + " } law { " + law));

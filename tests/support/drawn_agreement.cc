@@ -244,7 +244,9 @@ void agree(proto::Scenario& scenario) {
     if (!basis.has_modes_z()) basis.set_modes_z(4);
   }
   proto::Time& time = *scenario.mutable_time();
-  time.set_duration_s(time.duration_s() * (time.has_dt_s() ? time.dt_s() : 0.1));
+  const double dt_s = time.has_dt_s() ? time.dt_s() : 0.1;
+  time.set_duration_s(time.duration_s() * dt_s);
+  if (law.has_memory_half_life_s()) law.set_memory_half_life_s(law.memory_half_life_s() * dt_s);
   proto::Agents& agents = *scenario.mutable_agents();
   const int team = agents.starts_size() + agents.random_count();
   if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), team));

@@ -2,7 +2,7 @@
 // Computes the coverage c_k from positions, for any row at once.
 // The sums are kept every 128 rows. The order is that of the wire: the modes along z count slowest, those
 // along y fastest. Where kinds of agents see differently, each place counts with its kind's quality and
-// footprint.
+// footprint. With a half-life, all sums are halved at its ticks, as in core/law/half_life.h.
 // After a change of the target each place counts against the target of its own time: c_k is compared with the
 // average of the targets, each weighted by what was covered while it held.
 const EVERY = 128;
@@ -33,7 +33,8 @@ export class Coverage {
   reset(row) {
     const keep = Math.floor(row / EVERY) + 1;
     if (!row || !this.sums) {
-      this.sums = [new Float64Array(this.M * this.N * this.P)]; // sums[i]: Σ f_k over the rows [0, 128 i)
+      // sums[i]: Σ f_k over the rows [0, 128 i), halved as often as at the last of them
+      this.sums = [new Float64Array(this.M * this.N * this.P)];
       this.counts = [[]]; // how many positions these are, of each target's time
     }
     this.sums.length = this.counts.length = Math.min(this.sums.length, keep);
@@ -47,10 +48,24 @@ export class Coverage {
   get count() {
     return this.counted.reduce((sum, n) => sum + n, 0);
   }
+  // How often coverage has been halved by the sample of a row.
+  halvingsAt(row) {
+    const { dt_s, half_life_ticks } = this.run.mission;
+    if (!half_life_ticks || row < 0) return 0;
+    return Math.floor(Math.round(this.run.counted(row * this.run.step) / dt_s) / half_life_ticks);
+  }
+  // Adds the rows [from, to) to a sum and to the counts of those before.
   add(sum, counted, from, to) {
+    if (from >= to) return;
     const { M, N, P, cx, cy, cz, run } = this,
       [lx, ly, lz] = run.size,
-      { targets } = run;
+      { targets } = run,
+      forgets = run.mission.half_life_ticks > 0,
+      halvings = this.halvingsAt(to - 1),
+      left = row => (forgets ? 2 ** Math.max(-512, this.halvingsAt(row) - halvings) : 1),
+      weights = Float64Array.from({ length: to - from }, (_, i) => left(from + i)),
+      kept = left(from - 1);
+    if (kept !== 1) for (const numbers of [sum, counted]) numbers.forEach((n, i) => (numbers[i] = n * kept));
     cz[0] = 1;
     for (const track of run.tracks) {
       const sensor = this.sensorOf(track.id);
@@ -63,14 +78,15 @@ export class Coverage {
             py = p[2 * k + 1];
           if (run.holds.length && run.heldAt(k)) continue; // the mission is paused
           if (!(px >= 0 && px <= lx && py >= 0 && py <= ly)) continue;
+          const weight = weights[k - from];
           while (targets[holds + 1]?.row <= k) holds++;
-          counted[holds] = (counted[holds] ?? 0) + (sensor ? sensor.quality : 1);
+          counted[holds] = (counted[holds] ?? 0) + weight * (sensor ? sensor.quality : 1);
           cosines(cx, px / lx);
           cosines(cy, py / ly);
           if (z) cosines(cz, z[k] / lz);
           for (let l = 0, i = 0; l < P; l++)
             for (let m = 0; m < M; m++) {
-              const c = cz[l] * cx[m];
+              const c = weight * cz[l] * cx[m];
               if (sensor) for (let n = 0; n < N; n++, i++) sum[i] += sensor.qg[i] * c * cy[n];
               else for (let n = 0; n < N; n++) sum[i++] += c * cy[n];
             }
