@@ -71,7 +71,7 @@ const Coefficients& CoverageExchange::team_coverage() const {
 
 void CoverageExchange::add_sample(const AgentStep& step, const TargetShift& shift) {
   table_.add_sample(self_, *step.basis_at, sensors_.of(kind_).footprint());
-  const TargetShift::Change* const change = shift.at(step.counted);
+  const TargetShift::Change* const change = shift.of_sample(step.counted);
   if (change != nullptr) table_.shift_sample(self_, change->by_slot.data());
 }
 

@@ -55,8 +55,16 @@ Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,
   } else {
     table.average(foreseen_);
   }
+  const TargetShift::Change* const present = shift.of_coverage(step.counted);
+  if (present != nullptr) foreseen_ -= present->by_mode;
   controller_.set_coverage(foreseen_);
   return controller_.command(id_, step.counted, step.x_m, *step.basis_at);
+}
+
+double Guidance::metric(const Coefficients& coverage, const TargetShift& shift,
+                        Tick counted) const {
+  const TargetShift::Change* const present = shift.of_coverage(counted);
+  return controller_.metric(present != nullptr ? coverage - present->by_mode : coverage);
 }
 
 }  // namespace ergocast

@@ -44,8 +44,8 @@ class Guidance {
   /// The coverage that wanted_mps() answered to.
   const Coefficients& foreseen() const { return foreseen_; }
 
-  /// φ² of a coverage.
-  double metric(const Coefficients& coverage) const { return controller_.metric(coverage); }
+  /// φ² of a coverage at a tick that counts.
+  double metric(const Coefficients& coverage, const TargetShift& shift, Tick counted) const;
 
  private:
   AgentId id_;

@@ -65,7 +65,7 @@ void MissionRun::note_roster(const Participant& me) {
   const RosterEntry* const own = known.entry_of(me.incarnation());
   if (own != nullptr && own->recalled()) motion_.prepare_recall(me.mission());
   shift_.note(known.amendments());
-  if (shift_.any()) exchange_.allow_shifts();
+  if (shift_.any_of_samples()) exchange_.allow_shifts();
   motion_.note_roster(known.roster());
   if (!known.holds().empty()) held_roster_ = in_counted_ticks(known.roster(), known.holds());
 }
@@ -290,7 +290,7 @@ AgentPhase MissionRun::phase(const Participant& me) const {
 
 void MissionRun::fill_in(AgentStatus& status, const Participant& me) const {
   if (step_.tick >= 0) {
-    status.ergodic_metric = guidance_.metric(team_coverage());
+    status.ergodic_metric = guidance_.metric(team_coverage(), shift_, step_.counted);
     status.max_staleness_s =
         static_cast<double>(exchange_.oldest_update_age(step_, me)) * me.timing().dt_s;
   }

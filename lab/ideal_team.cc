@@ -71,7 +71,7 @@ bool IdealTeam::stands_for(const Mission& mission) {
 
 void IdealTeam::note(const Amendments& list) {
   shift_.note(list);
-  if (shift_.any()) table_.allow_shifts();
+  if (shift_.any_of_samples()) table_.allow_shifts();
 }
 
 void IdealTeam::step() {
@@ -80,6 +80,7 @@ void IdealTeam::step() {
     look_ahead();
   } else {
     table_.average(coverage_);
+    compare_with_present();
     for (Controller& controller : controllers_) controller.set_coverage(coverage_);
   }
   see_bodies();
@@ -88,6 +89,7 @@ void IdealTeam::step() {
     if (look_ahead_.any()) {
       foresee(agent);
       correct();
+      compare_with_present();
       controller.set_coverage(coverage_);
     }
     const Eigen::Vector3d wanted_mps =
@@ -130,7 +132,7 @@ void IdealTeam::sample() {
   table_.set_now(tick_);
   const double kept = HalfLife::factor(halvings, table_.halvings());
   const double before_steps = table_.view(0, 0).remembered_steps;
-  const TargetShift::Change* const change = shift_.at(tick_);
+  const TargetShift::Change* const change = shift_.of_sample(tick_);
   for (Agent& agent : agents_) {
     agent.at.emplace(agent.x_m, mission_.domain, mission_.basis);
     const double* const footprint = sensors_.of(agent.kind).footprint();
@@ -189,11 +191,18 @@ void IdealTeam::weigh(const Agent& agent) {
 
 /// With dead reckoning a gain is f at a place, without the shift: what the forecast lacks.
 void IdealTeam::correct() {
-  const TargetShift::Change* const change = mission_.dead_reckoning ? shift_.at(tick_) : nullptr;
+  const TargetShift::Change* const change =
+      mission_.dead_reckoning ? shift_.of_sample(tick_) : nullptr;
   if (change == nullptr) return;
   const double share = unshifted_s_ * per_second_;
   for (std::size_t k = 0; k < earlier_.size(); ++k)
     coverage_[static_cast<Eigen::Index>(k)] -= change->by_slot[k] * share;
+}
+
+/// With law.history KEEP.
+void IdealTeam::compare_with_present() {
+  const TargetShift::Change* const present = shift_.of_coverage(tick_);
+  if (present != nullptr) coverage_ -= present->by_mode;
 }
 
 /// Sets ĉ for the next agent in the order of the team.

@@ -90,6 +90,7 @@ class IdealTeam {
   void foresee(const Agent& agent);
   void weigh(const Agent& agent);
   void correct();
+  void compare_with_present();
   double quality(const Agent& agent) const { return sensors_.of(agent.kind).quality; }
   void see_bodies();
   Eigen::Vector3d kept_apart(Agent& agent, const Eigen::Vector3d& v_mps);

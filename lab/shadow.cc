@@ -502,6 +502,7 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
     const std::vector<int>& modes = this->modes(mission)[at];
     for (std::size_t i = 0; i < modes.size() && time_s > 0; ++i) c[modes[i]] = sums[i] / time_s;
   }
+  if (!targets_.empty()) c -= targets_.coverage_shift(mission, agent.counted);
   return c;
 }
 

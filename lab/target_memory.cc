@@ -22,10 +22,20 @@ void TargetMemory::note(const Mission& mission, const Amendments& list) {
 }
 
 Coefficients TargetMemory::shift_s(const Mission& mission, Tick counted) const {
-  Coefficients shift = Coefficients::Zero(mission.basis.mode_count());
+  const bool kept = mission.law.history == TargetHistory::kKeep;
+  return (kept ? 0 : mission.timing.dt_s) * change_at(mission, counted);
+}
+
+Coefficients TargetMemory::coverage_shift(const Mission& mission, Tick counted) const {
+  const bool kept = mission.law.history == TargetHistory::kKeep;
+  return (kept ? 1 : 0) * change_at(mission, counted);
+}
+
+Coefficients TargetMemory::change_at(const Mission& mission, Tick counted) const {
+  Coefficients change = Coefficients::Zero(mission.basis.mode_count());
   for (const auto& [number, target] : targets_)
-    if (target.first <= counted) shift = mission.timing.dt_s * target.second;
-  return shift;
+    if (target.first <= counted) change = target.second;
+  return change;
 }
 
 }  // namespace ergocast::lab

@@ -21,10 +21,15 @@ class TargetMemory {
 
   /// Whether the plan's target has always held.
   bool empty() const { return targets_.empty(); }
-  /// (μ − μ₀) dt at a tick, as numbered among those that count.
+  /// (μ − μ₀) dt at a tick, as numbered among those that count; 0 with law.history KEEP.
   Coefficients shift_s(const Mission& mission, Tick counted) const;
+  /// What the coverage is less at a tick: μ − μ₀ with law.history KEEP, else 0.
+  Coefficients coverage_shift(const Mission& mission, Tick counted) const;
 
  private:
+  /// μ − μ₀ at a tick.
+  Coefficients change_at(const Mission& mission, Tick counted) const;
+
   /// By the number of the amendment: the counted tick from which a target holds, and μ − μ₀.
   std::map<std::int32_t, std::pair<Tick, Coefficients>> targets_;
 };

@@ -2,8 +2,8 @@
 // φ² of the team for an outside observer, computed from the true positions of the vehicles. If
 // kinds have footprints or qualities, it is of what the team has seen (core/mission/kinds.h). If
 // the target changes, each moment counts against the target of its own time
-// (core/law/target_shift.h). With a half-life it is of what the team remembers
-// (core/law/half_life.h).
+// (core/law/target_shift.h), or with law.history KEEP against the present one. With a half-life it
+// is of what the team remembers (core/law/half_life.h).
 #pragma once
 
 #include <cstdint>
@@ -25,6 +25,7 @@ class Observer {
     before_ = sums_;
     sensors_ = Sensors(mission);
     half_life_ = HalfLife(mission);
+    keeps_ = mission.law.history == TargetHistory::kKeep;
   }
   bool begun() const { return weights_.size() > 0; }
 
@@ -36,7 +37,7 @@ class Observer {
     const double worth_s =
         sensors_.of(kind).sample(CosinesAt(x_m, mission.domain, mission.basis), mission.basis,
                                  mission.timing.dt_s, sums_.f_s.data());
-    if (shift_.size() > 0) sums_.f_s -= worth_s * shift_;
+    if (shift_.size() > 0 && !keeps_) sums_.f_s -= worth_s * shift_;
     sums_.covered_s += worth_s;
   }
   /// From now on the team covers `target`, in the place of the plan's or the last one.
@@ -49,8 +50,8 @@ class Observer {
   bool has_seen_any_of_target() const { return sums_.covered_s > before_.covered_s; }
 
   /// c_k of (4) so far, shifted: c − μ₀ is the average of f − μ(t), where μ₀ is the plan's target.
-  /// @pre has_seen_any()
-  Coefficients coverage() const { return sums_.f_s / sums_.covered_s; }
+  /// With law.history KEEP it is that of f − μ of now. @pre has_seen_any()
+  Coefficients coverage() const { return average(sums_); }
   /// φ² of the coverage so far. @pre has_seen_any()
   double metric(const Mission& mission) const {
     return ergodic_metric(coverage(), mission.target_coefficients, weights_);
@@ -59,8 +60,7 @@ class Observer {
   /// @pre has_seen_any_of_target()
   double metric_of_target(const Mission& mission) const {
     // All samples of this time have the same shift.
-    const Coefficients since_s = sums_.f_s - before_.f_s;
-    return ergodic_metric(since_s / (sums_.covered_s - before_.covered_s),
+    return ergodic_metric(average({sums_.f_s - before_.f_s, sums_.covered_s - before_.covered_s}),
                           mission.target_coefficients, weights_);
   }
 
@@ -69,6 +69,12 @@ class Observer {
     Coefficients f_s;
     double covered_s = 0;
   };
+
+  Coefficients average(const Sums& sums) const {
+    Coefficients c = sums.f_s / sums.covered_s;
+    if (keeps_ && shift_.size() > 0) c -= shift_;
+    return c;
+  }
 
   void fade(std::int64_t halvings) {
     if (halvings <= halvings_) return;
@@ -86,6 +92,7 @@ class Observer {
   Coefficients weights_;
   Sensors sensors_;
   HalfLife half_life_;
+  bool keeps_ = false;  // law.history KEEP
   std::int64_t halvings_ = 0;
 };
 

@@ -46,6 +46,7 @@ std::string law_text(const ControlLaw& law) {
   text += ", k = " + readable(law.contraction_gain_per_s) + " /s";
   if (law.memory_half_life_s > 0)
     text += ", half-life of coverage " + readable(law.memory_half_life_s) + " s";
+  if (law.history == TargetHistory::kKeep) text += ", all time counts against the present target";
   if (law.contraction_gain_per_s == 0) return text;
   return text + " towards " + point_text(law.contraction_center_m.head<2>()) + " m";
 }
@@ -339,6 +340,7 @@ Json page_mission(const Mission& flown, const Field& density) {
   if (any_station(mission)) page["stations"] = stations_of(mission);
   if (const HalfLife half_life(mission); half_life.any())
     page["half_life_ticks"] = half_life.ticks();
+  if (mission.law.history == TargetHistory::kKeep) page["keeps_history"] = true;
   return page;
 }
 

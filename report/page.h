@@ -19,11 +19,12 @@ namespace ergocast {
 /// "free_domain", "conventions": [[name, text], …], "density": null or {"width", "height", "full",
 /// "data"}, "body_radius_m": half the distance that bodies keep, "stations": [{"id", "at_m" from
 /// the domain's corner, "rest_from" in ticks that count}, …], "vehicles": [{"count", "vehicle":
-/// "FIXED_WING"}, …] of the planned kinds, "half_life_ticks"}. The last four are present only if
-/// there are any, and vehicles that are no points. Origin, size and modes have two numbers, in a
-/// box three. With "free_domain" μ and λ are still those of cosines, with which the page draws; φ²
-/// over time is in the modes of the free domain. `density` has a byte for each cell, the north-west
-/// first; 255 is `full` times the uniform density or more. In a box it is the average along z.
+/// "FIXED_WING"}, …] of the planned kinds, "half_life_ticks", "keeps_history": true}. The last five
+/// are present only if there are any, vehicles that are no points, and law.history KEEP. Origin,
+/// size and modes have two numbers, in a box three. With "free_domain" μ and λ are still those of
+/// cosines, with which the page draws; φ² over time is in the modes of the free domain. `density`
+/// has a byte for each cell, the north-west first; 255 is `full` times the uniform density or more.
+/// In a box it is the average along z.
 /// @param density  in multiples of the uniform density; if empty, the page draws the sum of the μ_k
 nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
 

@@ -68,7 +68,7 @@ class Forecast {
   void note_revision(std::int64_t revision) { revision_ = revision; }
 
   /// The changes of the target. It outlives the next call of look_ahead().
-  void note_shift(const TargetShift& shift) { shift_ = shift.any() ? &shift : nullptr; }
+  void note_shift(const TargetShift& shift) { shift_ = shift.any_of_samples() ? &shift : nullptr; }
 
   /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if it counts,
   /// its gains are possible, and its author is active in the roster without a newer incarnation and

@@ -10,10 +10,11 @@
 namespace ergocast {
 
 TargetShift::TargetShift(const Mission& mission)
-    : layout_(mission), plan_target_(mission.target_coefficients) {}
+    : layout_(mission),
+      keeps_(mission.law.history == TargetHistory::kKeep),
+      plan_target_(mission.target_coefficients) {}
 
-AlignedDoubles TargetShift::in_slots(const Coefficients& target) const {
-  const Coefficients shift = target - plan_target_;
+AlignedDoubles TargetShift::in_slots(const Coefficients& shift) const {
   AlignedDoubles slots(static_cast<std::size_t>(layout_.slot_count()));
   if (layout_.in_basis_order()) {
     std::ranges::copy(shift, slots.begin());
@@ -31,9 +32,11 @@ void TargetShift::note(const Amendments& list) {
   std::erase_if(changes_, [first, from](const Change& change) {
     return change.number >= first || change.from >= from;
   });
-  for (const TargetChange& change : list.targets)
+  for (const TargetChange& change : list.targets) {
+    const Coefficients shift = change.target - plan_target_;
     changes_.push_back(
-        {change.number, counted_ticks(list.holds, change.from), in_slots(change.target)});
+        {change.number, counted_ticks(list.holds, change.from), in_slots(shift), shift});
+  }
   if (changes_.size() > kMostChanges)
     changes_.erase(changes_.begin(), changes_.end() - static_cast<std::ptrdiff_t>(kMostChanges));
 }

@@ -25,6 +25,11 @@ enum class Perturbation {
   kAdaptive,  ///< between noise_intensity and noise_ceiling, see core/law/perturbation.h
 };
 
+enum class TargetHistory {
+  kByTime,  ///< each moment counts against the target of its own time
+  kKeep,    ///< all moments count against the present target
+};
+
 /// The input (8) and the dynamics (10): dx = u dt − k (x − centre) dt + σ dW.
 struct ControlLaw {
   double u_max_mps = 1;
@@ -37,9 +42,10 @@ struct ControlLaw {
   Eigen::Vector3d contraction_center_m{0, 0, 0};
   double anticipation =
       0;  ///< a of core/law/look_ahead.h; 0: agents answer to the known coverage c
-  bool ends_with_plan = false;  ///< no agent looks beyond the mission's end
-  bool paired_pushes = false;   ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
+  bool ends_with_plan = false;    ///< no agent looks beyond the mission's end
+  bool paired_pushes = false;     ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
   double memory_half_life_s = 0;  ///< of coverage, core/law/half_life.h; 0: it is never forgotten
+  TargetHistory history = TargetHistory::kByTime;  ///< core/law/target_shift.h
 
   /// What σ never exceeds [m/√s].
   double max_noise() const {

@@ -105,7 +105,8 @@ class Run:
         Returns (modes_x, modes_y), or (len(tick), modes_x, modes_y); 0 before the first row.
         metrics.ergodic_metric is φ² of these numbers, bit for bit, in a record of one membership.
         If the target changed to μ at some tick, mission.mu + mean of f − μ(t): each moment counts
-        against the target of its own time.
+        against the target of its own time. With law.history KEEP, mission.mu + mean of f − μ, for
+        the μ of that tick.
         Raises ValueError if ticks descend.
         """
         one = tick is None or np.ndim(tick) == 0

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Peaks that jump once: the team of this code, a fresh team, and a team that goes on comparing all
-// it has covered with the new target.
+// Peaks that jump once: the team of this code, a fresh team, and a team with law.history KEEP.
 #include <cstdio>
 #include <string>
 
@@ -17,7 +16,7 @@ constexpr Tick kJump = 3000;  // after 300 s
 /// Plans end later, so that no team ends with its plan.
 constexpr double kPlan_s = 2000;
 
-const char* const kHistories[] = {"this code", "fresh", "all time"};
+const char* const kHistories[] = {"BY_TIME", "fresh", "KEEP"};
 
 struct Jump {
   const char* name;
@@ -28,16 +27,6 @@ constexpr Jump kJumps[] = {{"one peak", Peaks::kOneInside}, {"all peaks", Peaks:
 Amendments jump_to(const Coefficients& target) {
   Amendments list;
   name_target(list, kJump, {.target = target, .cosine = {}});
-  return list;
-}
-
-/// A list with which a team compares all that it has covered with `target`: the samples of one tick
-/// are shifted by as much as all samples before it would have been.
-Amendments compare_all_time(const Coefficients& before, const Coefficients& target) {
-  Amendments list;
-  const Coefficients at_once = before + static_cast<double>(kJump + 1) * (target - before);
-  name_target(list, kJump, {.target = at_once, .cosine = {}});
-  name_target(list, kJump + 1, {.target = target, .cosine = {}});
   return list;
 }
 
@@ -62,12 +51,18 @@ void run_jump(int agents, const Jump& jump, std::uint64_t seed, Results& results
   const Coefficients target = after.target_coefficients;
   const std::string name = std::to_string(agents) + " agents: " + jump.name;
 
-  lab::IdealTeam team(mission);
-  while (team.tick() < kJump) team.step();
+  Mission kept = mission;
+  kept.law.history = TargetHistory::kKeep;
+
+  lab::IdealTeam team(mission), all_time(kept);
+  while (team.tick() < kJump) {
+    team.step();
+    all_time.step();
+  }
   for (std::size_t i = 0; i < team.size(); ++i) after.starts_m[i] = team.x_m(i);
-  lab::IdealTeam all_time(team), fresh(after);
+  lab::IdealTeam fresh(after);
   team.note(jump_to(target));
-  all_time.note(compare_all_time(mission.target_coefficients, target));
+  all_time.note(jump_to(target));
   measure(team, target, name, kHistories[0], results);
   measure(fresh, target, name, kHistories[1], results);
   measure(all_time, target, name, kHistories[2], results);

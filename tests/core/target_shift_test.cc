@@ -49,7 +49,7 @@ void cover(CoverageTable& table, const Author& author, const Mission& mission,
            const TargetShift& shift, Tick tick) {
   table.set_now(tick);
   table.add_sample(author, BasisAt(place(tick), mission.domain, mission.basis));
-  const auto* const change = shift.at(tick);
+  const auto* const change = shift.of_sample(tick);
   if (change != nullptr) table.shift_sample(author, change->by_slot.data());
 }
 
@@ -58,14 +58,32 @@ TEST(TargetShift, HoldsFromItsTickOnAmongThoseThatCount) {
   Amendments list = changed_at(mission, {{20, {1, 1, 0}}, {30, {9, 9, 0}}});
   list.holds = {{5, 15}};
   TargetShift shift(mission);
-  EXPECT_FALSE(shift.any());
+  EXPECT_FALSE(shift.any_of_samples());
   shift.note(list);
-  EXPECT_EQ(shift.at(9), nullptr);
-  ASSERT_NE(shift.at(10), nullptr);
-  EXPECT_EQ(shift.at(19)->number, 0);
-  EXPECT_EQ(shift.at(20)->number, 1);
-  EXPECT_EQ(shift.at(20)->by_slot[0], 0) << "each sample still counts a step";
-  EXPECT_EQ(shift.at(20)->by_slot[3], list.targets[1].target[3] - mission.target_coefficients[3]);
+  EXPECT_EQ(shift.of_sample(9), nullptr);
+  ASSERT_NE(shift.of_sample(10), nullptr);
+  EXPECT_EQ(shift.of_sample(19)->number, 0);
+  EXPECT_EQ(shift.of_sample(20)->number, 1);
+  EXPECT_EQ(shift.of_sample(20)->by_slot[0], 0) << "each sample still counts a step";
+  EXPECT_EQ(shift.of_sample(20)->by_slot[3],
+            list.targets[1].target[3] - mission.target_coefficients[3]);
+}
+
+TEST(TargetShift, IsOfTheCoverageWhereTheHistoryIsKept) {
+  Mission mission = small_mission(1);
+  const Amendments list = changed_at(mission, {{20, {1, 1, 0}}});
+  TargetShift by_time(mission);
+  mission.law.history = TargetHistory::kKeep;
+  TargetShift kept(mission);
+  by_time.note(list);
+  kept.note(list);
+  EXPECT_EQ(by_time.of_coverage(20), nullptr);
+  EXPECT_FALSE(kept.any_of_samples());
+  EXPECT_EQ(kept.of_sample(20), nullptr);
+  EXPECT_EQ(kept.of_coverage(19), nullptr);
+  ASSERT_NE(kept.of_coverage(20), nullptr);
+  const Coefficients change = list.targets[0].target - mission.target_coefficients;
+  EXPECT_EQ(kept.of_coverage(20)->by_mode, change);
 }
 
 TEST(TargetShift, ForgetsWhatANewerListReplaces) {
@@ -78,8 +96,8 @@ TEST(TargetShift, ForgetsWhatANewerListReplaces) {
   second.targets[0].from = 15;
   shift.note(second);
   ASSERT_EQ(shift.changes().size(), 2U);
-  EXPECT_EQ(shift.at(14)->from, 10) << "it held in those ticks";
-  EXPECT_EQ(shift.at(15)->from, 15);
+  EXPECT_EQ(shift.of_sample(14)->from, 10) << "it held in those ticks";
+  EXPECT_EQ(shift.of_sample(15)->from, 15);
 }
 
 TEST(ShiftedRow, IsTheSumOfWhatEachMomentAddedAgainstItsTarget) {
@@ -198,7 +216,7 @@ TEST_P(ShiftedForecast, GoesOnWithThePresentShift) {
     Coefficients lacks_s = Coefficients::Zero(20), present = Coefficients::Zero(20);
     const auto shift_at = [&](Tick tick) {
       Coefficients by = Coefficients::Zero(20);
-      if (const auto* one = shift.at(tick))
+      if (const auto* one = shift.of_sample(tick))
         by = Eigen::Map<const Coefficients>(one->by_slot.data(), 20);
       return by;
     };

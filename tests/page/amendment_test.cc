@@ -29,9 +29,9 @@ class AmendedMissionInABrowser : public PageInABrowser {
 
   /// A minute in which the target changes after 20 s to the domain's middle, and after 40 s to its
   /// east.
-  void open_amended(const std::string& fragment = "", const std::string& half_life_s = "0") {
+  void open_amended(const std::string& fragment = "", const std::string& law = "history=BY_TIME") {
     ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "60",
-                        "--set", "law.memory_half_life_s=" + half_life_s, "--out", out()}),
+                        "--set", "law." + law, "--out", out()}),
               0)
         << output();
     const Mission mission = read_mission(out()).value();
@@ -109,11 +109,17 @@ TEST_F(AmendedMissionInABrowser, AddsUpTheMetricOfTheRecord) {
 
 /// The sums and counts of each target are halved.
 TEST_F(AmendedMissionInABrowser, AddsUpTheMetricOfATeamThatForgets) {
-  open_amended("", "15");
+  open_amended("", "memory_half_life_s=15");
   EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
   EXPECT_EQ(js("const { run } = ergocast.S, at = row => run.coverage.metric(row);"
                "const late = at(590); at(100); return late === at(590)"),
             true);
+  expect_no_errors();
+}
+
+TEST_F(AmendedMissionInABrowser, AddsUpTheMetricOfAKeptHistory) {
+  open_amended("", "history=KEEP");
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
   expect_no_errors();
 }
 

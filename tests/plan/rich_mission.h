@@ -54,6 +54,7 @@ inline Mission rich_mission() {
   law.contraction_center_m = {33, 34, 0};
   law.anticipation = 3.5;
   law.memory_half_life_s = 321.5;
+  law.history = TargetHistory::kKeep;
   Timing& timing = mission.timing;
   timing.dt_s = 0.125;
   timing.tick_count = 480;

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/basis/basis.h"
 #include "core/mission/amendments.h"
+#include "logger/run_record.h"
 #include "plan/amendment_list.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/transport.h"
 #include "team/amend_parts.h"
 #include "team/mission_follower.h"
 #include "tests/process/support/mission.h"
+#include "tests/process/support/record.h"
 
 namespace ergocast::test {
 namespace {
@@ -171,6 +174,28 @@ TEST_F(ChangedTargets, AreRepeatedBySimulationWhereTheTeamForgets) {
   if (HasFatalFailure()) return;
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   EXPECT_TRUE(answered("identical to its simulation")) << output();
+}
+
+TEST_F(ChangedTargets, AreComparedWithAllTimeWhereTheHistoryIsKept) {
+  fly([](int) {}, "history: KEEP");
+  if (HasFatalFailure()) return;
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  EXPECT_TRUE(answered("identical to its simulation")) << output();
+  const auto plan = read_mission(out());
+  ASSERT_TRUE(plan) << plan.error().text;
+  // The last target is the plan's, mirrored along neither axis.
+  Coefficients c = Coefficients::Zero(plan->basis.mode_count());
+  double samples = 0;
+  for (const auto& [tick, row] : recorded_rows(out())) {
+    for (const auto& [id, one] : row) {
+      c += basis_values({one.x_m, one.y_m, 0}, plan->domain, plan->basis);
+      ++samples;
+    }
+  }
+  const double metric = ergodic_metric(c / samples, plan->target_coefficients,
+                                       sobolev_weights(plan->basis, plan->domain));
+  const double recorded = summary()["ergodic_metric"]["last"];
+  EXPECT_NEAR(recorded / metric, 1, 1e-6);
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 // along y fastest. Where kinds of agents see differently, each place counts with its kind's quality and
 // footprint. With a half-life, all sums are halved at its ticks, as in core/law/half_life.h.
 // After a change of the target each place counts against the target of its own time: c_k is compared with the
-// average of the targets, each weighted by what was covered while it held.
+// average of the targets, each weighted by what was covered while it held. With law.history KEEP it is compared
+// with the present target.
 const EVERY = 128;
 
 // cos(m π u) of all m, by recurrence.
@@ -126,7 +127,8 @@ export class Coverage {
   // The average of the targets that what at() returned last is compared with.
   meanTarget() {
     const { counted, count } = this,
-      { targets } = this.run;
+      { targets, mission } = this.run;
+    if (mission.keeps_history) return this.run.targetAt(this.upto - 1).coefficients;
     if (count === (counted[0] ?? 0)) return targets[0].coefficients;
     return targets[0].coefficients.map((_, k) =>
       counted.reduce((sum, n, i) => sum + (n / count) * targets[i].coefficients[k], 0),
