@@ -228,6 +228,7 @@ class Invariants {
     BlockSums sums;
   };
   void violate(double t_s, Invariant invariant, const std::string& who, std::string numbers);
+  void note_ends();
   void check(double t_s, const WorldState& world);
   void check(double t_s, const Command& command, const TableView& speaker);
   void check_paused(double t_s, const Command& command);
