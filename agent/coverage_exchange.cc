@@ -9,7 +9,6 @@
 
 #include "core/law/half_life.h"
 #include "core/law/look_ahead.h"
-#include "core/mission/station.h"
 
 namespace ergocast {
 namespace {
@@ -78,8 +77,9 @@ void CoverageExchange::add_sample(const AgentStep& step, const TargetShift& shif
 /// An agent that learns late of a pause has counted too many ticks. The tick that it announced is
 /// then too late, so it broadcasts at once. So does an agent that rests no more, because its recall
 /// was lost with a coordinator.
-void CoverageExchange::broadcast(bool all, const AgentStep& step, Participant& me, Outbox& out) {
-  const Tick counted = step.counted, end = std::max(counted + 1, me.timing().tick_count);
+void CoverageExchange::broadcast(bool all, const AgentStep& step, const EndSchedule& ends,
+                                 Participant& me, Outbox& out) {
+  const Tick counted = step.counted, end = std::max(counted + 1, ends.tick_count_at(counted));
   all = all || (rests_ && !step.recalled);
   rests_ = step.recalled;
   for (int b = 0; b < table_.block_count(); ++b) {
@@ -93,7 +93,7 @@ void CoverageExchange::broadcast(bool all, const AgentStep& step, Participant& m
     if (block.encoding == ContributionEncoding::kFixed16)
       note_gains(published, table_.half_life(), block);
     tick = counted;
-    next = rests_ ? end : next_broadcast(me.mission(), self_.agent, counted, b);
+    next = rests_ ? end : next_broadcast(me.mission(), ends, self_.agent, counted, b);
     block.next_broadcast_tick = next - counted + block.header.tick;
     me.publish(Bus::kSwarm, block, block.header.tick, out);
     published = std::move(block);
@@ -150,12 +150,12 @@ void CoverageExchange::forget_silent(const AgentStep& step, const Participant& m
 }
 
 AgentId CoverageExchange::awaited(const AgentStep& step, const RadioRange& radio,
-                                  const Participant& me) const {
+                                  const EndSchedule& ends, const Participant& me) const {
   for (const RosterEntry& entry : me.follower().roster()) {
     if (entry.author == self_ || !entry.active_at(step.tick)) continue;
     if (!radio.receives(self_.agent, entry.author.agent)) continue;
     // An agent that rests since its admission never broadcasts.
-    if (rests(me.mission(), entry.author.agent, me.counted(entry.active_from))) continue;
+    if (ends.rests(me.mission(), entry.author.agent, me.counted(entry.active_from))) continue;
     // Others get what a resting agent has sent by repairs.
     if (entry.recalled_at(step.roster_revision) && !table_.steps_held(entry.author)) continue;
     if (!table_.holds_due(entry.author, step.counted)) return entry.author.agent;
@@ -197,11 +197,12 @@ Instant CoverageExchange::next_repair() const {
 
 // ---- for the status ----
 
-Tick CoverageExchange::oldest_update_age(const AgentStep& step, const Participant& me) const {
+Tick CoverageExchange::oldest_update_age(const AgentStep& step, const EndSchedule& ends,
+                                         const Participant& me) const {
   Tick oldest = 0;
   for (const RosterEntry& entry : me.follower().roster()) {
     if (entry.author == self_ || !entry.active_at(step.tick)) continue;
-    if (rests(me.mission(), entry.author.agent, step.counted)) continue;
+    if (ends.rests(me.mission(), entry.author.agent, step.counted)) continue;
     if (entry.recalled_at(step.roster_revision)) continue;
     const Tick* const last_update = last_update_.find(entry.author);
     const Tick last = last_update == nullptr ? -1 : *last_update;

@@ -13,6 +13,7 @@
 #include "core/base/ids.h"
 #include "core/law/coverage_table.h"
 #include "core/law/target_shift.h"
+#include "core/mission/end_schedule.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
@@ -44,7 +45,8 @@ class CoverageExchange {
   void allow_shifts() { table_.allow_shifts(); }
   /// Broadcasts the own blocks that are due at `step`, or all. A recalled agent sends each block
   /// once more when it is due, and then nothing till the end.
-  void broadcast(bool all, const AgentStep& step, Participant& me, Outbox& out);
+  void broadcast(bool all, const AgentStep& step, const EndSchedule& ends, Participant& me,
+                 Outbox& out);
   /// Sends the own blocks again, as they were broadcast.
   void repeat(Participant& me, Outbox& out) const;
 
@@ -62,7 +64,8 @@ class CoverageExchange {
   void forget_silent(const AgentStep& step, const Participant& me);
   /// The first teammate in radio range whose coverage is due at `step` and missing; kUnassigned:
   /// none.
-  AgentId awaited(const AgentStep& step, const RadioRange& radio, const Participant& me) const;
+  AgentId awaited(const AgentStep& step, const RadioRange& radio, const EndSchedule& ends,
+                  const Participant& me) const;
 
   // ---- repair ----
   void on(const Digest& theirs, const AgentStep& step, const Participant& me, Instant now);
@@ -77,7 +80,8 @@ class CoverageExchange {
   std::int64_t received() const { return received_; }
   std::int64_t relayed() const { return anti_entropy_.relayed(); }
   /// Counted ticks since the oldest of the teammates' last updates.
-  Tick oldest_update_age(const AgentStep& step, const Participant& me) const;
+  Tick oldest_update_age(const AgentStep& step, const EndSchedule& ends,
+                         const Participant& me) const;
 
  private:
   struct Broadcast {

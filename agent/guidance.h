@@ -13,6 +13,7 @@
 #include "core/law/coverage_table.h"
 #include "core/law/forecast.h"
 #include "core/law/target_shift.h"
+#include "core/mission/end_schedule.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 #include "team/messages.h"
@@ -31,6 +32,11 @@ class Guidance {
   /// once its last answer is older than the world holds a command. In lockstep the world waits for
   /// answers.
   void on(const WorldState& world, const RadioRange& radio, const Participant& me);
+
+  /// Takes in the end that holds at a counted tick.
+  void note_ends(const Mission& mission, const EndSchedule& ends, Tick counted) {
+    if (forecast_) forecast_->note_ends(mission, ends, counted);
+  }
 
   /// Whether a tick that counts can be computed: in lockstep, a command must not depend on the
   /// order in which the parts of the state arrive.

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/mission/hold.h"
-#include "core/mission/station.h"
 
 namespace ergocast {
 namespace {
@@ -41,6 +40,7 @@ MissionRun::MissionRun(const Participant& me, const RosterEntry& self)
     : active_from_(self.active_from),
       radio_(me.mission().radio_range_m),
       exchange_(me.mission(), self, me.counted(self.active_from)),
+      ends_(me.mission()),
       shift_(me.mission()),
       guidance_(me.mission(), self),
       motion_(me.mission(), self.author, me.follower().revision()) {
@@ -64,6 +64,7 @@ void MissionRun::note_roster(const Participant& me) {
   const MissionFollower& known = me.follower();
   const RosterEntry* const own = known.entry_of(me.incarnation());
   if (own != nullptr && own->recalled()) motion_.prepare_recall(me.mission());
+  ends_.note(known.amendments());
   shift_.note(known.amendments());
   if (shift_.any_of_samples()) exchange_.allow_shifts();
   motion_.note_roster(known.roster());
@@ -163,7 +164,7 @@ std::optional<MissionOver> MissionRun::advance(Participant& me, Instant now, Out
   }
   if (stalled(me, now)) {
     stall_announced_ = now;
-    exchange_.broadcast(true, step_, me, out);
+    exchange_.broadcast(true, step_, ends_, me, out);
   }
   if (!me.cut_off(step_.tick, now)) return std::nullopt;
   return MissionOver{true,
@@ -206,9 +207,9 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   motion_.bodies().begin(own, step_, me, out);
   // A restarted world may be a tick behind the roster. Our predecessor has covered that tick.
   if (step_.tick < active_from_ || step_.held) return std::nullopt;
-  const bool covers = !step_.recalled && !rests(mission, me.id(), step_.counted);
+  const bool covers = !step_.recalled && !ends_.rests(mission, me.id(), step_.counted);
   if (covers) exchange_.add_sample(step_, shift_);
-  exchange_.broadcast(false, step_, me, out);
+  exchange_.broadcast(false, step_, ends_, me, out);
   return std::nullopt;
 }
 
@@ -218,13 +219,17 @@ AgentId MissionRun::awaited(const Participant& me) const {
   if (!motion_.knows_bodies(step_.tick)) return kWorld;
   if (me.timing().pace == Pace::kRealtime || step_.held) return kUnassigned;
   if (!guidance_.has_state_of(step_.tick)) return kWorld;
-  return exchange_.awaited(step_, radio_, me);
+  return exchange_.awaited(step_, radio_, ends_, me);
 }
 
 /// A command of 0 is wanted in a pause: the vehicle brakes, then stands or loiters.
 void MissionRun::answer(Participant& me, Outbox& out) {
   command_before_ = last_command_;
   exchange_.forget_silent(step_, me);
+  if (!ends_.is_plans()) {
+    motion_.set_rest(ends_.rest_from(me.mission(), me.id(), step_.counted));
+    guidance_.note_ends(me.mission(), ends_, step_.counted);
+  }
   Eigen::Vector3d wanted_mps{0, 0, 0};
   if (!step_.held)
     wanted_mps = guidance_.wanted_mps(exchange_.table(), counted_roster(me), shift_, step_);
@@ -284,7 +289,7 @@ AgentPhase MissionRun::phase(const Participant& me) const {
     return motion_.is_home(me.mission(), step_.body_m) ? AgentPhase::kResting
                                                        : AgentPhase::kReturning;
   if (!motion_.has_station()) return AgentPhase::kRunning;
-  if (rests(me.mission(), me.id(), step_.counted)) return AgentPhase::kResting;
+  if (ends_.rests(me.mission(), me.id(), step_.counted)) return AgentPhase::kResting;
   return motion_.returns() ? AgentPhase::kReturning : AgentPhase::kRunning;
 }
 
@@ -292,7 +297,7 @@ void MissionRun::fill_in(AgentStatus& status, const Participant& me) const {
   if (step_.tick >= 0) {
     status.ergodic_metric = guidance_.metric(team_coverage(), shift_, step_.counted);
     status.max_staleness_s =
-        static_cast<double>(exchange_.oldest_update_age(step_, me)) * me.timing().dt_s;
+        static_cast<double>(exchange_.oldest_update_age(step_, ends_, me)) * me.timing().dt_s;
   }
   status.waiting_for = waiting_for_;
   status.answered_tick = answered_;

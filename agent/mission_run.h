@@ -24,6 +24,7 @@
 #include "core/base/ids.h"
 #include "core/law/coverage_table.h"
 #include "core/law/target_shift.h"
+#include "core/mission/end_schedule.h"
 #include "core/mission/roster.h"
 #include "team/beacon_book.h"
 #include "team/deadline.h"
@@ -113,6 +114,7 @@ class MissionRun {
   Tick active_from_;  // from the roster
   RadioRange radio_;
   CoverageExchange exchange_;
+  EndSchedule ends_;
   TargetShift shift_;
   Guidance guidance_;
   SafeMotion motion_;

@@ -56,6 +56,10 @@ class SafeMotion {
   /// Whether a tick can be answered: only once the position of every body is known.
   bool knows_bodies(Tick tick) const { return !separation_ || bodies_.complete(tick); }
 
+  /// Takes in from which counted tick on an agent with a station rests.
+  void set_rest(Tick counted) {
+    if (has_station_) way_home_->set_rest(counted);
+  }
   bool has_station() const { return has_station_; }
   /// Whether it has begun the way to its station.
   bool returns() const { return way_home_ && way_home_->begun(); }

@@ -11,9 +11,12 @@ namespace ergocast {
 namespace {
 
 /// Operators whose parts are collected at once.
-/// Limit (Team): operators whose targets a coordinator collects at once. Beyond it: the parts of
+/// Limit (Team): operators whose amendments a coordinator collects at once. Beyond it: the parts of
 /// the one that asked first are forgotten; it repeats them.
 constexpr std::size_t kMostOperators = 4;
+
+/// Lockstep: how many ticks after the world's tick an amendment holds.
+constexpr Tick kLockstepNotice = 2;
 
 /// Real time: the tick after the notice. It counts from the newest tick that the world can be at.
 /// Nothing while the world is silent, because that tick is then unknown; the operator asks again.
@@ -47,14 +50,14 @@ void Amending::adopt(const Amendments& known) {
 }
 
 /// Whether the next amendment may be of this kind and number.
-bool Amending::may_name(const Amend& amend, const TickWatch& ticks) const {
+bool Amending::may_name(const Amend& amend) const {
   if (stand_by_revision_ >= 0 || amend.number != list_.named) return false;
   if (list_.named >= kMaxAmendments || !planned_.empty()) return false;
   if (amend.kind == AmendmentKind::kPause)
     return !is_open(list_.holds) && list_.holds.size() < kMaxHolds;
   if (amend.kind == AmendmentKind::kResume) return is_open(list_.holds);
-  // Only two targets travel: the one that holds, and the next.
-  return list_.targets.empty() || list_.targets.back().from <= ticks.newest();
+  if (amend.kind == AmendmentKind::kEnd) return list_.ends.size() < kMaxEnds;
+  return true;
 }
 
 /// The content of an AMEND whose last part has arrived.
@@ -79,22 +82,55 @@ std::optional<std::vector<std::byte>> Amending::completed(const Amend& amend) {
   return content;
 }
 
+/// Whether the content of a wish has arrived and is one of the mission; if so, reads it.
+bool Amending::read_content(const Amend& amend, const Mission& mission, Wish& wish) {
+  const bool is_target = wish.kind == AmendmentKind::kTarget;
+  if (!is_target && wish.kind != AmendmentKind::kEnd) return true;
+  const auto content = completed(amend);
+  if (!content) return false;
+  if (is_target) {
+    auto target = decode_target(*content, mission);
+    if (target) wish.target = *std::move(target);
+    return target.has_value();
+  }
+  const auto tick_count = decode_end(*content, mission);
+  wish.tick_count = tick_count.value_or(0);
+  return tick_count.has_value();
+}
+
+/// Whether a target can be named from a tick on. Only two targets travel, the one that holds and
+/// the next. A target that waits can be replaced by the one that holds.
+bool Amending::may_follow(const TargetChange& target, const Mission& mission, Tick newest,
+                          Tick from) const {
+  const auto& targets = list_.targets;
+  if (targets.empty() || targets.back().from <= newest) return true;
+  if (targets.back().from < from) return false;
+  const TargetChange plans{.target = mission.target_coefficients, .cosine = mission.cosine_target};
+  const TargetChange& holds = targets.size() > 1 ? targets[targets.size() - 2] : plans;
+  return target_hash(target) == target_hash(holds);
+}
+
+/// Whether the mission can get this amendment from a tick on.
+bool Amending::possible(const Wish& wish, const Mission& mission, Tick newest, Tick from,
+                        const Team& team) {
+  if (wish.kind == AmendmentKind::kTarget) return may_follow(wish.target, mission, newest, from);
+  if (wish.kind != AmendmentKind::kEnd) return true;
+  const auto agents = team.places.of(team.roster);
+  return end_rules_.problem(mission, list_, team.places.tick(), from, wish.tick_count, agents) ==
+         EndProblem::kNone;
+}
+
 void Amending::obey(const Amend& amend, const Mission& mission, const TickWatch& ticks,
-                    const SignsOfLife& signs, Announcement& announcement) {
-  const Tick end = tick_after(list_.holds, mission.timing.tick_count);
-  if (!may_name(amend, ticks) || ticks.newest() + amend.delay_ticks >= end) return;
+                    const Team& team, Announcement& announcement) {
+  const Tick end = tick_after(list_.holds, tick_count_of(mission.timing, list_.ends));
+  if (!may_name(amend) || ticks.newest() + amend.delay_ticks >= end) return;
   Wish wish{.kind = amend.kind, .delay_ticks = amend.delay_ticks};
-  if (wish.kind == AmendmentKind::kTarget) {
-    const auto content = completed(amend);
-    auto target = content ? decode_target(*content, mission) : std::nullopt;
-    if (!target) return;
-    wish.target = *std::move(target);
-  }
-  if (mission.timing.pace == Pace::kRealtime) {
-    const auto tick = tick_with_notice(mission.timing, ticks, signs);
-    if (tick) name(*tick, std::move(wish), announcement);
-    return;
-  }
+  if (!read_content(amend, mission, wish)) return;
+  const bool realtime = mission.timing.pace == Pace::kRealtime;
+  const auto tick = realtime ? tick_with_notice(mission.timing, ticks, team.signs)
+                             : std::optional(ticks.newest() + kLockstepNotice);
+  if (!tick || !possible(wish, mission, ticks.newest(), *tick + wish.delay_ticks, team)) return;
+  if (realtime) return name(*tick, std::move(wish), announcement);
   wish_ = std::move(wish);
   stand_by(announcement);
 }
@@ -104,7 +140,8 @@ void Amending::stand_by(Announcement& announcement) {
   stand_by_revision_ = announcement.revision();
 }
 
-void Amending::note_world(const TickWatch& ticks, Announcement& announcement) {
+void Amending::note_world(const Mission& mission, const TickWatch& ticks, const Team& team,
+                          Announcement& announcement) {
   if (stand_by_revision_ < 0) {
     const bool last_holds = !planned_.empty() && list_.targets.back().from <= ticks.newest();
     if (last_holds) stand_by(announcement);
@@ -113,7 +150,12 @@ void Amending::note_world(const TickWatch& ticks, Announcement& announcement) {
   if (ticks.world_revision() < stand_by_revision_) return;
   if (!wish_) return list_next(announcement);
   // The world goes on once it knows the named tick. No agent answers the next tick before that.
-  name(ticks.tick() + 2, *std::exchange(wish_, std::nullopt), announcement);
+  Wish wish = *std::exchange(wish_, std::nullopt);
+  const Tick tick = ticks.tick() + kLockstepNotice;
+  if (possible(wish, mission, ticks.newest(), tick + wish.delay_ticks, team))
+    return name(tick, std::move(wish), announcement);
+  stand_by_revision_ = -1;
+  announcement.change();
 }
 
 /// Lists the next planned target in the place of one that holds no longer.
@@ -130,7 +172,11 @@ void Amending::name(Tick tick, Wish wish, Announcement& announcement) {
   stand_by_revision_ = -1;
   tick += wish.delay_ticks;
   if (wish.kind == AmendmentKind::kTarget) {
-    name_target(list_, tick, std::move(wish.target));
+    const bool waits = !list_.targets.empty() && list_.targets.back().from >= tick;
+    waits ? replace_target(list_, std::move(wish.target))
+          : name_target(list_, tick, std::move(wish.target));
+  } else if (wish.kind == AmendmentKind::kEnd) {
+    name_end(list_, tick, wish.tick_count);
   } else {
     name_pause(list_, tick);
   }

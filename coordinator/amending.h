@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names the amendments of the mission: pauses, and new targets, each with the tick from which it
-// holds (core/mission/amendments.h).
+// Names the amendments of the mission: pauses, new targets, and other ends, each with the tick from
+// which it holds (core/mission/amendments.h).
 //
 // All agents must change at the same tick. In lockstep the world first stands by: it stays at a
 // tick until it knows which one is named. In real time the team gets notice.
@@ -15,15 +15,24 @@
 
 #include "coordinator/announcement.h"
 #include "coordinator/members.h"
+#include "coordinator/team_places.h"
 #include "coordinator/tick_watch.h"
 #include "core/mission/amendments.h"
 #include "core/mission/mission.h"
+#include "core/motion/end_rules.h"
 #include "team/messages.h"
 
 namespace ergocast {
 
 class Amending {
  public:
+  /// What is known of the team.
+  struct Team {
+    const SignsOfLife& signs;
+    const TeamPlaces& places;
+    const std::vector<RosterEntry>& roster;
+  };
+
   const Amendments& list() const { return list_; }
   /// The list as MISSION carries it.
   const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -39,14 +48,15 @@ class Amending {
   void adopt(const Amendments& known);
   /// Obeys a wish of the operator, once all its parts have arrived. It has no effect if it does not
   /// follow the newest amendment, or another one waits for its tick, or the list is full, or the
-  /// content is no target of `mission`, or it would hold after the mission's end, or the tick of
-  /// the world is unknown in real time.
+  /// content is none of `mission`, or it would hold after the mission's end, or EndRules refuse it,
+  /// or the tick of the world is unknown in real time.
   /// @pre the mission runs
-  void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks,
-            const SignsOfLife& signs, Announcement& announcement);
+  void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks, const Team& team,
+            Announcement& announcement);
 
   /// Lockstep: names a tick, or lists the next planned target, if the world stands by.
-  void note_world(const TickWatch& ticks, Announcement& announcement);
+  void note_world(const Mission& mission, const TickWatch& ticks, const Team& team,
+                  Announcement& announcement);
 
  private:
   /// What an operator wants.
@@ -54,6 +64,7 @@ class Amending {
     AmendmentKind kind = AmendmentKind::kPause;
     Tick delay_ticks = 0;
     TargetChange target{};  // of kTarget
+    Tick tick_count = 0;    // of kEnd
   };
   /// The parts of one AMEND that have arrived.
   struct Collected {
@@ -62,7 +73,10 @@ class Amending {
     std::vector<std::optional<std::vector<std::byte>>> parts{};
   };
 
-  bool may_name(const Amend& amend, const TickWatch& ticks) const;
+  bool may_name(const Amend& amend) const;
+  bool read_content(const Amend& amend, const Mission& mission, Wish& wish);
+  bool may_follow(const TargetChange& target, const Mission& mission, Tick newest, Tick from) const;
+  bool possible(const Wish& wish, const Mission& mission, Tick newest, Tick from, const Team& team);
   std::optional<std::vector<std::byte>> completed(const Amend& amend);
   void stand_by(Announcement& announcement);
   void name(Tick tick, Wish wish, Announcement& announcement);
@@ -74,6 +88,7 @@ class Amending {
   std::vector<Collected> collected_;     // of the operators that asked last
   std::int64_t stand_by_revision_ = -1;  // lockstep: the tick of wish_ is to be named
   std::optional<Wish> wish_;
+  EndRules end_rules_;
   std::deque<TargetChange> planned_;  // the targets that the list does not have yet
 };
 

@@ -122,8 +122,10 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   other_coordinator_.note_world(world.roster_revision, announcement_.revision(), now);
   if (looking()) return ticks_.note_world(world.header.tick);
   if (arrival.fresh) ending_.note_world(world.last);
+  places_.note_world(world);
   if (!ticks_.receive(world, now)) return;
-  amending_.note_world(ticks_, announcement_);
+  const SignsOfLife signs = signs_at(now);
+  amending_.note_world(*mission_, ticks_, team_at(signs), announcement_);
   if (tick() >= end_tick()) end(false, "mission complete", now);
 }
 
@@ -144,7 +146,8 @@ void Coordinator::on(const Stop& stop, const Arrival& arrival) {
 
 void Coordinator::on(const Amend& amend, const Arrival& arrival) {
   if (looking() || state_ != MissionState::kRunning) return;
-  amending_.obey(amend, *mission_, ticks_, signs_at(arrival.now), announcement_);
+  const SignsOfLife signs = signs_at(arrival.now);
+  amending_.obey(amend, *mission_, ticks_, team_at(signs), announcement_);
 }
 
 void Coordinator::on(const Recall& recall, const Arrival&) {
@@ -335,7 +338,7 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
     }
   }
   team.state = state_;
-  team.tick_count = timing().tick_count;
+  team.tick_count = tick_count();
   team.missed_deadlines = ticks_.missed_deadlines();
   team.paused = paused();
   team.agents_expected = static_cast<std::int32_t>(std::max(present, mission_->starts_m.size()));

@@ -23,6 +23,7 @@
 #include "coordinator/other_coordinator.h"
 #include "coordinator/silence_watch.h"
 #include "coordinator/takeover.h"
+#include "coordinator/team_places.h"
 #include "coordinator/tick_watch.h"
 #include "core/base/ids.h"
 #include "core/mission/amendments.h"
@@ -109,7 +110,11 @@ class Coordinator {
   void on(const Recall& recall, const Arrival& arrival);
 
   const Timing& timing() const { return mission_->timing; }
-  Tick end_tick() const { return tick_after(holds(), timing().tick_count); }
+  Tick end_tick() const { return tick_after(holds(), tick_count()); }
+  Tick tick_count() const { return tick_count_of(timing(), amendments().ends); }
+  Amending::Team team_at(const SignsOfLife& signs) const {
+    return {signs, places_, members_.roster()};
+  }
   SignsOfLife signs_at(Instant now) const { return {me_, now}; }
 
   bool learns_run(const Message& message);
@@ -139,6 +144,7 @@ class Coordinator {
   Admission admission_;
   TickWatch ticks_;
   CoverageReview coverage_review_;
+  TeamPlaces places_;
   Amending amending_;
   MissionEnd ending_;
   Announcement announcement_;

@@ -32,6 +32,7 @@ constexpr FaultField kFields[] = {
     {"pauses_per_s", &Faults::pauses_per_s, 1},
     {"pause_max_s", &Faults::pause_max_s, 60},
     {"targets_per_s", &Faults::targets_per_s, 1},
+    {"ends_per_s", &Faults::ends_per_s, 1},
     {"recalls_per_s", &Faults::recalls_per_s, 1},
     {"departure_share", &Faults::departure_share, 1},
     {"downtime_max_s", &Faults::downtime_max_s, 60},
@@ -50,7 +51,8 @@ enum Stream : std::uint32_t {
   kWorldProcess,
   kOperator,
   kRecalls,
-  kTargets
+  kTargets,
+  kEnds
 };
 
 }  // namespace
@@ -103,6 +105,7 @@ Faults drawn(std::uint64_t seed) {
     faults.departure_share = random.uniform();
   }
   if (random.coin()) faults.targets_per_s = random.log_uniform(0.03, 0.3);
+  if (random.coin()) faults.ends_per_s = random.log_uniform(0.02, 0.1);
   return faults;
 }
 
@@ -155,6 +158,8 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
   });
   draw(kTargets, faults.targets_per_s, 0,
        [](RandomStream& random) { return std::pair(kTarget, random.word()); });
+  draw(kEnds, faults.ends_per_s, 0,
+       [](RandomStream& random) { return std::pair(kEnd, random.word()); });
   std::stable_sort(all.begin(), all.end(),
                    [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;

@@ -34,6 +34,7 @@ struct Faults {
   double pauses_per_s = 0;        ///< an operator pauses the mission, …
   double pause_max_s = 0;         ///< … and resumes it after up to so long, uniform
   double targets_per_s = 0;       ///< an operator gives the team another target
+  double ends_per_s = 0;          ///< an operator gives the mission another end
   double recalls_per_s = 0;       ///< an operator sends an agent home, …
   double departure_share = 0;     ///< … or, with this share of recalls, out of the mission
   double downtime_max_s = 0;      ///< until a crashed process is started again, uniform
@@ -74,13 +75,14 @@ struct FaultEvent {
     kPause,
     kRecall,
     kDeparture,
-    kTarget
+    kTarget,
+    kEnd
   };
   Kind kind;
   double at_s;  ///< after the start of the mission
   double lasts_s;
   std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall:
-                      ///< which agent; target: which one
+                      ///< which agent; target or end: which one
 };
 
 /// The events of `horizon_s` seconds, by time.

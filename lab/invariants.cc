@@ -46,11 +46,16 @@ Invariants::Invariants(const Mission& mission)
       weights_(sobolev_weights(mission.basis, mission.domain)),
       block_count_(block_count_of(mission)),
       wire_modes_(modes_on_wire(mission)) {
-  const bool alone = !keeps_distance(mission);
-  for (AgentId id = 0; id < std::ssize(mission.starts_m); ++id) {
-    const Tick until = covers_until(mission, id);
-    if (until <= mission.timing.tick_count)
-      home_from_[id] = alone ? until : mission.timing.tick_count;
+  note_ends();
+}
+
+/// Notes from when on agents have to be at home.
+void Invariants::note_ends() {
+  const Amendments& list = truth_.amendments();
+  const Tick ticks = ticks_of(mission_, &list);
+  for (AgentId id = 0; id < std::ssize(mission_.starts_m); ++id) {
+    const Tick until = covers_until(mission_, id, &list);
+    if (until <= ticks) home_from_[id] = keeps_distance(mission_) ? ticks : until;
   }
 }
 
@@ -71,7 +76,9 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
   if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) {
     if (!truth_.receive(*part)) return;
-    shifted_ = shifted_ || !truth_.amendments().targets.empty();
+    const Amendments& list = truth_.amendments();
+    shifted_ = shifted_ || !list.targets.empty() || !list.ends.empty();
+    note_ends();
     return check_closed_numbers(t_s);
   }
   if (const auto* command = std::get_if<Command>(&outgoing.message)) {
@@ -296,15 +303,15 @@ void Invariants::ended(double t_s, const std::string& still_running, const std::
     violate(t_s, Invariant::kEverybodyEnds, still_running, text("at tick ", last_tick_));
   }
   if (!failure.empty()) violate(t_s, Invariant::kMissionDoesNotFail, "the coordinator", failure);
-  if (counted_ticks(truth_.holds(), last_tick_) < mission_.timing.tick_count) {
+  const Tick ticks = ticks_of(mission_, &truth_.amendments());
+  if (counted_ticks(truth_.holds(), last_tick_) < ticks) {
     violate(t_s, Invariant::kLastTickReached, "the world",
-            text("tick ", last_tick_, " of ", mission_.timing.tick_count));
+            text("tick ", last_tick_, " of ", ticks));
   }
   const Tick counted = facts.ticks - facts.held_ticks;
-  if (counted + excused < mission_.timing.tick_count) {
+  if (counted + excused < ticks) {
     violate(t_s, Invariant::kRecordIsWhole, "the logger",
-            text(counted, " of ", mission_.timing.tick_count, " ticks, and only ", excused,
-                 " may be missing"));
+            text(counted, " of ", ticks, " ticks, and only ", excused, " may be missing"));
   }
   const bool recalled =
       std::ranges::any_of(truth_.roster(), [](const auto& entry) { return entry.recalled(); });

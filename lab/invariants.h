@@ -237,6 +237,7 @@ class Invariants {
     double elapsed_s = 0;
   };
   void violate(double t_s, Invariant invariant, const std::string& who, std::string numbers);
+  void note_ends();
   void check(double t_s, const WorldState& world);
   void check(double t_s, const Command& command, const TableView& speaker);
   void check_paused(double t_s, const Command& command);

@@ -72,8 +72,8 @@ void Invariants::check_steps(double t_s, const TableView& holder) {
   const Tick unknown = exact ? 0 : last_tick_ + 1 - counted;
   for (const auto& [id, steps] : steps_of_id) {
     // A process that is replaced within a tick may have sampled it, too.
-    const std::int64_t most =
-        std::min(counted, covers_until(mission_, id)) + unknown + incarnation_count_[id] - 1;
+    const std::int64_t most = std::min(counted, covers_until(mission_, id, &truth_.amendments())) +
+                              unknown + incarnation_count_[id] - 1;
     if (steps <= most) continue;
     violate(t_s, Invariant::kNoStepCountsTwice, name_of(holder.self),
             text("holds ", steps, " steps of agent ", id, " in all, ", most, " are possible"));

@@ -70,8 +70,10 @@ void Invariants::began(double t_s, const TableView& holder) {
   // In lockstep all messages about the mission decide; in real time, what the agent knows of them.
   const bool exact = mission_.timing.pace == Pace::kLockstep;
   const std::span<const Hold> holds = exact ? std::span<const Hold>(truth_.holds()) : holder.holds;
-  const bool by_plan = is_held(holds, holder.answered) ||
-                       rests(mission_, holder.self.agent, counted_ticks(holds, holder.answered));
+  const Amendments* const list = exact ? &truth_.amendments() : holder.amendments;
+  const bool by_plan =
+      is_held(holds, holder.answered) ||
+      counted_ticks(holds, holder.answered) >= covers_until(mission_, holder.self.agent, list);
   const RosterEntry* const own = entry_of(*holder.roster, holder.self);
   const bool recalled = own != nullptr && is_recalled(*own, holder);
   if (recalled && !is_held(holds, holder.answered)) ++rested_[holder.self];

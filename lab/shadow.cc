@@ -96,7 +96,8 @@ Eigen::Matrix3d target_covariance(const Mission& mission) {
 
 /// h for a team of n: a s √(d/2) / (u_max n^(1/d)). If the plan asks for it, h is at most the time
 /// left, and at most the mission's duration less the time for a way of length s.
-double horizon_s(const Mission& mission, const Eigen::Matrix3d& covariance_m2, int n, Tick tick) {
+double horizon_s(const Mission& mission, const Eigen::Matrix3d& covariance_m2, int n, Tick tick,
+                 Tick tick_count) {
   const double variance_m2 = std::max(0.0, covariance_m2.trace());
   double dimensions = 2;
   if (variance_m2 > 0) {
@@ -107,8 +108,8 @@ double horizon_s(const Mission& mission, const Eigen::Matrix3d& covariance_m2, i
                      mission.law.u_max_mps / std::pow(n, 1 / dimensions);
   if (!mission.law.ends_with_plan) return h_s;
   const Timing& timing = mission.timing;
-  const double left_s = static_cast<double>(timing.tick_count - tick) * timing.dt_s;
-  const double beside_s = static_cast<double>(timing.tick_count) * timing.dt_s -
+  const double left_s = static_cast<double>(tick_count - tick) * timing.dt_s;
+  const double beside_s = static_cast<double>(tick_count) * timing.dt_s -
                           std::sqrt(variance_m2) / mission.law.u_max_mps;
   return std::max(0.0, std::min({h_s, left_s, beside_s}));
 }
@@ -210,7 +211,7 @@ bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, T
 bool has_forecast(const Mission& mission, const TableView& agent, const RosterEntry& entry) {
   return entry.author != agent.self && !is_forgotten(entry, agent) &&
          is_newest(*agent.roster, entry, agent.counted) && !is_recalled(entry, agent) &&
-         agent.counted < covers_until(mission, entry.author.agent);
+         agent.counted < covers_until(mission, entry.author.agent, agent.amendments, agent.counted);
 }
 
 }  // namespace
@@ -420,7 +421,6 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
     const Block& block = row.blocks[static_cast<std::size_t>(b)];
     Part& part = parts.emplace_back(part_of(mission, block, halvings));
     part.quality = quality_of(mission, entry);
-    if (entry != nullptr) part.until = covers_until(mission, entry->author.agent);
     if (!forecast_tick) part.gained_steps = 0;
     if (part.gained_steps == 0) continue;
     if (!row.newest || row.newest->tick < block.held.tick) {
@@ -467,6 +467,9 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
     const bool forecast = entry != nullptr && has_forecast(mission, agent, *entry);
     team.push_back(parts_of(mission, row, entry,
                             forecast ? std::optional(agent.counted) : std::nullopt, halvings));
+    if (entry == nullptr) continue;
+    for (Part& part : team.back())
+      part.until = covers_until(mission, entry->author.agent, agent.amendments, agent.counted);
   }
   return team;
 }
@@ -481,8 +484,8 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
     const auto at = static_cast<std::size_t>(b);
     const auto forecasts = std::count_if(
         team.begin(), team.end(), [at](const auto& parts) { return parts[at].gained_steps > 0; });
-    const double h_s =
-        horizon_s(mission, *covariance_m2_, 1 + static_cast<int>(forecasts), agent.counted);
+    const double h_s = horizon_s(mission, *covariance_m2_, 1 + static_cast<int>(forecasts),
+                                 agent.counted, ticks_at(mission, agent.amendments, agent.counted));
     double time_s = 0;
     std::vector<double> sums(static_cast<std::size_t>(size));
     for (const auto& parts : team) {

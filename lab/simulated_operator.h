@@ -36,6 +36,11 @@ class SimulatedOperator {
     target_hash_ = target_hash(target);
     target_ = encode_target(target);
   }
+  /// Wants the mission to have another end. The coordinator may refuse it; then it gives up.
+  void want_end(Tick tick_count) {
+    end_ = tick_count;
+    end_sent_ = 0;
+  }
   /// Wants an agent to go home, or out of the mission if it `leaves`.
   void want_recall(AgentId id, bool leaves) { recalls_.push_back({{}, id, leaves, {}}); }
   /// Wants the mission to go on.
@@ -46,7 +51,7 @@ class SimulatedOperator {
   Instant next() const { return paused_until_.value_or(Instant::max()); }
   /// Whether it has wanted nothing yet, and wants nothing now.
   bool idle() const {
-    return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty();
+    return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty() && !end_;
   }
   /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
   std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
@@ -61,6 +66,21 @@ class SimulatedOperator {
                           target_);
     messages_ += std::ssize(parts);
     return parts;
+  }
+
+  /// The end that it sends now: some times, until the coordinator has named it.
+  std::vector<Amend> ends(Instant now, RunId run, const Coordinator& coordinator) {
+    if (!end_ || now < next_end_) return {};
+    const auto& ends = coordinator.amendments().ends;
+    if (++end_sent_ > kMostEndsSent || (!ends.empty() && ends.back().tick_count == *end_)) {
+      end_.reset();
+      return {};
+    }
+    next_end_ = now + kPeriod;
+    return in_parts({.header = {run, kOperator, 1, ++messages_, coordinator.tick()},
+                     .number = coordinator.amendments().named,
+                     .kind = AmendmentKind::kEnd},
+                    encode_end(*end_));
   }
 
   /// The message that it sends now. It repeats its wish until a tick is named.
@@ -115,6 +135,10 @@ class SimulatedOperator {
   std::vector<std::byte> target_;  // that it wants, as AMEND carries it
   std::uint64_t target_hash_ = 0;
   Instant next_target_;
+  static constexpr int kMostEndsSent = 10;
+  std::optional<Tick> end_;  // that it wants
+  int end_sent_ = 0;
+  Instant next_end_;
   std::vector<Recall> recalls_;  // that it wants
   std::set<AgentId> sent_out_;
 };

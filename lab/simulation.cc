@@ -35,6 +35,7 @@ Simulation::Simulation(SimulationOptions options, std::ostream& trajectory, std:
       wire_(run_, mission_.seed),
       faults_(options_.faults, mission_),
       nodes_(static_cast<std::size_t>(node_count())) {
+  tick_count_ = mission_.timing.tick_count;
   skew_clocks();
   for (NodeId node = 0; node < node_count(); ++node) start(node);
   for (NodeId node = 0; node < node_count(); ++node) {
@@ -182,6 +183,8 @@ void Simulation::note(NodeId from, const Outgoing& sent) {
   }
   if (const auto* part = std::get_if<MissionPart>(&sent.message)) {
     end_announced_ |= is_over(part->state);
+    if (from == coordinator_node())
+      tick_count_ = tick_count_of(mission_.timing, coordinator().amendments().ends);
   }
   const auto* command = std::get_if<Command>(&sent.message);
   at(from).answered |= command != nullptr && command->header.tick >= 0;

@@ -57,7 +57,7 @@ struct SimulationCounts {
   MessageFaults faults;
   std::int64_t splits = 0, one_way_cuts = 0;
   std::int64_t agent_crashes = 0, coordinator_crashes = 0, world_crashes = 0, skewed_clocks = 0;
-  std::int64_t pauses = 0, recalls = 0, targets = 0;
+  std::int64_t pauses = 0, recalls = 0, targets = 0, ends = 0;
 };
 
 /// Is called at once for each event of a simulation.
@@ -125,7 +125,7 @@ class Simulation {
   /// The world's last tick; −1 before its first.
   Tick last_tick() const { return last_tick_; }
   /// The last tick was published, or a coordinator has announced the end.
-  bool mission_over() const { return end_announced_ || counted_ >= mission_.timing.tick_count; }
+  bool mission_over() const { return end_announced_ || counted_ >= tick_count_; }
   /// Whether the operator has sent an agent out of the mission.
   bool sent_out(AgentId id) const { return operator_.sent_out(id); }
   /// The last moment at which a process was down or cut off, or at which messages were too late or
@@ -163,6 +163,7 @@ class Simulation {
   void heal();
   void supervise_coordinator();
   TargetChange drawn_target(std::uint64_t word) const;
+  Tick drawn_end(std::uint64_t word) const;
   void send_to_coordinator();
 
   SimulationOptions options_;
@@ -179,6 +180,7 @@ class Simulation {
   std::vector<Node> nodes_;
 
   Instant now_{};
+  Tick tick_count_ = 0;                 // by the newest end that a coordinator has sent
   Tick last_tick_ = -1, counted_ = -1;  // counted_: the ticks before last_tick_ that count
   bool end_announced_ = false;          // by a coordinator
   Outbox outbox_;

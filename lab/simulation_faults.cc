@@ -75,6 +75,10 @@ void Simulation::begin(const FaultEvent& event) {
       ++counts_.targets;
       operator_.want_target(drawn_target(event.who));
       return;
+    case kEnd:
+      ++counts_.ends;
+      operator_.want_end(drawn_end(event.who));
+      return;
     case kRecall:
     case kDeparture:
       ++counts_.recalls;
@@ -113,6 +117,13 @@ TargetChange Simulation::drawn_target(std::uint64_t word) const {
   return change;
 }
 
+/// An end between four fifths and six fifths of the plan's time.
+Tick Simulation::drawn_end(std::uint64_t word) const {
+  const auto planned = static_cast<double>(mission_.timing.tick_count);
+  const double share = 0.8 + 0.4 * RandomStream(word, 0).uniform();
+  return std::max<Tick>(1, std::llround(share * planned));
+}
+
 void Simulation::send_to_coordinator() {
   const NodeId node = coordinator_node();
   if (operator_.idle()) return;
@@ -121,6 +132,8 @@ void Simulation::send_to_coordinator() {
   const Delivery by_operator{Bus::kSwarm, kOperator, {}, nullptr};
   if (pause) deliver(node, *pause, by_operator);
   for (const Amend& part : operator_.targets(now_, run_, coordinator()))
+    deliver(node, part, by_operator);
+  for (const Amend& part : operator_.ends(now_, run_, coordinator()))
     deliver(node, part, by_operator);
   // The operator repeats it; only the first one has an effect.
   const std::vector<Recall> recalls = operator_.recalls(run_, coordinator());

@@ -66,16 +66,38 @@ inline bool is_recalled(const RosterEntry& entry, const TableView& by) {
   return entry.recall_revision >= 0 && by.roster_revision >= entry.recall_revision;
 }
 
-/// The first tick, of those that count, at which an agent with a station covers no more; the
-/// greatest number without one.
-inline Tick covers_until(const Mission& mission, AgentId id) {
+/// The number of ticks that the mission has by the newest end of a list; null: by its plan.
+inline Tick ticks_of(const Mission& mission, const Amendments* list) {
+  return list == nullptr || list->ends.empty() ? mission.timing.tick_count
+                                               : list->ends.back().tick_count;
+}
+
+/// The same by the end that holds at a counted tick.
+inline Tick ticks_at(const Mission& mission, const Amendments* list, Tick counted) {
+  Tick ticks = mission.timing.tick_count;
+  if (list == nullptr) return ticks;
+  for (const EndChange& end : list->ends)
+    if (counted_ticks(list->holds, end.from) <= counted) ticks = end.tick_count;
+  return ticks;
+}
+
+/// The first tick, of those that count, at which an agent with a station covers no more, by the
+/// ends that hold at a counted tick; the greatest number without a station. An agent that rests
+/// when another end begins to hold goes on resting.
+inline Tick covers_until(const Mission& mission, AgentId id, const Amendments* list = nullptr,
+                         Tick counted = std::numeric_limits<Tick>::max()) {
   for (const AgentKind& kind : mission.kinds) {
     if (id < kind.count && kind.stations_m.empty()) break;
     if (id < kind.count) {
-      Tick until = mission.timing.tick_count;
-      while (static_cast<double>(mission.timing.tick_count - until) * mission.timing.dt_s <
-             kind.reserve_s * (1 - 1e-9))
-        --until;
+      Tick reserve = 0;
+      while (static_cast<double>(reserve) * mission.timing.dt_s < kind.reserve_s * (1 - 1e-9))
+        ++reserve;
+      Tick until = mission.timing.tick_count - reserve;
+      if (list == nullptr) return until;
+      for (const EndChange& end : list->ends) {
+        const Tick from = counted_ticks(list->holds, end.from);
+        if (from <= counted && from < until) until = end.tick_count - reserve;
+      }
       return until;
     }
     id -= kind.count;

@@ -13,6 +13,7 @@
 #include "core/base/ids.h"
 #include "logger/json_file.h"
 #include "logger/run_record.h"
+#include "plan/mission_limits.h"
 
 namespace ergocast {
 namespace {
@@ -33,6 +34,7 @@ Json without_numbers(const ReceivedAmendment& one, double dt_s) {
                {"from_tick", amendment.from},
                {"t_s", static_cast<double>(amendment.from) * dt_s}};
   if (amendment.kind == AmendmentKind::kTarget) json["hash"] = to_hex(amendment.hash);
+  if (amendment.kind == AmendmentKind::kEnd) json["tick_count"] = amendment.hash;
   if (one.is_void) json["void"] = true;
   return json;
 }
@@ -61,8 +63,8 @@ std::optional<std::int64_t> count_in(const Json& object, const char* key, std::i
 }
 
 std::optional<AmendmentKind> kind_in(const Json& object) {
-  constexpr std::array kKinds{AmendmentKind::kPause, AmendmentKind::kResume,
-                              AmendmentKind::kTarget};
+  constexpr std::array kKinds{AmendmentKind::kPause, AmendmentKind::kResume, AmendmentKind::kTarget,
+                              AmendmentKind::kEnd};
   const Json& name = value_in(object, "kind");
   const auto found =
       std::ranges::find_if(kKinds, [&](AmendmentKind kind) { return name == to_string(kind); });
@@ -114,6 +116,12 @@ Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission
   if (!number || !from || !kind) return failure(none);
   ReceivedAmendment one{{static_cast<std::int32_t>(*number), *kind, *from, 0}, {}, false};
   one.is_void = value_in(entry, "void") == true;
+  if (*kind == AmendmentKind::kEnd) {
+    const auto tick_count = count_in(entry, "tick_count", kMostTicks);
+    if (!tick_count || !is_tick_count(*tick_count, mission.timing))
+      return failure("its end is none of the mission of " + std::string(kPlanFile));
+    one.amendment.hash = static_cast<std::uint64_t>(*tick_count);
+  }
   if (*kind != AmendmentKind::kTarget) return one;
   const auto hash = hash_in(entry);
   if (!hash) return failure("its target has no hash");
@@ -147,7 +155,7 @@ bool follow(const std::vector<ReceivedAmendment>& all) {
     if (is_void) continue;
     if (amendment.number == std::exchange(number, amendment.number)) return false;
     if (amendment.kind != AmendmentKind::kTarget) continue;
-    if (amendment.from <= std::exchange(target_from, amendment.from)) return false;
+    if (amendment.from < std::exchange(target_from, amendment.from)) return false;
   }
   return true;
 }

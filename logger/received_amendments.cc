@@ -48,6 +48,16 @@ void ReceivedAmendments::add(const Amendment& amendment) {
   if (!known) all_.insert(end, ReceivedAmendment{amendment});
 }
 
+std::vector<EndChange> ReceivedAmendments::ends() const {
+  std::vector<EndChange> ends;
+  for (const ReceivedAmendment& one : all_) {
+    const Amendment& amendment = one.amendment;
+    if (amendment.kind == AmendmentKind::kEnd && !one.is_void)
+      ends.push_back({amendment.number, amendment.from, static_cast<Tick>(amendment.hash)});
+  }
+  return ends;
+}
+
 const ReceivedAmendment* ReceivedAmendments::target_at(Tick tick) const {
   const auto holds = [tick](const ReceivedAmendment& one) {
     return one.target && !one.is_void && one.amendment.from <= tick;
@@ -66,11 +76,16 @@ const ReceivedAmendment* ReceivedAmendments::unknown_target() const {
 Amendments ReceivedAmendments::list() const {
   Amendments list;
   list.holds = holds_;
+  list.ends = ends();
   for (const ReceivedAmendment& one : all_) {
     if (one.is_void) continue;
     list.named = one.amendment.number + 1;
     list.recent.push_back(one.amendment);
-    if (one.target) list.targets.push_back(*one.target);
+    if (!one.target) continue;
+    // A target that was replaced before its tick never holds.
+    if (!list.targets.empty() && list.targets.back().from == one.target->from)
+      list.targets.pop_back();
+    list.targets.push_back(*one.target);
   }
   list.named = std::max({list.named, named_changes(holds_)});
   const auto spare = std::max<std::ptrdiff_t>(

@@ -36,6 +36,8 @@ class ReceivedAmendments {
   const std::vector<ReceivedAmendment>& all() const { return all_; }
   /// Ticks that do not count.
   const std::vector<Hold>& holds() const { return holds_; }
+  /// The ends that are not void.
+  std::vector<EndChange> ends() const;
   /// The target that holds at a tick of the world; null: the plan's. Its numbers are there.
   const ReceivedAmendment* target_at(Tick tick) const;
   /// The first that is not void and whose target was not received; null: there is none.

@@ -98,7 +98,7 @@ RowTick RecordTables::replay(const RunData& past, const MissionKnowledge& known)
   }
   facts_.recalls = past.recalls;
   RowTick row;
-  const Context context{row, known};
+  const Context context{row, known, {mission, known.follower.amendments()}};
   std::size_t vehicles = 0, expected = mission.starts_m.size();
   for_each_row(past, [&](AgentId id, const TrackPoint& point) {
     if (point.tick > former_end_.first) {
@@ -127,7 +127,8 @@ void RecordTables::write(const RowTick& row, const TickState& now, const TickSta
                          const MissionKnowledge& known) {
   // A pause that only the world received is lost if its coordinator stops: its ticks then count.
   facts_.held_ticks = std::min(facts_.held_ticks, now.uncounted_ticks);
-  const Context context{row, known, now.roster_revision};
+  const Context context{
+      row, known, {*known.follower.mission(), known.follower.amendments()}, now.roster_revision};
   begin_row(context);
   write_trajectory(context, now, next);
   end_row(context);
@@ -151,7 +152,8 @@ void RecordTables::write_trajectory(const Context& context, const TickState& now
     const auto after = next.vehicles.find(id);
     if (after == next.vehicles.end() || std::pair(tick, id) <= former_end_) continue;
     observe(context, id, vehicle.position_m);
-    if (context.row.is_last(mission)) note_home(mission, id, after->second.position_m);
+    if (context.row.is_last(context.ends.tick_count()))
+      note_home(mission, id, after->second.position_m);
     line += std::to_string(tick) + ',';
     append_number(line, t_s);
     line += ',' + std::to_string(id);
@@ -191,7 +193,7 @@ void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vect
   const Mission& mission = context.mission();
   const RosterEntry* entry = member(context.known.follower, id, context.row.tick);
   const bool covers = entry != nullptr && context.row.counts && !is_recalled(context, id);
-  if (rests(mission, id, context.row.counted())) {
+  if (context.ends.rests(mission, id, context.row.counted())) {
     note_home(mission, id, x_m);
   } else if (covers) {
     const Tick counted = context.row.counted();
@@ -249,7 +251,8 @@ void RecordTables::write_due_metrics(const Context& context) {
   const Mission& mission = context.mission();
   const auto period = std::max<Tick>(1, std::llround(kMetricsPeriod_s / mission.timing.dt_s));
   if (!observer_.has_seen_any() || !context.row.counts) return;
-  if (context.row.counted() % period != 0 && !context.row.is_last(mission)) return;
+  if (context.row.counted() % period != 0 && !context.row.is_last(context.ends.tick_count()))
+    return;
   // No table has this metric, so a resumed record computes it from the rows.
   if (in_cosines_) facts_.cosine_metric_last = cosines_.metric(*in_cosines_);
   if (context.row.tick <= former_metrics_.tick) return;

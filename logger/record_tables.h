@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/mission/end_schedule.h"
 #include "logger/agent_reports.h"
 #include "logger/observer.h"
 #include "logger/received_amendments.h"
@@ -67,9 +68,7 @@ struct RowTick {
   /// Its number among the ticks that count.
   Tick counted() const { return tick - uncounted; }
   /// Whether it is the mission's last.
-  bool is_last(const Mission& mission) const {
-    return counts && counted() + 1 == mission.timing.tick_count;
-  }
+  bool is_last(Tick tick_count) const { return counts && counted() + 1 == tick_count; }
   /// Goes on to the next tick.
   void pass() {
     ++tick;
@@ -123,6 +122,7 @@ class RecordTables {
   struct Context {
     const RowTick& row;
     const MissionKnowledge& known;
+    EndSchedule ends;
     std::int64_t roster_revision = -1;  // the world's; −1: not known
     const Mission& mission() const { return *known.follower.mission(); }
   };

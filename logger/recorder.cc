@@ -97,7 +97,7 @@ bool Recorder::is_lockstep() const {
 void Recorder::on(const WorldState& world, const Arrival& arrival) {
   const Tick tick = world.header.tick;
   if (me_.knows_mission()) {
-    if (tick - world.uncounted_ticks > mission().timing.tick_count) return;
+    if (tick - world.uncounted_ticks > me_.tick_count()) return;
     received_.newest = std::max(received_.newest, tick);
     if (arrival.fresh) meet(world.header, arrival.now);
     if (arrival.fresh) received_.world_left = world.last;

@@ -114,7 +114,7 @@ class Recorder {
   bool holds(Tick tick) const;
   bool has_drivers() const;
   bool all_rows_written() const {
-    return me_.knows_mission() && row_.counted() >= mission().timing.tick_count;
+    return me_.knows_mission() && row_.counted() >= me_.tick_count();
   }
   bool gap_ahead() const;
   bool gap_is_final(Instant now) const;

@@ -13,8 +13,8 @@
 #include <span>
 #include <string_view>
 
+#include "core/mission/end_schedule.h"
 #include "core/mission/kinds.h"
-#include "core/mission/station.h"
 #include "logger/amendments_file.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
@@ -145,7 +145,8 @@ std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
 bool RunData::rests(const Mission& mission, AgentId id, Tick tick) const {
   const auto recall = recalls.find(id);
   return (recall != recalls.end() && tick >= recall->second) ||
-         ergocast::rests(mission, id, counted_ticks(holds(), tick));
+         EndSchedule(mission, holds(), amendments.ends())
+             .rests(mission, id, counted_ticks(holds(), tick));
 }
 
 double RunData::end_s() const {

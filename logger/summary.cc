@@ -179,7 +179,8 @@ Json run_section(const Recorder& recorder, const RunContext& context) {
           {"cpu_fma", context.cpu_has_fma}};
 }
 
-void add_mission(const Mission& mission, const RunContext& context, Json& summary) {
+void add_mission(const Mission& mission, Tick tick_count, const RunContext& context,
+                 Json& summary) {
   const bool lockstep = mission.timing.pace == Pace::kLockstep;
   summary["scenario"] = mission.name;
   summary["scenario_hash"] = context.scenario_hash;
@@ -187,7 +188,7 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
   summary["mode"] = context.simulated ? "simulate" : lockstep ? "lockstep" : "realtime";
   if (!lockstep) summary["realtime_factor"] = mission.timing.realtime_factor;
   summary["dt_s"] = mission.timing.dt_s;
-  summary["tick_count"] = mission.timing.tick_count;
+  summary["tick_count"] = tick_count;
 }
 
 void add_ticks(const Recorder& recorder, Json& summary) {
@@ -290,7 +291,9 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   const RunFacts& facts = recorder.facts();
   const auto& mission = recorder.follower().mission();
   Json summary = run_section(recorder, context);
-  if (mission) add_mission(*mission, context, summary);
+  if (mission)
+    add_mission(*mission, tick_count_of(mission->timing, recorder.follower().amendments().ends),
+                context, summary);
   add_ticks(recorder, summary);
   add_metric(facts, mission, summary);
   if (mission) summary["conventions"] = conventions(mission->basis);

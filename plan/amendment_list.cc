@@ -8,6 +8,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "plan/mission_limits.h"
+
 namespace ergocast {
 namespace {
 
@@ -88,10 +90,15 @@ void list_fields(auto& io, auto& amendments) {
     wire.list(change.target, kNumber);
     wire.list(change.cosine, kNumber);
   });
+  io.list(amendments.ends, [](auto& wire, auto& change) {
+    wire.value(change.number);
+    wire.value(change.from);
+    wire.value(change.tick_count);
+  });
 }
 
 bool is_kind(const Amendment& amendment) {
-  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kTarget;
+  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kEnd;
 }
 
 }  // namespace
@@ -111,9 +118,27 @@ std::optional<Amendments> decode_amendments(std::span<const std::byte> bytes,
   list_fields(reader, list);
   if (!reader.complete() || !std::ranges::all_of(list.recent, is_kind)) return std::nullopt;
   if (list.empty() || !are_amendments(list, mission)) return std::nullopt;
+  if (!std::ranges::all_of(list.ends, [&mission](const EndChange& change) {
+        return is_tick_count(change.tick_count, mission.timing);
+      }))
+    return std::nullopt;
   return list;
 } catch (...) {
   return std::nullopt;  // memory is missing
+}
+
+std::vector<std::byte> encode_end(Tick tick_count) {
+  ListWriter writer;
+  writer.value(tick_count);
+  return writer.take();
+}
+
+std::optional<Tick> decode_end(std::span<const std::byte> bytes, const Mission& mission) noexcept {
+  Tick tick_count = 0;
+  ListReader reader(bytes);
+  reader.value(tick_count);
+  if (!reader.complete() || !is_tick_count(tick_count, mission.timing)) return std::nullopt;
+  return tick_count;
 }
 
 std::size_t target_bytes(const Mission& mission) {

@@ -20,6 +20,11 @@ std::vector<std::byte> encode_amendments(const Amendments& list);
 std::optional<Amendments> decode_amendments(std::span<const std::byte> bytes,
                                             const Mission& mission) noexcept;
 
+/// An end as AMEND carries it: the mission's number of ticks.
+std::vector<std::byte> encode_end(Tick tick_count);
+/// The number of ticks of these bytes; nothing if no mission can have it (is_tick_count()).
+std::optional<Tick> decode_end(std::span<const std::byte> bytes, const Mission& mission) noexcept;
+
 /// How many bytes a target of `mission` has in AMEND.
 std::size_t target_bytes(const Mission& mission);
 /// A target as AMEND carries it: μ, then μ in the basis (2), where the mission has one.

@@ -97,10 +97,8 @@ bool memory_fits(const ControlLaw& law, double dt_s) {
 }
 
 bool fits(const Timing& timing) {
-  const auto ticks = static_cast<double>(timing.tick_count);
   const bool realtime = timing.pace == Pace::kRealtime;
-  return ticks >= 1 && ticks <= limits::kMaxTicks &&
-         std::round(duration_s(timing) / timing.dt_s) == ticks &&
+  return is_tick_count(timing.tick_count, timing) &&
          limits::kPeriod_ticks.contain(static_cast<double>(longest_period_ticks(timing))) &&
          (!realtime || timing.dt_s / timing.realtime_factor >= limits::kMinWallStep_s);
 }
@@ -220,6 +218,13 @@ bool is_kind_name(std::string_view name) {
 bool is_name(std::string_view name) {
   return !name.empty() && name.size() <= kMaxNameLength && may_lead(name.front()) &&
          std::all_of(name.begin(), name.end(), may_follow);
+}
+
+bool is_tick_count(Tick tick_count, Timing timing) {
+  timing.tick_count = tick_count;
+  const auto ticks = static_cast<double>(tick_count);
+  return ticks >= 1 && ticks <= limits::kMaxTicks &&
+         std::round(duration_s(timing) / timing.dt_s) == ticks;
 }
 
 double duration_s(const Timing& timing) {

@@ -68,6 +68,9 @@ bool is_name(std::string_view name);
 /// Whether `name` is such a name of at most kMaxKindNameLength characters.
 bool is_kind_name(std::string_view name);
 
+/// Whether a mission with these steps can have so many ticks.
+bool is_tick_count(Tick tick_count, Timing timing);
+
 /// How long the mission lasts: tick_count · dt_s, but no more than a scenario may set [s].
 double duration_s(const Timing& timing);
 

@@ -50,7 +50,8 @@ Record read_record(const fs::path& folder) {
   const py::gil_scoped_release others_may_run;
   Record record{folder, value_or_throw(read_mission(folder)), {}};
   record.rows = value_or_throw(read_run(folder, record.mission));
-  const Tick ticks = tick_after(record.rows.holds(), record.mission.timing.tick_count);
+  const Tick ticks = tick_after(
+      record.rows.holds(), tick_count_of(record.mission.timing, record.rows.amendments.ends()));
   for (const auto& [agent, track] : record.rows.tracks) {
     if (track.back().tick < ticks) continue;
     throw Refused((folder / kTrajectoryFile).string() + ": tick: agent " + std::to_string(agent) +

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/law/half_life.h"
+#include "core/mission/end_schedule.h"
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
@@ -252,11 +253,17 @@ Json stations_of(const Mission& mission) {
 std::optional<Tick> home_from(const RunData& run, const Mission& mission, AgentId id,
                               const Track& track) {
   WayHome way(mission, id);
-  const auto sends_home = [&](const TrackPoint& at) {
-    return !is_held(run.holds(), at.tick) && way.begun(counted_ticks(run.holds(), at.tick), at.x_m);
-  };
-  const auto first = std::ranges::find_if(track, sends_home);
-  return first == track.end() ? std::nullopt : std::optional(first->tick);
+  const EndSchedule ends(mission, run.holds(), run.amendments.ends());
+  std::optional<Tick> since;
+  for (const TrackPoint& at : track) {
+    if (is_held(run.holds(), at.tick)) continue;
+    const Tick counted = counted_ticks(run.holds(), at.tick);
+    way.set_rest(ends.rest_from(mission, id, counted));
+    const bool goes = way.begun(counted, at.x_m);
+    if (!goes) since.reset();  // a later end was named
+    if (goes && !since) since = at.tick;
+  }
+  return since;
 }
 
 Json homes_from(const RunData& run, const Mission& mission) {
@@ -349,6 +356,7 @@ Json page_amendments(std::span<const Amendment> list) {
   for (const Amendment& one : list) {
     Json entry = {{"number", one.number}, {"kind", to_string(one.kind)}, {"from", one.from}};
     if (one.kind == AmendmentKind::kTarget) entry["hash"] = page_target_name(one.hash);
+    if (one.kind == AmendmentKind::kEnd) entry["tick_count"] = one.hash;
     json.push_back(std::move(entry));
   }
   return json;

@@ -83,7 +83,9 @@ bool Participant::cut_off(Tick newest, Instant now) const {
   for (const AgentId sender : {kCoordinator, other}) {
     last = std::max(last, liveness_.last_sign_of_kind(sender).value_or(last));
   }
-  return must_be_over(mission().timing, counted(newest), now - last);
+  Timing timing = mission().timing;
+  timing.tick_count = tick_count();
+  return must_be_over(timing, counted(newest), now - last);
 }
 
 void Participant::relay(Bus bus, const Contribution& block, Outbox& out) const {

@@ -68,10 +68,12 @@ class Participant {
   bool is_held(Tick tick) const { return ergocast::is_held(follower_.holds(), tick); }
   /// The number of a tick among those that count.
   Tick counted(Tick tick) const { return counted_ticks(follower_.holds(), tick); }
+  /// How many ticks count by the newest end. @pre knows_mission()
+  Tick tick_count() const { return tick_count_of(timing(), follower_.amendments().ends); }
   /// Whether `tick` is after the last one that counts. @pre knows_mission()
-  bool is_over(Tick tick) const { return counted(tick) >= timing().tick_count; }
+  bool is_over(Tick tick) const { return counted(tick) >= tick_count(); }
   /// The first tick for which is_over(), as far as it is known. @pre knows_mission()
-  Tick end_tick() const { return tick_after(follower_.holds(), timing().tick_count); }
+  Tick end_tick() const { return tick_after(follower_.holds(), tick_count()); }
   /// The sender's roster entry if it is a present or former member under its own number; else null.
   const RosterEntry* member(const Header& from) const;
 

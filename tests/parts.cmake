@@ -36,6 +36,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/target_shift_test.cc
     core/vehicle_teams_test.cc core/vehicle_test.cc core/wall_following_test.cc core/walls_attack_test.cc
     core/station_test.cc
+    core/end_schedule_test.cc
     core/walls_test.cc
   LIBS ergocast_lab ergocast::target ergocast::team)
 
@@ -261,5 +262,6 @@ ergocast_test(NAME lab_tests LABELS lab
     lab/message_loss_test.cc
     lab/pause_test.cc
     lab/planned_targets_test.cc
+    lab/planned_ends_test.cc
     lab/recall_test.cc
   LIBS ergocast_lab ergocast::scenario)

@@ -102,6 +102,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/commands/status_test.cc
     process/home_test.cc
     process/amend_test.cc
+    process/end_test.cc
     process/pause_test.cc
     process/recall_test.cc
     process/commands/stop_test.cc

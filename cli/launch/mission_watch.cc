@@ -40,6 +40,7 @@ void MissionWatch::on(const TeamStatus& team, const Arrival& arrival) {
   progress_.paused = team.paused || me_.is_held(tick_);
   // A restarted coordinator does not know the metric yet.
   if (team.ergodic_metric > 0) progress_.ergodic_metric = team.ergodic_metric;
+  progress_.tick_count = tick_count();
   progress_.agents_alive = team.agents_alive;
   progress_.agents_expected = team.agents_expected;
   progress_.missed_deadlines = team.missed_deadlines;
@@ -55,7 +56,7 @@ void MissionWatch::on(const AgentStatus& agent, const Arrival& arrival) {
     last_running_ = now;
   }
   if (progress_.coordinator_silent) progress_.ergodic_metric = agent.ergodic_metric;
-  const bool at_the_end = me_.counted(agent.header.tick) >= timing_.tick_count;
+  const bool at_the_end = me_.counted(agent.header.tick) >= tick_count();
   if (agent.phase == AgentPhase::kFinished && at_the_end) reach(Stage::kOver, now);
 }
 

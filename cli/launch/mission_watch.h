@@ -50,9 +50,7 @@ class MissionWatch {
   /// Whether the coordinator reported that the mission failed; reason() returns the cause.
   bool failed() const { return failed_; }
   /// Whether the mission is over because it reached its last tick.
-  bool complete() const {
-    return stage_ == Stage::kOver && me_.counted(tick_) >= timing_.tick_count;
-  }
+  bool complete() const { return stage_ == Stage::kOver && me_.counted(tick_) >= tick_count(); }
   const std::string& reason() const { return reason_; }
 
   /// The agents that the operator has sent out of the mission.
@@ -73,6 +71,8 @@ class MissionWatch {
   void repeat(Transport& transport, Instant now, bool led);
 
  private:
+  /// By the newest end that is known.
+  Tick tick_count() const { return tick_count_of(timing_, me_.follower().amendments().ends); }
   template <class M>
   void on(const M&, const Arrival&) {}  // the other types need no action
   void on(const Hello& hello, const Arrival& arrival);

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast amend`: gives a running team a new target, or lists what has changed in its mission.
+// `ergocast amend`: gives a running team a new target or another end, cancels an amendment, or
+// lists what has changed in the mission.
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/operate/amend_order.h"
 #include "cli/operate/team_command.h"
+#include "cli/record/new_end.h"
 #include "cli/record/new_target.h"
 #include "cli/watch/find_run.h"
 #include "plan/amendment_list.h"
@@ -26,6 +30,8 @@ struct AmendOptions : BusOptions {
   std::filesystem::path target;
   Overrides overrides;
   double delay_s = 0;
+  std::optional<EndWish> end;
+  std::optional<std::int32_t> cancel;
   bool dry_run = false, list = false;
 };
 
@@ -38,12 +44,14 @@ class Amending : public TeamCommand {
     if (const auto code = choose_run()) return *code;
     if (const auto code = know_mission()) return *code;
     if (options_.list) return list();
+    if (options_.end) return order_end();
+    if (options_.cancel) return cancel(*options_.cancel);
     const auto compiled = compile();
     if (!compiled) return kExitBadInput;
     const TargetChange change = target_change_of(*compiled);
     // What has arrived meanwhile.
     if (!listen()) return interrupted();
-    return options_.dry_run ? describe(change) : order(change);
+    return options_.dry_run ? describe(change) : order(wish_of(change));
   }
 
   const MonitoredRun& team() const { return runs_.begin()->second; }
@@ -92,15 +100,24 @@ class Amending : public TeamCommand {
     return static_cast<Tick>(std::llround(options_.delay_s / team().mission().timing.dt_s));
   }
 
-  /// The earliest tick that a coordinator can name now, as far as this command knows.
-  Tick earliest() const {
-    const Timing& timing = team().mission().timing;
-    const Tick notice = timing.pace == Pace::kRealtime ? notice_ticks(timing) : 1;
-    return team().tick() + 1 + notice + delay();
+  Tick earliest() const { return earliest_tick(team(), delay()); }
+
+  int order_end() {
+    // What has arrived meanwhile: the places of vehicles.
+    if (!listen()) return interrupted();
+    const auto tick_count = options_.end->tick_count(team().mission().timing, team().tick_count());
+    if (!tick_count) return report_error(kExitBadInput, "--end: " + tick_count.error());
+    return order(wish_of_end(*tick_count));
   }
 
-  int order(const TargetChange& change) {
-    AmendOrder order(change, delay(), now());
+  /// Orders what held before amendment `number`.
+  int cancel(std::int32_t number) {
+    const auto wish = wish_to_cancel(team(), number);
+    return wish ? order(*wish) : report_error(kExitFailed, "--cancel: " + wish.error());
+  }
+
+  int order(AmendmentWish wish) {
+    AmendOrder order(std::move(wish), delay(), now());
     const auto report = obeyed(order);
     if (!report) return interrupted();
     if (report->state == OrderReport::State::kFailed)
@@ -131,7 +148,8 @@ class Amending : public TeamCommand {
     const auto hidden = list.named - static_cast<std::int32_t>(list.recent.size());
     if (hidden > 0) std::printf("%d older amendments are not listed\n", hidden);
     for (const Amendment& one : list.recent)
-      std::printf("%s\n", amendment_text(team(), one).c_str());
+      std::printf("%s%s\n", amendment_text(team(), one).c_str(),
+                  wish_to_cancel(team(), one.number) ? " (--cancel undoes it)" : "");
     return kExitDone;
   }
 
@@ -151,6 +169,15 @@ double delay_from(std::string text) {
       "\"" + written + "\" is no time from now on: write +10s for ten seconds of mission time");
 }
 
+EndWish end_from(const std::string& text) {
+  if (const auto wish = end_wish_from(text)) return *wish;
+  throw CLI::ValidationError(
+      "--end",
+      "\"" + text +
+          "\" is no end: write 3600s for that mission time, or +600s for ten minutes later "
+          "than the end that holds");
+}
+
 void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option("--target", options.target,
@@ -166,17 +193,31 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
           "--at", [&options](const std::string& text) { options.delay_s = delay_from(text); },
           "How much later than necessary it holds, in mission time: +10s")
       ->type_name("+TIME");
+  command
+      .add_option_function<std::string>(
+          "--end", [&options](const std::string& text) { options.end = end_from(text); },
+          "Another end of the mission: 3600s in mission time, or +600s later or -60s earlier than "
+          "the end that holds")
+      ->type_name("TIME");
+  command
+      .add_option("--cancel", options.cancel,
+                  "Undo amendment N, as --list numbers it: what held before it holds again")
+      ->type_name("N");
   command.add_flag("--dry-run", options.dry_run,
                    "Only check the target and show what would change; send nothing");
   auto* list = command.add_flag("--list", options.list, "List what has changed in the mission");
   for (const char* other : {"--target", "--set", "--at", "--dry-run"})
     list->excludes(command.get_option(other));
+  for (const char* one : {"--end", "--cancel"})
+    for (const char* other : {"--target", "--set", "--at", "--dry-run", "--list"})
+      command.get_option(one)->excludes(command.get_option(other));
+  command.get_option("--end")->excludes(command.get_option("--cancel"));
 }
 
 }  // namespace
 
 void add_amend(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("amend", "Give a running team a new target");
+  auto* command = app.add_subcommand("amend", "Give a running team a new target or another end");
   auto options = std::make_shared<AmendOptions>();
   add_target_options(*command, *options);
   add_bus_options(*command, *options);
@@ -184,11 +225,15 @@ void add_amend(CLI::App& app, Action& action) {
   command->footer(
       "From a tick that the coordinator names, all agents cover the new target. What they covered\n"
       "before counts against the target of its time.\n"
-      "Exit codes: 0 the new target holds; 2 the target has problems, or several runs are found;\n"
+      "A later end must be named 10 s of mission time before the end that holds; an earlier one "
+      "is\n"
+      "possible if each agent can be at its station in time.\n"
+      "Exit codes: 0 it holds; 2 the target or the end has problems, or several runs are found;\n"
       "3 LCM cannot be used; 4 no team is found, or it was not seen to obey.");
   command->callback([&action, options, command] {
     const bool has_target = !options->target.empty() || !options->overrides.fields.empty();
-    if (!has_target && !options->list) throw CLI::RequiredError("--target, --set or --list");
+    if (!has_target && !options->list && !options->end && !options->cancel)
+      throw CLI::RequiredError("--target, --set, --end, --cancel or --list");
     action = [options, command] {
       if (const auto code = find_run(*command, *options)) return *code;
       return Amending(*options).carry_out();

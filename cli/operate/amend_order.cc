@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <utility>
 
+#include "core/motion/end_rules.h"
 #include "plan/amendment_list.h"
 #include "runtime/bus/random_identity.h"
 #include "team/amend_parts.h"
@@ -20,13 +22,23 @@ constexpr std::size_t kBytesInPeriod = std::size_t{4} * kMaxPlanBytesPerMessage;
 /// The order does not fail before it was sent as often: the process may have been stopped.
 constexpr int kLeastSent = 20;
 
+/// "t = 600.0 s": an end, in mission time.
+std::string end_text(const MonitoredRun& team, Tick tick_count) {
+  char text[40];
+  std::snprintf(text, sizeof text, "t = %.1f s",
+                static_cast<double>(tick_count) * team.mission().timing.dt_s);
+  return text;
+}
+
 /// "target 5f0c…".
-std::string kind_text(const Amendment& amendment) {
+std::string kind_text(const MonitoredRun& team, const Amendment& amendment) {
   switch (amendment.kind) {
     case AmendmentKind::kPause:
       return "a pause";
     case AmendmentKind::kResume:
       return "the end of a pause";
+    case AmendmentKind::kEnd:
+      return "the end at " + end_text(team, static_cast<Tick>(amendment.hash));
     default:
       return "target " + to_hex(amendment.hash);
   }
@@ -46,15 +58,50 @@ std::string waiting_text(const MonitoredRun& team, const TargetChange& waiting) 
 
 }  // namespace
 
-AmendOrder::AmendOrder(const TargetChange& target, Tick delay, Instant now)
-    : content_(encode_target(target)),
-      hash_(target_hash(target)),
+AmendmentWish wish_of(const TargetChange& target) {
+  return {AmendmentKind::kTarget, encode_target(target), target_hash(target)};
+}
+
+AmendmentWish wish_of_end(Tick tick_count) {
+  return {AmendmentKind::kEnd, encode_end(tick_count), static_cast<std::uint64_t>(tick_count)};
+}
+
+Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std::int32_t number) {
+  const Amendments& list = team.amendments();
+  const std::string name = "amendment " + std::to_string(number);
+  if (number < 0 || number >= list.named)
+    return failure("there is no " + name + ": ergocast amend --list shows them");
+  const auto& targets = list.targets;
+  const auto& ends = list.ends;
+  if (!targets.empty() && targets.back().number == number) {
+    const Mission& mission = team.mission();
+    AmendmentWish wish =
+        wish_of(targets.size() > 1 ? targets[targets.size() - 2]
+                                   : TargetChange{.target = mission.target_coefficients,
+                                                  .cosine = mission.cosine_target});
+    wish.brings_back = true;
+    return wish;
+  }
+  if (!ends.empty() && ends.back().number == number)
+    return wish_of_end(ends.size() > 1 ? ends[ends.size() - 2].tick_count
+                                       : team.mission().timing.tick_count);
+  const auto found = std::ranges::find(list.recent, number, &Amendment::number);
+  if (found != list.recent.end() && found->kind == AmendmentKind::kPause)
+    return failure(name + " is a pause: ergocast resume ends it");
+  if (found != list.recent.end() && found->kind == AmendmentKind::kResume)
+    return failure(name + " ended a pause: ergocast pause pauses the mission again");
+  return failure("a later amendment has replaced " + name +
+                 ": ergocast amend --list shows which can be cancelled");
+}
+
+AmendOrder::AmendOrder(AmendmentWish wish, Tick delay, Instant now)
+    : wish_(std::move(wish)),
       delay_(delay),
       header_{0, kOperator, random_identity(), 0, 0},
       since_(now) {}
 
 Instant::duration AmendOrder::period() const {
-  return kRepeatPeriod * std::max<std::size_t>(1, content_.size() / kBytesInPeriod);
+  return kRepeatPeriod * std::max<std::size_t>(1, wish_.content.size() / kBytesInPeriod);
 }
 
 void AmendOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
@@ -80,8 +127,8 @@ void AmendOrder::send_parts(const MonitoredRun& team, Outbox& out) {
   header_.run = team.run();
   header_.tick = team.tick();
   const Amend wish{
-      .header = header_, .number = *number_, .kind = AmendmentKind::kTarget, .delay_ticks = delay_};
-  for (Amend& part : in_parts(wish, content_)) {
+      .header = header_, .number = *number_, .kind = wish_.kind, .delay_ticks = delay_};
+  for (Amend& part : in_parts(wish, wish_.content)) {
     header_.sequence = part.header.sequence;
     out.push_back({Bus::kSwarm, std::move(part)});
   }
@@ -95,11 +142,41 @@ std::optional<std::string> AmendOrder::why_impossible(const MonitoredRun& team) 
   if (delay_ >= team.ticks_left())
     return "the mission ends before that, at " +
            team.mission_time(team.tick() + team.ticks_left()) + ": name an earlier time";
+  if (wish_.kind == AmendmentKind::kEnd) return why_no_end(team);
   const TargetChange* const waiting = waiting_target(team);
   const std::chrono::duration<double> patience = kAnswerPatience;
-  if (waiting == nullptr || team.seconds_until(waiting->from) < patience.count())
+  if (wish_.brings_back || waiting == nullptr ||
+      team.seconds_until(waiting->from) < patience.count())
     return std::nullopt;
   return waiting_text(team, *waiting);
+}
+
+/// The coordinator decides by the same rules, with newer places.
+std::optional<std::string> AmendOrder::why_no_end(const MonitoredRun& team) const {
+  const auto wanted = static_cast<Tick>(wish_.hash);
+  const std::string when = end_text(team, wanted);
+  EndRules rules;
+  switch (rules.problem(team.mission(), team.amendments(), team.tick(), earliest_tick(team, delay_),
+                        wanted, team.places())) {
+    case EndProblem::kNone:
+      return std::nullopt;
+    case EndProblem::kSame:
+      return "the mission ends at " + when + " already";
+    case EndProblem::kFull:
+      return "a mission can get " + std::to_string(kMaxEnds) +
+             " other ends, and this one has had them: end it with ergocast stop";
+    case EndProblem::kPassed:
+      return when + " has passed before all agents can know it: name a later end, or use " +
+             "ergocast stop";
+    case EndProblem::kTooLate:
+      return "a later end must be named " + std::to_string(static_cast<int>(kEndNotice_s)) +
+             " s of mission time before the end that holds, and that is at " +
+             end_text(team, team.tick_count()) + ": start another mission";
+    case EndProblem::kTooFar:
+      return "agent " + std::to_string(rules.too_far()) +
+             " cannot be at its station in time for an end at " + when + ": name a later end";
+  }
+  return std::nullopt;
 }
 
 OrderReport AmendOrder::report(const MonitoredRun& team, Instant now) const {
@@ -113,14 +190,17 @@ OrderReport AmendOrder::report(const MonitoredRun& team, Instant now) const {
 OrderReport AmendOrder::unnamed(const MonitoredRun& team, Instant now) const {
   if (now - since_ < kAnswerPatience || sent_ < kLeastSent)
     return {State::kSent, "the coordinator has not answered yet"};
-  if (const TargetChange* const waiting = waiting_target(team))
+  const TargetChange* const waiting = waiting_target(team);
+  if (wish_.kind == AmendmentKind::kTarget && waiting != nullptr)
     return {State::kFailed, waiting_text(team, *waiting)};
+  if (wish_.kind == AmendmentKind::kEnd)
+    if (const auto problem = why_no_end(team)) return {State::kFailed, *problem};
   return {State::kFailed, why_no_tick(team)};
 }
 
 OrderReport AmendOrder::named(const MonitoredRun& team) const {
   const std::string text = amendment_text(team, *amendment_);
-  if (amendment_->kind != AmendmentKind::kTarget || amendment_->hash != hash_)
+  if (amendment_->kind != wish_.kind || amendment_->hash != wish_.hash)
     return {State::kFailed, "another operator was first: " + text +
                                 ". This order had no effect: repeat it if it is still wanted"};
   if (team.tick() >= amendment_->from) return {State::kDone, text};
@@ -128,9 +208,15 @@ OrderReport AmendOrder::named(const MonitoredRun& team) const {
   return {State::kAnswered, text};
 }
 
+Tick earliest_tick(const MonitoredRun& team, Tick delay) {
+  const Timing& timing = team.mission().timing;
+  const Tick notice = timing.pace == Pace::kRealtime ? notice_ticks(timing) : 1;
+  return team.tick() + 1 + notice + delay;
+}
+
 std::string amendment_text(const MonitoredRun& team, const Amendment& amendment) {
   const bool holds = team.tick() >= amendment.from;
-  return "amendment " + std::to_string(amendment.number) + ", " + kind_text(amendment) +
+  return "amendment " + std::to_string(amendment.number) + ", " + kind_text(team, amendment) +
          (holds ? ", holds since " : ", holds from ") + team.mission_time(amendment.from) +
          (holds ? "" : in_seconds(team.seconds_until(amendment.from)));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order to cover another target.
+// The order to cover another target, or to end at another time.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,34 @@
 #include <vector>
 
 #include "cli/operate/order.h"
+#include "core/base/result.h"
 #include "core/mission/amendments.h"
 #include "team/messages.h"
 
 namespace ergocast::cli {
 
+/// What an amendment shall change.
+struct AmendmentWish {
+  AmendmentKind kind;
+  std::vector<std::byte> content;  ///< as AMEND carries it
+  std::uint64_t hash;              ///< as Amendment has it
+  bool brings_back = false;        ///< the target that held before the newest one
+};
+/// @param target  of the mission's basis: is_target(); number and tick do not count
+AmendmentWish wish_of(const TargetChange& target);
+/// @param tick_count  is_tick_count() of the mission
+AmendmentWish wish_of_end(Tick tick_count);
+
+/// What undoes an amendment: what held before it. An error says why it cannot be undone, and what
+/// to do instead. @pre team.knows_mission()
+Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std::int32_t number);
+
 class AmendOrder final : public Order {
  public:
-  /// @param target  of the mission's basis: is_target(); number and tick do not count
   /// @param delay   how many ticks later than necessary it shall hold
-  AmendOrder(const TargetChange& target, Tick delay, Instant now);
+  AmendOrder(AmendmentWish wish, Tick delay, Instant now);
+  AmendOrder(const TargetChange& target, Tick delay, Instant now)
+      : AmendOrder(wish_of(target), delay, now) {}
 
   void send(const MonitoredRun& team, Instant now, Outbox& out) override;
   OrderReport report(const MonitoredRun& team, Instant now) const override;
@@ -26,12 +44,12 @@ class AmendOrder final : public Order {
  private:
   void send_parts(const MonitoredRun& team, Outbox& out);
   std::optional<std::string> why_impossible(const MonitoredRun& team) const;
+  std::optional<std::string> why_no_end(const MonitoredRun& team) const;
   OrderReport unnamed(const MonitoredRun& team, Instant now) const;
   OrderReport named(const MonitoredRun& team) const;
   Instant::duration period() const;
 
-  std::vector<std::byte> content_;
-  std::uint64_t hash_;
+  AmendmentWish wish_;
   Tick delay_;
   Header header_;
   Instant since_, next_{};
@@ -40,6 +58,10 @@ class AmendOrder final : public Order {
   std::optional<std::string> problem_;  // why_impossible() at that time
   std::optional<Amendment> amendment_;  // what the coordinator has named under that number
 };
+
+/// The earliest tick that a coordinator can name now, as far as this command knows.
+/// @pre team.knows_mission()
+Tick earliest_tick(const MonitoredRun& team, Tick delay);
 
 /// "amendment 3, target 5f0c…, holds since tick 517, t = 51.7 s", or "… holds from tick 517,
 /// t = 51.7 s, in 2.0 s". @pre team.knows_mission()

@@ -10,6 +10,7 @@
 
 #include "cli/record/new_target.h"
 #include "cli/report_error.h"
+#include "core/motion/end_rules.h"
 #include "plan/amendment_list.h"
 #include "plan/plan.h"
 #include "runtime/process/shipped_scenarios.h"
@@ -19,34 +20,53 @@
 namespace ergocast::cli {
 namespace {
 
-PlannedTarget planned_from(const std::string& text) {
+/// The T of "T:REST"; REST is left in `rest`. Nothing if it is none.
+std::optional<double> time_of(const std::string& text, std::string& rest) {
   const std::size_t colon = text.find(':');
   const auto t_s = read_number<double>(std::string_view(text).substr(0, colon));
   if (colon == std::string::npos || colon + 1 == text.size() || !t_s || !(*t_s >= 0))
+    return std::nullopt;
+  rest = text.substr(colon + 1);
+  return t_s;
+}
+
+PlannedAmendment planned_from(const std::string& text) {
+  std::string file;
+  const auto t_s = time_of(text, file);
+  if (!t_s)
     throw CLI::ValidationError("--amend", "\"" + text +
                                               "\" is not T:FILE, such as 60:north.textproto for a "
                                               "target from t = 60 s on");
-  std::string file = text.substr(colon + 1);
   if (const std::string problem = shipped_scenario()(file); !problem.empty())
     throw CLI::ValidationError("--amend", problem);
-  return {*t_s, file, "--amend " + text};
+  return {.t_s = *t_s, .file = file, .flag = "--amend " + text};
 }
 
-/// Why the ticks of targets are impossible; nothing if they are not.
-std::optional<std::string> why_impossible(const std::vector<std::pair<Tick, PlannedTarget>>& all,
-                                          const Timing& timing) {
-  if (all.size() > kMaxRecentAmendments)
-    return "--amend: at most " + std::to_string(kMaxRecentAmendments) +
-           " targets can be planned, and these are " + std::to_string(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto& [tick, one] = all[i];
-    if (tick >= timing.tick_count)
-      return one.flag + ": the mission has ended then, at t = " +
-             shortest(static_cast<double>(timing.tick_count) * timing.dt_s) +
-             " s: name an earlier time";
-    if (i > 0 && tick == all[i - 1].first)
-      return one.flag + ": another target holds from the same tick on: name another time";
-  }
+PlannedAmendment planned_end_from(const std::string& text) {
+  std::string time;
+  const auto t_s = time_of(text, time);
+  const auto wish = t_s ? end_wish_from(time) : std::nullopt;
+  if (!wish)
+    throw CLI::ValidationError("--end", "\"" + text +
+                                            "\" is not T:TIME, such as 60:+600s for an end ten "
+                                            "minutes later, named at t = 60 s");
+  return {.t_s = *t_s, .end = wish, .flag = "--end " + text};
+}
+
+using Planned = std::vector<std::pair<Tick, PlannedAmendment>>;
+
+/// Why an amendment cannot be the next one at its tick; nothing if it can.
+std::optional<std::string> why_impossible(Tick tick, const PlannedAmendment& one,
+                                          const Amendments& list, const Timing& timing) {
+  if (list.recent.size() >= kMaxRecentAmendments)
+    return one.flag + ": at most " + std::to_string(kMaxRecentAmendments) +
+           " amendments can be planned";
+  const Tick end = tick_count_of(timing, list.ends);
+  if (tick >= end)
+    return one.flag + ": the mission has ended then, at t = " +
+           shortest(static_cast<double>(end) * timing.dt_s) + " s: name an earlier time";
+  if (!one.end && !list.targets.empty() && list.targets.back().from == tick)
+    return one.flag + ": another target holds from the same tick on: name another time";
   return std::nullopt;
 }
 
@@ -57,9 +77,41 @@ void append(Tick tick, TargetChange change, Amendments& list) {
   list.targets.push_back(std::move(change));
 }
 
+/// Why a mission cannot get this end at a tick; nothing if it got it.
+std::optional<std::string> append_end(Tick tick, const PlannedAmendment& one,
+                                      const Mission& mission, Amendments& list) {
+  const auto count = one.end->tick_count(mission.timing, tick_count_of(mission.timing, list.ends));
+  if (!count) return one.flag + ": " + count.error();
+  switch (EndRules().problem(mission, list, tick, tick, *count, {})) {
+    case EndProblem::kNone:
+      name_end(list, tick, *count);
+      return std::nullopt;
+    case EndProblem::kSame:
+      return one.flag + ": the mission ends then already: name another end";
+    case EndProblem::kTooLate:
+      return one.flag + ": a later end must be named " + shortest(kEndNotice_s) +
+             " s before the end that holds: name it earlier";
+    default:
+      return one.flag + ": that end is before it is named: name a later end";
+  }
+}
+
+/// Appends the target of a file; an error was printed if that is not possible.
+bool append_target(Tick tick, const PlannedAmendment& one, const Mission& mission,
+                   const std::filesystem::path& file, Amendments& list) {
+  const auto loaded = load_new_target(mission, one.file, {}, file);
+  if (!loaded) {
+    report_error(kExitBadInput, loaded.error());
+    return false;
+  }
+  for (const Problem& warning : loaded->warnings()) print_message("warning: " + to_string(warning));
+  append(tick, target_change_of(*loaded), list);
+  return true;
+}
+
 }  // namespace
 
-CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedTarget>& planned) {
+CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedAmendment>& planned) {
   return command
       .add_option_function<std::vector<std::string>>(
           "--amend",
@@ -72,30 +124,38 @@ CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedTarget>& pla
       ->type_name("T:FILE");
 }
 
-std::optional<Amendments> amendments_with(const std::vector<PlannedTarget>& planned,
+CLI::Option* add_end_option(CLI::App& command, std::vector<PlannedAmendment>& planned) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          "--end",
+          [&planned](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) planned.push_back(planned_end_from(text));
+          },
+          "Another end, named at mission time T [s], as `ergocast amend --end TIME` gives it; once "
+          "for each end")
+      ->allow_extra_args(false)
+      ->type_name("T:TIME");
+}
+
+std::optional<Amendments> amendments_with(const std::vector<PlannedAmendment>& planned,
                                           const Scenario& scenario,
                                           const std::filesystem::path& file) {
   const Mission& mission = scenario.mission();
-  std::vector<std::pair<Tick, PlannedTarget>> all;
-  for (const PlannedTarget& one : planned) {
+  Planned all;
+  for (const PlannedAmendment& one : planned) {
     const double tick = std::min(std::round(one.t_s / mission.timing.dt_s), 1e15);
     all.emplace_back(static_cast<Tick>(tick), one);
   }
-  std::ranges::stable_sort(all, {}, &std::pair<Tick, PlannedTarget>::first);
-  if (const auto problem = why_impossible(all, mission.timing)) {
-    print_message(*problem);
-    return std::nullopt;
-  }
+  std::ranges::stable_sort(all, {}, &Planned::value_type::first);
   Amendments list;
   for (const auto& [tick, one] : all) {
-    const auto loaded = load_new_target(mission, one.file, {}, file);
-    if (!loaded) {
-      report_error(kExitBadInput, loaded.error());
+    auto problem = why_impossible(tick, one, list, mission.timing);
+    if (!problem && one.end) problem = append_end(tick, one, mission, list);
+    if (problem) {
+      print_message(*problem);
       return std::nullopt;
     }
-    for (const Problem& warning : loaded->warnings())
-      print_message("warning: " + to_string(warning));
-    append(tick, target_change_of(*loaded), list);
+    if (!one.end && !append_target(tick, one, mission, file, list)) return std::nullopt;
   }
   if (encode_plan(mission).size() + encode_amendments(list).size() <= kMaxPlanBytes) return list;
   print_message("--amend: the targets have more coefficients than a mission can carry: plan fewer");

@@ -7,24 +7,29 @@
 #include <optional>
 #include <vector>
 
+#include "cli/record/new_end.h"
 #include "core/mission/amendments.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::cli {
 
-struct PlannedTarget {
-  double t_s = 0;  ///< mission time from which it holds
-  std::filesystem::path file;
-  std::string flag;  ///< as written, for problems
+struct PlannedAmendment {
+  double t_s = 0;                ///< mission time from which it holds
+  std::filesystem::path file{};  ///< a target
+  std::optional<EndWish> end{};  ///< in the place of a target
+  std::string flag;              ///< as written, for problems
 };
 
 /// --amend T:FILE.
-CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedTarget>& planned);
+CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedAmendment>& planned);
 
-/// The amendments with these targets. If a target or its time has a problem, prints it and returns
-/// nothing.
+/// --end T:TIME.
+CLI::Option* add_end_option(CLI::App& command, std::vector<PlannedAmendment>& planned);
+
+/// These amendments as a list. If one of them or its time has a problem, prints it and returns
+/// nothing. Whether agents reach their stations before an earlier end is not checked.
 /// @param file  of the scenario, which has its origin
-std::optional<Amendments> amendments_with(const std::vector<PlannedTarget>& planned,
+std::optional<Amendments> amendments_with(const std::vector<PlannedAmendment>& planned,
                                           const Scenario& scenario,
                                           const std::filesystem::path& file);
 

@@ -22,7 +22,7 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
   const Recorder& recorder = simulation.recorder();
   MissionProgress at;
   at.tick = at.world_tick = recorder.next_row();
-  at.tick_count = mission.timing.tick_count;
+  at.tick_count = tick_count_of(mission.timing, recorder.follower().amendments().ends);
   at.dt_s = mission.timing.dt_s;
   at.ergodic_metric = recorder.facts().ergodic_metric_last;
   at.agents_alive = at.agents_expected = static_cast<int>(mission.starts_m.size());
@@ -32,7 +32,7 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
 
 struct SimulateOptions : TrialsOptions {
   bool event_log = false;
-  std::vector<PlannedTarget> targets;  ///< that replace the scenario's
+  std::vector<PlannedAmendment> amendments;
 };
 
 /// Shows the progress on the terminal; a signal ends the simulation.
@@ -53,7 +53,7 @@ int simulate(const SimulateOptions& options) {
   const MissionOptions& chosen = options.mission;
   const auto scenario = load_or_complain(chosen.scenario, chosen.overrides);
   if (!scenario) return kExitBadInput;
-  auto amendments = amendments_with(options.targets, *scenario, chosen.scenario);
+  auto amendments = amendments_with(options.amendments, *scenario, chosen.scenario);
   if (!amendments) return kExitBadInput;
   const auto folder = prepare_run_directory(chosen.out, *scenario);
   if (!folder) return report_error(kExitBadInput, folder.error());
@@ -82,7 +82,8 @@ void add_simulate(CLI::App& app, Action& action) {
       ->type_name("FILE|swarm")
       ->needs(seeds);
   add_jobs_option(*command, options->jobs)->needs(seeds);
-  add_amend_option(*command, options->targets)->excludes(seeds);
+  add_amend_option(*command, options->amendments)->excludes(seeds);
+  add_end_option(*command, options->amendments)->excludes(seeds);
   command
       ->add_flag("--event-log", options->event_log,
                  "Write every message, as run does: events-000.lcm …")

@@ -49,6 +49,7 @@ constexpr Count kCounts[] = {
      [](TrialFigures& f) -> std::int64_t& { return f.world_crashes; }},
     {"pauses", "pauses", [](TrialFigures& f) -> std::int64_t& { return f.pauses; }},
     {"recalls", "recalls", [](TrialFigures& f) -> std::int64_t& { return f.recalls; }},
+    {"ends", "other ends", [](TrialFigures& f) -> std::int64_t& { return f.ends; }},
     {"targets", "new targets", [](TrialFigures& f) -> std::int64_t& { return f.targets; }},
     {"held_ticks", "ticks held", [](TrialFigures& f) -> std::int64_t& { return f.held_ticks; }},
     {"skewed_clocks", "clocks skewed",

@@ -75,6 +75,8 @@ std::string team_json(const TeamPicture& at) {
   json["target"] = nullptr;
   if (at.target)
     json["target"] = {{"amendment", at.target->number}, {"from_tick", at.target->from}};
+  json["end"] = nullptr;
+  if (at.end) json["end"] = {{"amendment", at.end->number}, {"from_tick", at.end->from}};
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {

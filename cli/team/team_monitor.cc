@@ -64,7 +64,8 @@ void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
   note_end(arrival, world.last);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     VehicleSeen& seen = vehicles_[vehicle.id];
-    if (world.header.tick >= seen.tick) seen = {world.header.tick, vehicle.velocity_mps};
+    if (world.header.tick >= seen.tick)
+      seen = {world.header.tick, vehicle.velocity_mps, vehicle.position_m};
   }
 }
 
@@ -89,6 +90,16 @@ bool MonitoredRun::unheard() const {
 bool MonitoredRun::stands_still() const {
   const Standing vehicles = standing();
   return vehicles.standing == vehicles.all;
+}
+
+std::vector<AgentPlace> MonitoredRun::places() const {
+  std::vector<AgentPlace> agents;
+  for (const RosterEntry& entry : roster()) {
+    const auto seen = vehicles_.find(entry.author.agent);
+    if (entry.active_until < 0 && seen != vehicles_.end())
+      agents.push_back({entry.author.agent, seen->second.position_m});
+  }
+  return agents;
 }
 
 MonitoredRun::Standing MonitoredRun::standing() const {

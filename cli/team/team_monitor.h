@@ -13,6 +13,7 @@
 
 #include "core/base/ids.h"
 #include "core/base/result.h"
+#include "core/motion/end_rules.h"
 #include "runtime/bus/transport.h"
 #include "runtime/process/program_options.h"
 #include "team/messages.h"
@@ -59,8 +60,12 @@ class MonitoredRun {
   const Mission& mission() const { return me_.mission(); }
   /// See MissionFollower.
   const std::optional<std::string>& plan_problem() const { return me_.follower().plan_problem(); }
+  /// How many ticks count by the newest end. @pre knows_mission()
+  Tick tick_count() const { return me_.tick_count(); }
+  /// The present agents whose vehicles have been seen.
+  std::vector<AgentPlace> places() const;
   /// How many more ticks count. @pre knows_mission()
-  Tick ticks_left() const { return me_.timing().tick_count - me_.counted(tick_); }
+  Tick ticks_left() const { return me_.tick_count() - me_.counted(tick_); }
   /// Whether the mission has begun, is known as a whole, and is not over.
   bool is_running() const {
     return knows_mission() && me_.follower().state() == MissionState::kRunning && !over_;
@@ -113,6 +118,7 @@ class MonitoredRun {
   struct VehicleSeen {
     Tick tick = -1;
     Eigen::Vector3d velocity_mps{0, 0, 0};
+    Eigen::Vector3d position_m{0, 0, 0};
   };
 
   Participant me_;

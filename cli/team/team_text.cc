@@ -164,6 +164,9 @@ std::string second_line(const TeamPicture& at) {
     text += at.free_domain ? " in modes of the free domain (median)" : " (median)";
   }
   if (at.target) text += ", " + target_text(at);
+  if (at.end)
+    text += ", end of amendment " + std::to_string(at.end->number) +
+            number(" at t = %.1f s", static_cast<double>(at.tick_count) * at.dt_s);
   if (at.missed_deadlines > 0)
     text += ", " + std::to_string(at.missed_deadlines) + " commands late";
   if (at.skipped_ticks > 0) text += ", " + std::to_string(at.skipped_ticks) + " ticks skipped";

@@ -230,7 +230,7 @@ TeamPicture TeamView::picture(Instant now) const {
   picture.tick_count = tick_count_;
   if (const auto& mission = follower().mission()) {
     picture.scenario = mission->name;
-    picture.tick_count = mission->timing.tick_count;
+    picture.tick_count = tick_count_of(mission->timing, follower().amendments().ends);
     picture.dt_s = mission->timing.dt_s;
   }
   const Tick end = tick_after(follower().holds(), picture.tick_count);
@@ -238,6 +238,10 @@ TeamPicture TeamView::picture(Instant now) const {
   picture.holds.assign(follower().holds().begin(), follower().holds().end());
   if (const auto* change = target_at(follower().amendments().targets, picture.tick))
     picture.target = {change->number, AmendmentKind::kTarget, change->from, target_hash(*change)};
+  const auto& ends = follower().amendments().ends;
+  if (!ends.empty())
+    picture.end = {ends.back().number, AmendmentKind::kEnd, ends.back().from,
+                   static_cast<std::uint64_t>(ends.back().tick_count)};
   picture.counted = counted_ticks(follower().holds(), picture.tick);
   picture.paused =
       !over() && (follower().mission() ? is_held(follower().holds(), picture.tick) : team_paused_);

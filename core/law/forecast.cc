@@ -50,6 +50,12 @@ Tick Forecast::rest_from(AgentId id) const {
   return at < rest_from_.size() ? rest_from_[at] : std::numeric_limits<Tick>::max();
 }
 
+void Forecast::note_ends(const Mission& mission, const EndSchedule& ends, Tick counted) {
+  look_ahead_.set_end(ends.tick_count_at(counted));
+  for (std::size_t at = 0; at < rest_from_.size(); ++at)
+    rest_from_[at] = ends.rest_from(mission, static_cast<AgentId>(at), counted);
+}
+
 void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
   if (!dead_reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
   if (!sampling_.domain().contains(x_m)) return;

@@ -44,6 +44,7 @@
 #include "core/law/target_shift.h"
 #include "core/law/team_sum.h"
 #include "core/law/term.h"
+#include "core/mission/end_schedule.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 
@@ -66,6 +67,9 @@ class Forecast {
   /// The revision of the roster that the world uses from now on: it decides which of the recalled
   /// agents rest.
   void note_revision(std::int64_t revision) { revision_ = revision; }
+
+  /// Takes in the end that holds at a counted tick. Does not allocate.
+  void note_ends(const Mission& mission, const EndSchedule& ends, Tick counted);
 
   /// The changes of the target. It outlives the next call of look_ahead().
   void note_shift(const TargetShift& shift) { shift_ = shift.any_of_samples() ? &shift : nullptr; }

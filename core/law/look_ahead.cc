@@ -86,14 +86,20 @@ LookAhead::LookAhead(const Mission& mission, const Eigen::Matrix3d& covariance_m
     : dt_s_(mission.timing.dt_s),
       alone_s_(mission.law.anticipation * target_spread_m(covariance_m2) *
                std::sqrt(shared_dimensions(covariance_m2) / 2) / mission.law.u_max_mps),
+      cross_s_(target_spread_m(covariance_m2) / mission.law.u_max_mps),
       most_s_(std::numeric_limits<double>::infinity()),
       inverse_dimensions_(1 / shared_dimensions(covariance_m2)),
+      ends_with_plan_(mission.law.ends_with_plan),
       end_tick_(std::numeric_limits<Tick>::max()),
       longest_period_(longest_period_ticks(mission.timing)) {
-  if (!mission.law.ends_with_plan) return;
-  end_tick_ = mission.timing.tick_count;
+  set_end(mission.timing.tick_count);
+}
+
+void LookAhead::set_end(Tick tick_count) {
+  if (!ends_with_plan_) return;
+  end_tick_ = tick_count;
   const double duration_s = static_cast<double>(end_tick_) * dt_s_;
-  most_s_ = std::max(0.0, duration_s - target_spread_m(covariance_m2) / mission.law.u_max_mps);
+  most_s_ = std::max(0.0, duration_s - cross_s_);
 }
 
 double LookAhead::horizon_s(int n, Tick tick) const {

@@ -36,6 +36,9 @@ class LookAhead {
  public:
   explicit LookAhead(const Mission& mission);
 
+  /// Takes in the number of ticks by the end that holds.
+  void set_end(Tick tick_count);
+
   /// Whether the mission's law looks ahead at all.
   bool any() const { return alone_s_ > 0; }
 
@@ -59,9 +62,11 @@ class LookAhead {
 
   double dt_s_;
   double alone_s_;             // h of a team of one
+  double cross_s_;             // the time to cross the target
   double most_s_;              // of h, in a short mission
   double inverse_dimensions_;  // 1 / d
-  Tick end_tick_;              // the latest end of the horizon
+  bool ends_with_plan_;
+  Tick end_tick_;  // the latest end of the horizon
   Tick longest_period_;
 };
 

@@ -45,10 +45,18 @@ bool targets_follow(std::span<const TargetChange> targets) {
   return true;
 }
 
+bool are_ends(std::span<const EndChange> ends) {
+  if (ends.size() > kMaxEnds) return false;
+  Tick from = 0;
+  return std::ranges::all_of(ends, [&from](const EndChange& change) {
+    return change.tick_count >= 1 && change.from >= std::exchange(from, change.from);
+  });
+}
+
 }  // namespace
 
 const char* to_string(AmendmentKind kind) {
-  constexpr const char* kNames[] = {"pause", "resume", "target"};
+  constexpr const char* kNames[] = {"pause", "resume", "target", "end"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -78,7 +86,7 @@ bool are_amendments(const Amendments& list, const Mission& mission) {
   return list.named >= 0 && list.named <= kMaxAmendments && are_holds(list.holds) &&
          named_changes(list.holds) <= list.named && list.recent.size() <= kMaxRecentAmendments &&
          ascend(list.recent, list.named) && ascend(list.targets, list.named) &&
-         targets_follow(list.targets) &&
+         targets_follow(list.targets) && ascend(list.ends, list.named) && are_ends(list.ends) &&
          std::ranges::all_of(list.targets, [&mission](const TargetChange& change) {
            return is_target(change.target, change.cosine, mission);
          });
@@ -126,6 +134,22 @@ void name_target(Amendments& list, Tick tick, TargetChange change) {
   // The second newest holds until the newest one does.
   if (list.targets.size() > 1) list.targets.erase(list.targets.begin(), list.targets.end() - 1);
   list.targets.push_back(std::move(change));
+}
+
+void replace_target(Amendments& list, TargetChange change) {
+  ERGOCAST_REQUIRE(!list.targets.empty());
+  change.from = list.targets.back().from;
+  change.number = list.named;
+  name(list, {.kind = AmendmentKind::kTarget, .from = change.from, .hash = target_hash(change)});
+  list.targets.back() = std::move(change);
+}
+
+void name_end(Amendments& list, Tick tick, Tick tick_count) {
+  ERGOCAST_REQUIRE(list.ends.size() < kMaxEnds);
+  if (!list.ends.empty()) tick = std::max(tick, list.ends.back().from);
+  list.ends.push_back({list.named, tick, tick_count});
+  name(list,
+       {.kind = AmendmentKind::kEnd, .from = tick, .hash = static_cast<std::uint64_t>(tick_count)});
 }
 
 }  // namespace ergocast

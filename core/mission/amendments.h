@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What has changed in a mission since its plan: pauses, and new targets.
+// What has changed in a mission since its plan: pauses, new targets, and other ends.
 //
 // The coordinator names each amendment: it gives it the next number, and the world's tick from
 // which it holds. All processes learn of an amendment before its tick, so all change at the same
@@ -22,6 +22,7 @@ enum class AmendmentKind {
   kPause,   ///< the mission is paused: a Hold begins
   kResume,  ///< the mission goes on: the last Hold ends
   kTarget,  ///< the team covers another target
+  kEnd,     ///< the mission has another number of ticks
 };
 const char* to_string(AmendmentKind kind);
 
@@ -30,7 +31,7 @@ struct Amendment {
   std::int32_t number = 0;  ///< from 0
   AmendmentKind kind = AmendmentKind::kPause;
   Tick from = 0;           ///< the world's tick from which it holds
-  std::uint64_t hash = 0;  ///< kTarget: target_hash(); else 0
+  std::uint64_t hash = 0;  ///< kTarget: target_hash(); kEnd: the number of ticks; else 0
 
   bool operator==(const Amendment&) const = default;
 };
@@ -47,6 +48,15 @@ struct TargetChange {
   bool operator==(const TargetChange& other) const;
 };
 
+/// Another end of the mission, known from a tick on.
+struct EndChange {
+  std::int32_t number = 0;  ///< of the amendment
+  Tick from = 0;            ///< the world's tick from which it holds
+  Tick tick_count = 0;      ///< in the place of the plan's
+
+  bool operator==(const EndChange&) const = default;
+};
+
 /// A number that identifies a target.
 std::uint64_t target_hash(const TargetChange& change);
 
@@ -60,8 +70,10 @@ struct Amendments {
   /// The newest targets, ascending by number. A coordinator keeps the two newest: no other one can
   /// hold at the present tick.
   std::vector<TargetChange> targets;
+  /// All ends, ascending by number.
+  std::vector<EndChange> ends;
 
-  bool empty() const { return named == 0 && holds.empty() && targets.empty(); }
+  bool empty() const { return named == 0 && holds.empty() && targets.empty() && ends.empty(); }
   bool operator==(const Amendments&) const = default;
 };
 
@@ -72,8 +84,13 @@ inline constexpr std::size_t kMaxRecentAmendments = 32;
 /// code 4.
 inline constexpr std::int32_t kMaxAmendments = 1'000'000;
 
+/// Limit (Team): ends of a mission in the place of its plan's. Beyond it: `ergocast amend --end`
+/// ends with code 4.
+inline constexpr std::size_t kMaxEnds = 32;
+
 /// Whether a coordinator can have named this list for `mission`: are_holds(), numbers and ticks
-/// ascend, and each target is one of the mission's basis within limits (is_target()).
+/// ascend, and each target is one of the mission's basis within limits (is_target()). Ends have at
+/// least one tick.
 bool are_amendments(const Amendments& list, const Mission& mission);
 
 /// Whether the numbers are a target of `mission`: as many as its basis has modes, finite, |μ| ≤ 1
@@ -86,6 +103,12 @@ Amendments only_pauses(std::vector<Hold> holds);
 /// The target that holds at a tick of the world; null: the plan's.
 const TargetChange* target_at(std::span<const TargetChange> targets, Tick tick);
 
+/// How many ticks the mission has by the newest end: all processes go by it as soon as they know
+/// it. No end is named for a tick that has passed.
+inline Tick tick_count_of(const Timing& timing, std::span<const EndChange> ends) {
+  return ends.empty() ? timing.tick_count : ends.back().tick_count;
+}
+
 // ---- for a coordinator ----
 
 /// How many ticks before it takes effect a change is announced. Lockstep needs no notice: an agent
@@ -97,5 +120,10 @@ Tick notice_ticks(const Timing& timing);
 void name_pause(Amendments& list, Tick tick);
 /// Names the next amendment, a target. Its number and tick are set here.
 void name_target(Amendments& list, Tick tick, TargetChange change);
+/// Names the next amendment, a target that holds in the place of the newest one, from its tick on.
+/// @pre the newest target does not hold yet
+void replace_target(Amendments& list, TargetChange change);
+/// Names the next amendment, an end. @pre the list has room: ends.size() < kMaxEnds
+void name_end(Amendments& list, Tick tick, Tick tick_count);
 
 }  // namespace ergocast

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/mission/station.h"
+#include "core/mission/end_schedule.h"
 
 namespace ergocast {
 
@@ -20,6 +20,11 @@ Mission in_cosines(Mission mission) {
 }
 
 Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block) {
+  return next_broadcast(mission, EndSchedule(mission), id, tick, block);
+}
+
+Tick next_broadcast(const Mission& mission, const EndSchedule& ends, AgentId id, Tick tick,
+                    int block) {
   const Tick period = mission.timing.broadcast_period_ticks;
   const Tick factor = block == 0 ? 1 : mission.timing.high_mode_period_factor;
   const Tick team = std::max<Tick>(1, static_cast<Tick>(mission.starts_m.size()));
@@ -28,8 +33,8 @@ Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block) {
   const Tick between = period * factor;
   const Tick next = tick + between - (tick - turn + between) % between;
   if (mission.kinds.empty()) return next;
-  const Tick last = rest_from(mission, id) - 1;
-  return tick < last ? std::min(next, last) : std::max(tick + 1, mission.timing.tick_count);
+  const Tick last = ends.rest_from(mission, id, tick) - 1;
+  return tick < last ? std::min(next, last) : std::max(tick + 1, ends.tick_count_at(tick));
 }
 
 }  // namespace ergocast

@@ -160,5 +160,9 @@ inline Tick longest_period_ticks(const Timing& timing) {
 /// rest (core/mission/station.h) sends all blocks once more at its last tick before, and then
 /// nothing till the end.
 Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block = 0);
+class EndSchedule;
+/// The same by the end that holds at `tick`.
+Tick next_broadcast(const Mission& mission, const EndSchedule& ends, AgentId id, Tick tick,
+                    int block);
 
 }  // namespace ergocast

@@ -97,6 +97,12 @@ double WayHome::needed_s(const Eigen::Vector3d& x_m) const {
   return travel_s + drift_ * std::sqrt(travel_s) + slack_s_;
 }
 
+void WayHome::set_rest(Tick counted) {
+  if (counted == rest_from_) return;
+  rest_from_ = counted;
+  begun_ = false;
+}
+
 bool WayHome::begun(Tick counted, const Eigen::Vector3d& x_m) {
   const double left_s = static_cast<double>(rest_from_ - counted) * motion_.dt_s;
   begun_ = begun_ || left_s <= needed_s(x_m);

@@ -38,6 +38,9 @@ class WayHome {
   /// infinite where there is no way.
   double needed_s(const Eigen::Vector3d& x_m) const;
 
+  /// From now on the agent has to be at its station from another tick on. If that is later, it may
+  /// turn back.
+  void set_rest(Tick counted);
   /// Whether the agent goes home at a tick, by its number among those that count. Once it does, it
   /// goes on. @pre the agent has a station
   bool begun(Tick counted, const Eigen::Vector3d& x_m);

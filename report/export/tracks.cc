@@ -4,8 +4,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "core/base/rings.h"
+#include "core/mission/end_schedule.h"
 #include "core/mission/station.h"
 #include "report/export/exports.h"
 
@@ -75,13 +77,17 @@ void add_walls(const LocalPlane& plane, const Rings& walls, Json& features) {
   }
 }
 
-void add_stations(const LocalPlane& plane, const Mission& mission, Json& features) {
+void add_stations(const LocalPlane& plane, const ExportRecord& record, Json& features) {
+  const Mission& mission = record.mission;
+  const EndSchedule ends(mission, record.run.holds(), record.run.amendments.ends());
+  constexpr Tick kAtTheEnd = std::numeric_limits<Tick>::max();
   for (AgentId agent = 0; agent < static_cast<AgentId>(mission.starts_m.size()); ++agent) {
     const auto station_m = station_of(mission, agent);
     if (!station_m) continue;
     Json place = position_of(plane, station_m->head<2>());
     if (!mission.domain.planar()) place.push_back(station_m->z());
-    const double from_s = static_cast<double>(rest_from(mission, agent)) * mission.timing.dt_s;
+    const double from_s =
+        static_cast<double>(ends.rest_from(mission, agent, kAtTheEnd)) * mission.timing.dt_s;
     features.push_back(feature({{"type", "Point"}, {"coordinates", std::move(place)}},
                                {{"kind", "station"}, {"agent", agent}, {"rests_from_s", from_s}}));
   }
@@ -110,7 +116,7 @@ std::optional<std::string> write_geojson(const ExportRecord& record,
   const LocalPlane plane(record.origin.value());
   Json features = Json::array({domain_feature(plane, record)});
   add_walls(plane, record.mission.walls, features);
-  add_stations(plane, record.mission, features);
+  add_stations(plane, record, features);
   for (const auto& [agent, track] : record.run.tracks)
     features.push_back(track_feature(plane, record, agent, track));
   std::ofstream out(file, std::ios::binary);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bugs of new targets.
+// Bugs of new targets and other ends.
 #include "core/law/coverage_table.h"
 #include "core/law/target_shift.h"
+#include "core/mission/end_schedule.h"
+#include "core/motion/end_rules.h"
 #include "tests/checks_can_fail/bugs.h"
 
 namespace ergocast {
@@ -9,6 +11,8 @@ namespace ergocast {
 // clang-format off
 WRAPPED(void, note_targets, "_ZN8ergocast11TargetShift4noteERKNS_10AmendmentsE", TargetShift*, const Amendments&)
 WRAPPED(void, shift_sample, "_ZN8ergocast13CoverageTable12shift_sampleERKNS_6AuthorEPKd", CoverageTable*, const Author&, const double*)
+WRAPPED(void, note_ends, "_ZN8ergocast11EndSchedule4noteESt4spanIKNS_4HoldELm18446744073709551615EES1_IKNS_9EndChangeELm18446744073709551615EE", EndSchedule*, std::span<const Hold>, std::span<const EndChange>)
+WRAPPED(EndProblem, end_problem, "_ZN8ergocast8EndRules7problemERKNS_7MissionERKNS_10AmendmentsElllSt4spanIKNS_10AgentPlaceELm18446744073709551615EE", EndRules*, const Mission&, const Amendments&, Tick, Tick, Tick, std::span<const AgentPlace>)
 // clang-format on
 
 void bug_note_targets(TargetShift* self, const Amendments& list) {
@@ -24,6 +28,24 @@ void bug_shift_sample(CoverageTable* self, const Author& author, const double* s
   if (bug("one agent keeps to the plan's target") && author.agent == 0) return;
   real_shift_sample(self, author, shift);
   if (bug("a target counts twice")) real_shift_sample(self, author, shift);
+}
+
+void bug_note_ends(EndSchedule* self, std::span<const Hold> holds,
+                   std::span<const EndChange> ends) {
+  if (bug("agents go by the plan's end")) ends = {};
+  if (bug("an end holds at once")) {
+    std::vector<EndChange> earlier(ends.begin(), ends.end());
+    for (EndChange& change : earlier) change.from = 0;
+    return real_note_ends(self, holds, earlier);
+  }
+  real_note_ends(self, holds, ends);
+}
+
+EndProblem bug_end_problem(EndRules* self, const Mission& mission, const Amendments& list,
+                           Tick tick, Tick from, Tick tick_count,
+                           std::span<const AgentPlace> agents) {
+  if (bug("the way home is not asked for")) agents = {};
+  return real_end_problem(self, mission, list, tick, from, tick_count, agents);
 }
 
 }  // namespace ergocast

@@ -32,6 +32,7 @@ const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20"
 const char* const kPauses = "pauses_per_s = 0.3\npause_max_s = 5";
 const char* const kTargets = "targets_per_s = 0.3";
 const char* const kTargetsAndPauses = "targets_per_s = 0.3\npauses_per_s = 0.3\npause_max_s = 5";
+const char* const kEnds = "ends_per_s = 0.3";
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
@@ -144,6 +145,9 @@ const Plant kPlants[] = {
     {Invariant::kWallsKept, "nobody brakes before walls", "", kWalledWithInertia},
     {Invariant::kWallsKept, "a loiter circle may reach into walls", "", kWalledWithWings},
     {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
+    {Invariant::kHomeInTime, "agents go by the plan's end", kEnds, kStations, "", "--lockstep"},
+    {Invariant::kHomeInTime, "the way home is not asked for", kEnds, kStations, "", "--lockstep"},
+    {Invariant::kForecastOfWhatIsKnown, "an end holds at once", kEnds, kStations, "", "--lockstep"},
     {Invariant::kRecalledComeHome, "a recalled agent stays where it is", kRecalls, "", "",
      "--lockstep"},
     {Invariant::kForecastOfWhatIsKnown, "the resting are foreseen", "", kStations},

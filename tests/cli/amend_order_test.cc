@@ -154,6 +154,85 @@ TEST_F(Amended, IsNotSentIfItCannotHold) {
   EXPECT_TRUE(sent_.empty());
 }
 
+TEST_F(Amended, AnEndIsAskedForUntilItIsNamed) {
+  announce_list();
+  move_to(10);
+  AmendOrder order(wish_of_end(70), 0, now_);
+  EXPECT_EQ(turn(order, 450ms).state, State::kSent);
+  ASSERT_FALSE(sent_.empty());
+  EXPECT_EQ(sent_[0].kind, AmendmentKind::kEnd);
+  EXPECT_EQ(decode_end(sent_[0].content, mission_), 70);
+  name_end(list_, 30, 70);
+  announce_list();
+  EXPECT_EQ(turn(order, 1s).state, State::kAnswered);
+  move_to(30);
+  const OrderReport report = turn(order, 1s);
+  EXPECT_EQ(report.state, State::kDone);
+  EXPECT_NE(report.text.find("amendment 0, the end at t = 7.0 s, holds since tick 30"),
+            std::string::npos)
+      << report.text;
+}
+
+TEST_F(Amended, AnEndThatIsImpossibleIsNotSent) {
+  const auto refused = [&](Tick tick_count, const std::string& why) {
+    announce_list();
+    AmendOrder order(wish_of_end(tick_count), 0, now_);
+    const OrderReport report = turn(order, 1s);
+    EXPECT_EQ(report.state, State::kFailed);
+    EXPECT_NE(report.text.find(why), std::string::npos) << report.text;
+  };
+  announce_list();
+  move_to(10);
+  refused(100, "the mission ends at t = 10.0 s already");
+  refused(12, "t = 1.2 s has passed before all agents can know it");
+  refused(200,
+          "must be named 10 s of mission time before the end that holds, and that is at t = "
+          "10.0 s");
+  mission_.kinds = {{"a", 2, 10, 0, 0}};
+  mission_.kinds[0].stations_m = {{1900, 1900, 0}};
+  announce(mission_);
+  MonitoredRun other{kRun, at(0s)};
+  team_ = other;
+  announce_list();
+  move_to(10);
+  refused(90, "agent 0 cannot be at its station in time for an end at t = 9.0 s");
+  EXPECT_TRUE(sent_.empty());
+}
+
+TEST_F(Amended, TheNewestTargetAndTheNewestEndCanBeCancelled) {
+  name_target(list_, 5, target(0.25));
+  name_end(list_, 6, 80);
+  name_pause(list_, 7);
+  name_pause(list_, 8);
+  name_target(list_, 9, target(0.5));
+  name_end(list_, 10, 90);
+  announce_list();
+  const auto wish = [&](std::int32_t number) { return wish_to_cancel(team_, number); };
+  EXPECT_EQ(wish(4)->content, encode_target(target(0.25)));
+  EXPECT_EQ(wish(5)->content, encode_end(80));
+  for (const auto& [number, why] :
+       {std::pair(0, "a later amendment has replaced amendment 0"), std::pair(1, "a later"),
+        std::pair(2, "amendment 2 is a pause: ergocast resume ends it"),
+        std::pair(3, "amendment 3 ended a pause"), std::pair(6, "there is no amendment 6"),
+        std::pair(-1, "there is no amendment -1")}) {
+    ASSERT_FALSE(wish(number)) << number;
+    EXPECT_NE(wish(number).error().find(why), std::string::npos) << wish(number).error();
+  }
+}
+
+TEST_F(Amended, TheFirstTargetAndTheFirstEndAreCancelledByThePlans) {
+  name_target(list_, 50, target(0.25));
+  name_end(list_, 6, 80);
+  announce_list();
+  move_to(10);
+  EXPECT_EQ(wish_to_cancel(team_, 0)->content,
+            encode_target({.target = mission_.target_coefficients}));
+  EXPECT_EQ(wish_to_cancel(team_, 1)->content, encode_end(100));
+  AmendOrder order(*wish_to_cancel(team_, 0), 0, now_);
+  EXPECT_EQ(turn(order, 1s).state, State::kSent) << "although a target waits";
+  EXPECT_FALSE(sent_.empty());
+}
+
 TEST_F(Amended, SurvivesThatItsProcessIsStopped) {
   announce_list();
   AmendOrder order(target(0.5), 0, now_);

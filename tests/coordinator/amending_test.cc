@@ -134,6 +134,89 @@ TEST(Amending, NamesNoTargetAfterTheMissionsEnd) {
   }
 }
 
+// An operator that cancels it sends the target that holds.
+TEST(Amending, ATargetThatWaitsIsReplacedByTheOneThatHolds) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  for (Amend part : wish(0.5, 0)) {
+    part.delay_ticks = 100;
+    give(coordinator, part, at(1s));
+  }
+  let_world_stand_by(coordinator, 11);
+  for (const Amend& part : wish(0, 1)) give(coordinator, part, at(1s));
+  let_world_stand_by(coordinator, 12);
+  ASSERT_EQ(coordinator.amendments().named, 2);
+  ASSERT_EQ(coordinator.amendments().targets.size(), 1U);
+  EXPECT_EQ(coordinator.amendments().targets[0].from, 113);
+  EXPECT_EQ(coordinator.amendments().targets[0].number, 1);
+  EXPECT_EQ(coordinator.amendments().targets[0].target, wide_mission().target_coefficients);
+}
+
+Amend wish_of_end(Tick tick_count, std::int32_t number, Incarnation by = 1) {
+  return in_parts({.header = {kRun, kOperator, by, next_sequence(), 0},
+                   .number = number,
+                   .kind = AmendmentKind::kEnd},
+                  encode_end(tick_count))
+      .at(0);
+}
+
+TEST(Amending, NamesAnEnd) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  give(coordinator, wish_of_end(500, 0), at(1s));
+  let_world_stand_by(coordinator, 11);
+  EXPECT_EQ(coordinator.amendments().ends, (std::vector<EndChange>{{0, 13, 500}}));
+  const auto status = only<TeamStatus>(advance(coordinator, at(2s)));
+  ASSERT_FALSE(status.empty());
+  EXPECT_EQ(status[0].tick_count, 500);
+  give(coordinator, wish_of_end(600, 0, 2), at(2s));
+  give(coordinator, world_where(12, {11, 11}), at(2s));
+  EXPECT_EQ(coordinator.amendments().named, 1) << "another operator was first";
+  give(coordinator, world_where(499, {498, 498}), at(3s));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  give(coordinator, world_where(500, {499, 499}), at(3s));
+  EXPECT_EQ(coordinator.state(), MissionState::kEnded);
+}
+
+TEST(Amending, NamesNoEndThatTheTeamCannotKeep) {
+  for (const auto& [tick, tick_count, named] :
+       {std::tuple(Tick{10}, Tick{13}, 0), std::tuple(Tick{10}, Tick{14}, 1),
+        std::tuple(Tick{10}, Tick{1000}, 0), std::tuple(Tick{890}, Tick{2000}, 1),
+        std::tuple(Tick{899}, Tick{2000}, 0), std::tuple(Tick{10}, Tick{0}, 0)}) {
+    Coordinator coordinator = running_coordinator(wide_mission());
+    give(coordinator, world_where(tick, {tick - 1, tick - 1}), at(1s));
+    give(coordinator, wish_of_end(tick_count, 0), at(1s));
+    let_world_stand_by(coordinator, tick + 1);
+    EXPECT_EQ(coordinator.amendments().named, named) << tick_count;
+  }
+}
+
+TEST(Amending, NamesNoEarlierEndThatAnAgentCannotBeHomeFor) {
+  for (const bool near : {false, true}) {
+    Mission mission = wide_mission();
+    mission.kinds = {{"a", 2, 10, 0, 0}};
+    mission.kinds[0].stations_m = {{near ? 10.0 : 1900.0, 1, 0}};
+    mission.kinds[0].reserve_s = 1;
+    Coordinator coordinator = running_coordinator(mission);
+    give(coordinator, world_where(10, {9, 9}), at(1s));
+    give(coordinator, wish_of_end(500, 0), at(1s));
+    let_world_stand_by(coordinator, 11);
+    EXPECT_EQ(coordinator.amendments().named, near ? 1 : 0);
+  }
+}
+
+TEST(Amending, ASuccessorKnowsTheEnd) {
+  MissionPart memory = memory_of(3);
+  Amendments list;
+  name_end(list, 2, 150);
+  memory.amendments = encode_amendments(list);
+  Coordinator coordinator = taken_over(memory);
+  EXPECT_EQ(coordinator.amendments(), list);
+  const auto status = only<TeamStatus>(advance(coordinator, at(60s)));
+  ASSERT_FALSE(status.empty());
+  EXPECT_EQ(status[0].tick_count, 150);
+}
+
 TEST(Amending, ASuccessorKnowsTheTargets) {
   MissionPart memory = memory_of(3);
   TargetChange change;

@@ -118,7 +118,7 @@ TEST(AmendmentBytes, ThatAreCutOffOrTooLongAreRefused) {
   const std::vector<std::byte> huge(40, std::byte{0xff});
   EXPECT_FALSE(decode_amendments(huge, mission));
   // An empty list has no bytes: each list has one encoding.
-  EXPECT_FALSE(decode_amendments(std::vector<std::byte>(16), mission));
+  EXPECT_FALSE(decode_amendments(std::vector<std::byte>(20), mission));
 }
 
 TEST(TargetBytes, AreATargetOfTheMission) {

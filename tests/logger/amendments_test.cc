@@ -178,6 +178,31 @@ TEST_F(AmendmentsFile, HasWhatTheSummaryListsAndTheNumbers) {
   EXPECT_EQ(listed[1]["hash"], to_hex(target_hash(*heard.all()[1].target)));
 }
 
+TEST_F(AmendmentsFile, KeepsEndsAndTargetsThatWereReplacedBeforeTheirTick) {
+  ReceivedAmendments heard;
+  Amendments list;
+  name_end(list, 20, 70);
+  TargetChange change{.target = small_mission(2).target_coefficients};
+  change.target[1] = 0.5;
+  name_target(list, 30, change);
+  heard.note(list);
+  change.target[1] = 0;
+  replace_target(list, change);
+  name_end(list, 40, 100);
+  heard.note(list);
+  EXPECT_EQ(heard.list(), list);
+  EXPECT_EQ(heard.ends(), list.ends);
+  EXPECT_EQ(heard.target_at(30)->amendment.number, 2);
+  write(amendments_text(heard, 0.1));
+  const auto read_again = read();
+  ASSERT_TRUE(read_again) << read_again.error();
+  EXPECT_EQ(read_again->all(), heard.all());
+  EXPECT_EQ(read_again->list(), list);
+  std::string text = amendments_text(heard, 0.1);
+  write(text.replace(text.find("\"tick_count\":70"), 15, "\"tick_count\":0 "));
+  EXPECT_FALSE(read());
+}
+
 TEST_F(AmendmentsFile, PausesAreReadFromTheSummaryIfThereIsNone) {
   EXPECT_TRUE(read()->empty());
   const auto holds = [](const char* text) {

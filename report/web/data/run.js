@@ -44,7 +44,7 @@ export class Run {
     this.recalledFrom = new Map(); // world's tick from which a recalled agent rests
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
-    this.amendments = []; // {number, kind, from: tick, hash}, ascending, as far as the page knows them
+    this.amendments = []; // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
     this.received = new Map(); // coefficients of new targets, by hash
     this.targets = [plannedTarget(mission)]; // ascending by row
     this.coverage = new Coverage(this);
@@ -60,6 +60,7 @@ export class Run {
     const pairs = Array.isArray(holds) ? holds.filter(Array.isArray) : [];
     if (JSON.stringify(pairs) === JSON.stringify(this.holds)) return;
     this.holds = pairs;
+    this.noteEnds();
     this.coverage.reset(0);
   }
   // What has changed since the plan, and the coefficients of targets that are new to the page, by hash.
@@ -71,9 +72,25 @@ export class Run {
       return before.find(one => one.sameAs(target)) ?? target;
     };
     this.amendments = list;
+    this.noteEnds();
     this.targets = [before[0], ...list.filter(one => one.kind === 'target').map(targetOf)];
     const changed = firstDifference(before, this.targets);
     if (changed < this.rows) this.coverage.reset(changed);
+  }
+  // How many ticks count, by the newest end.
+  get tickCount() {
+    return this.amendments.findLast(one => one.kind === 'end')?.tick_count ?? this.mission.tick_count;
+  }
+  // From when on agents rest at their stations. An agent that rests stays there when another end is named.
+  noteEnds() {
+    const { dt_s: dt, tick_count: planned, stations = [] } = this.mission,
+      ends = this.amendments.filter(one => one.kind === 'end');
+    for (const { id, rest_from: first } of stations) {
+      let rest = first;
+      for (const { from, tick_count: ticks } of ends)
+        if (Math.round(this.counted(from * dt) / dt) < rest) rest = ticks - (planned - first);
+      this.restFrom.set(id, rest);
+    }
   }
   // The target that holds at a row.
   targetAt(row) {
@@ -83,11 +100,14 @@ export class Run {
   get knowsTargets() {
     return (this.amendments[0]?.number ?? 0) === 0 && this.targets.every(target => target.known);
   }
-  // Incidents, and the new targets that hold by now, ascending.
+  // Incidents, and the new targets and ends that hold by now, ascending.
   get marks() {
-    const marks = this.targets
-      .slice(1)
-      .map(({ from }) => ({ t: from * this.mission.dt_s, kind: 'target', sign: '◎', text: 'new target' }))
+    const ends = this.amendments.filter(one => one.kind === 'end');
+    const marks = [
+      ...this.targets.slice(1).map(({ from }) => ({ from, kind: 'target', sign: '◎', text: 'new target' })),
+      ...ends.map(({ from }) => ({ from, kind: 'end', sign: '⏱', text: 'another end' })),
+    ]
+      .map(({ from, ...mark }) => ({ t: from * this.mission.dt_s, ...mark }))
       .filter(({ t }) => t <= this.end + TOLERANCE_S);
     return marks.length ? [...this.incidents, ...marks].sort((a, b) => a.t - b.t) : this.incidents;
   }

@@ -40,7 +40,7 @@ export function showFacts(live) {
         ['messages lost', grouped(live.lost)],
         ['late commands', lateText(late)],
         ['authenticated', live.authenticated ? 'yes' : 'no'],
-        ['ticks', `${grouped(mission.tick_count)} × ${mission.dt_s} s`],
+        ['ticks', `${grouped(run.tickCount)} × ${mission.dt_s} s`],
         ['modes', mission.modes.join(' × ')],
         ['seed', mission.seed],
         ['run', (live.replay ? 'replay of ' : '') + live.run.slice(0, 8)],
@@ -54,7 +54,7 @@ export function showFacts(live) {
         [
           'ticks',
           grouped(run.ticks) +
-            (run.ticks < mission.tick_count ? ` of ${grouped(mission.tick_count)}` : '') +
+            (run.ticks < run.tickCount ? ` of ${grouped(run.tickCount)}` : '') +
             ` × ${mission.dt_s} s`,
         ],
         ['modes', mission.modes.join(' × ')],
@@ -132,9 +132,10 @@ function table(columns, objects) {
 
 const AMENDMENT_COLUMNS = [
   ['amendment', 'number', 'Its number in the mission'],
-  ['kind', 'kind', 'What it changes: a pause begins or ends, or the target is another one'],
+  ['kind', 'kind', 'What it changes: a pause begins or ends, or the target or the end is another one'],
   ['from tick', 'from', 'The first tick of the world at which it holds'],
   ['t [s]', 't', 'Mission time at that tick'],
+  ['ticks', 'tick_count', 'Another end: how many ticks the mission has by it'],
 ];
 const amendmentsOf = run =>
   run.amendments.map(one => ({ ...one, t: +run.counted(one.from * run.mission.dt_s).toFixed(3) }));

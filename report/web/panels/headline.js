@@ -44,6 +44,6 @@ export function drawHeadline(now) {
   $('chart').setAttribute('aria-label', `${QUANTITIES[S.quantity].title}: ${readingAt(run, S.quantity, t)}`);
   put(
     $('nowEnd'),
-    `of ${(S.live ? (run.mission.tick_count - 1) * run.mission.dt_s : run.counted(run.end)).toFixed(0)} s`,
+    `of ${(S.live ? (run.tickCount - 1) * run.mission.dt_s : run.counted(run.end)).toFixed(0)} s`,
   );
 }
