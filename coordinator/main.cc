@@ -114,7 +114,8 @@ class MissionLog {
 
   MissionState state_ = MissionState::kWaiting;
   static const char* effect_of(AmendmentKind kind) {
-    constexpr const char* kEffects[] = {"is paused", "counts", "has another target"};
+    constexpr const char* kEffects[] = {"is paused", "counts", "has another target",
+                                        "is out of a zone"};
     return kEffects[static_cast<int>(kind)];
   }
 

@@ -48,7 +48,7 @@ bool targets_follow(std::span<const TargetChange> targets) {
 }  // namespace
 
 const char* to_string(AmendmentKind kind) {
-  constexpr const char* kNames[] = {"pause", "resume", "target"};
+  constexpr const char* kNames[] = {"pause", "resume", "target", "zone"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -79,9 +79,11 @@ bool are_amendments(const Amendments& list, const Mission& mission) {
          named_changes(list.holds) <= list.named && list.recent.size() <= kMaxRecentAmendments &&
          ascend(list.recent, list.named) && ascend(list.targets, list.named) &&
          targets_follow(list.targets) &&
-         std::ranges::all_of(list.targets, [&mission](const TargetChange& change) {
-           return is_target(change.target, change.cosine, mission);
-         });
+         std::ranges::all_of(list.targets,
+                             [&mission](const TargetChange& change) {
+                               return is_target(change.target, change.cosine, mission);
+                             }) &&
+         ascend(list.zones, list.named) && are_zones(list.zones, mission.domain);
 }
 
 Amendments only_pauses(std::vector<Hold> holds) {
@@ -126,6 +128,23 @@ void name_target(Amendments& list, Tick tick, TargetChange change) {
   // The second newest holds until the newest one does.
   if (list.targets.size() > 1) list.targets.erase(list.targets.begin(), list.targets.end() - 1);
   list.targets.push_back(std::move(change));
+}
+
+void name_zone(Amendments& list, Tick tick, Tick notice, Zone zone) {
+  std::erase_if(list.zones, [tick](const Zone& one) { return one.until <= tick; });
+  ERGOCAST_REQUIRE(list.zones.size() < kMaxZones);
+  const Tick lasts = zone.until - zone.from;
+  zone.number = list.named;
+  zone.closed = tick;
+  zone.from = tick + notice;
+  zone.until = zone.from + lasts;
+  name(list, {.kind = AmendmentKind::kZone, .from = zone.from, .hash = zone_hash(zone)});
+  list.zones.push_back(std::move(zone));
+}
+
+std::size_t zones_at(const Amendments& list, Tick tick) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(list.zones, [tick](const Zone& one) { return one.until > tick; }));
 }
 
 }  // namespace ergocast
