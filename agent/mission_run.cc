@@ -66,6 +66,7 @@ void MissionRun::note_roster(const Participant& me) {
   if (own != nullptr && own->recalled()) motion_.prepare_recall(me.mission());
   shift_.note(known.amendments());
   if (shift_.any()) exchange_.allow_shifts();
+  motion_.note_zones(known.amendments().zones, me.mission());
   motion_.note_roster(known.roster());
   if (!known.holds().empty()) held_roster_ = in_counted_ticks(known.roster(), known.holds());
 }
