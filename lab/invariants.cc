@@ -72,6 +72,8 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
   if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) {
     if (!truth_.receive(*part)) return;
     shifted_ = shifted_ || !truth_.amendments().targets.empty();
+    for (const Zone& zone : truth_.amendments().zones)
+      zone_revisions_.try_emplace(zone.number, truth_.revision());
     return check_closed_numbers(t_s);
   }
   if (const auto* command = std::get_if<Command>(&outgoing.message)) {
@@ -88,6 +90,7 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
 
 void Invariants::check(double t_s, const WorldState& world) {
   if (mission_.radio_range_m > 0 && world.header.tick >= last_tick_) note_positions(t_s, world);
+  if (world.header.tick >= last_tick_) check_zones(t_s, world);
   last_tick_ = std::max(last_tick_, world.header.tick);
   if (keeps_distance(mission_)) check_distances(t_s, world);
   check_paused(t_s, world);

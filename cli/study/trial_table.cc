@@ -50,6 +50,7 @@ constexpr Count kCounts[] = {
     {"pauses", "pauses", [](TrialFigures& f) -> std::int64_t& { return f.pauses; }},
     {"recalls", "recalls", [](TrialFigures& f) -> std::int64_t& { return f.recalls; }},
     {"targets", "new targets", [](TrialFigures& f) -> std::int64_t& { return f.targets; }},
+    {"zones", "zones", [](TrialFigures& f) -> std::int64_t& { return f.zones; }},
     {"held_ticks", "ticks held", [](TrialFigures& f) -> std::int64_t& { return f.held_ticks; }},
     {"skewed_clocks", "clocks skewed",
      [](TrialFigures& f) -> std::int64_t& { return f.skewed_clocks; }},
