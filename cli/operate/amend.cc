@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast amend`: gives a running team a new target, or lists what has changed in its mission.
+// `ergocast amend`: gives a running team a new target, sends it out of a zone, or lists what has
+// changed in its mission.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -11,10 +12,13 @@
 #include "cli/operate/team_command.h"
 #include "cli/record/new_target.h"
 #include "cli/watch/find_run.h"
+#include "core/motion/zones.h"
 #include "plan/amendment_list.h"
 #include "runtime/process/shipped_scenarios.h"
 #include "scenario/parse/override_options.h"
+#include "scenario/zone_file.h"
 #include "text/read_number.h"
+#include "text/shortest.h"
 
 namespace ergocast::cli {
 namespace {
@@ -25,8 +29,11 @@ constexpr double kMostDelay_s = 1e7;
 struct AmendOptions : BusOptions {
   std::filesystem::path target;
   Overrides overrides;
-  double delay_s = 0;
+  std::optional<double> delay_s;
   bool dry_run = false, list = false;
+  std::filesystem::path zone;
+  double zone_lasts_s = 0;
+  bool force = false;
 };
 
 class Amending : public TeamCommand {
@@ -38,6 +45,7 @@ class Amending : public TeamCommand {
     if (const auto code = choose_run()) return *code;
     if (const auto code = know_mission()) return *code;
     if (options_.list) return list();
+    if (!options_.zone.empty()) return zone();
     const auto compiled = compile();
     if (!compiled) return kExitBadInput;
     const TargetChange change = target_change_of(*compiled);
@@ -88,25 +96,84 @@ class Amending : public TeamCommand {
     return live.front().run_dir / "scenario.textproto";
   }
 
-  Tick delay() const {
-    return static_cast<Tick>(std::llround(options_.delay_s / team().mission().timing.dt_s));
+  Tick delay() const { return ticks(options_.delay_s.value_or(0)); }
+
+  Tick ticks(double time_s) const {
+    return static_cast<Tick>(std::llround(time_s / team().mission().timing.dt_s));
   }
 
   /// The earliest tick that a coordinator can name now, as far as this command knows.
   Tick earliest() const {
     const Timing& timing = team().mission().timing;
     const Tick notice = timing.pace == Pace::kRealtime ? notice_ticks(timing) : 1;
-    return team().tick() + 1 + notice + delay();
+    return team().tick() + 1 + notice;
+  }
+
+  /// A zone from the file. Prints what is wrong with it.
+  int zone() {
+    const Mission& mission = team().mission();
+    auto loaded = load_zone(options_.zone, zone_context(mission, recorded_scenario()));
+    if (!loaded) return report_error(kExitBadInput, loaded.error());
+    Zone zone = *std::move(loaded);
+    zone.until = std::max<Tick>(1, ticks(options_.zone_lasts_s));
+    std::vector<Zone> others = team().amendments().zones;
+    std::erase_if(others, [this](const Zone& one) { return one.until <= team().tick(); });
+    if (const auto problem = zone_problem(mission, zone, others))
+      return report_error(kExitBadInput, std::vector{Problem{options_.zone.string(), problem->what,
+                                                             problem->remedy}});
+    const Tick least = least_notice_ticks(mission, zone, others);
+    const Tick notice = options_.delay_s ? delay() : least;
+    if (notice < least && !options_.force)
+      return report_error(
+          kExitBadInput,
+          "--at: the agents may need " +
+              shortest(static_cast<double>(least) * mission.timing.dt_s) +
+              " s to leave the zone: name a later time, leave --at out, or add --force and see who "
+              "is inside then");
+    if (!listen()) return interrupted();
+    if (options_.dry_run) return describe(zone, notice);
+    AmendOrder order(zone, notice, now());
+    return order_of(order, [&] { return who_is_inside(zone); });
+  }
+
+  /// Prints who is still in the zone.
+  int who_is_inside(const Zone& zone) const {
+    const std::string inside = inside_text(team(), zone);
+    if (inside.empty()) {
+      std::printf("nobody is in it\n");
+      return kExitDone;
+    }
+    return report_error(kExitFailed, inside);
+  }
+
+  int describe(const Zone& zone, Tick notice) const {
+    const Mission& mission = team().mission();
+    const std::string inside = inside_text(team(), zone);
+    std::printf("no problems: zone %s, %zu corners, for %s s\n", to_hex(zone_hash(zone)).c_str(),
+                zone.corners_m.size(),
+                shortest(static_cast<double>(zone.until) * mission.timing.dt_s).c_str());
+    std::printf("now %s\n", inside.empty() ? "nobody is in it" : inside.c_str());
+    std::printf(
+        "it would be amendment %d, closed at the earliest from %s on, and free %s s later\n",
+        team().amendments().named, team().mission_time(earliest()).c_str(),
+        shortest(static_cast<double>(notice) * mission.timing.dt_s).c_str());
+    std::printf("nothing was sent\n");
+    return kExitDone;
   }
 
   int order(const TargetChange& change) {
     AmendOrder order(change, delay(), now());
+    return order_of(order, [] { return kExitDone; });
+  }
+
+  /// Sends an order until it is obeyed, and then does the rest.
+  int order_of(AmendOrder& order, const auto& then) {
     const auto report = obeyed(order);
     if (!report) return interrupted();
     if (report->state == OrderReport::State::kFailed)
       return report_error(kExitFailed, report->text);
     std::printf("%s\n", report->text.c_str());
-    return kExitDone;
+    return then();
   }
 
   /// Prints what the target would change.
@@ -120,7 +187,7 @@ class Amending : public TeamCommand {
     std::printf("about %.0f %% of its mass is elsewhere than in the target that holds now\n",
                 100 * differs);
     std::printf("it would be amendment %d, at the earliest from %s on\n", list.named,
-                team().mission_time(earliest()).c_str());
+                team().mission_time(earliest() + delay()).c_str());
     std::printf("nothing was sent\n");
     return kExitDone;
   }
@@ -151,6 +218,41 @@ double delay_from(std::string text) {
       "\"" + written + "\" is no time from now on: write +10s for ten seconds of mission time");
 }
 
+/// The seconds of "600s".
+double duration_from(std::string text) {
+  const std::string written = text;
+  if (text.ends_with('s')) text.pop_back();
+  const auto value = read_number<double>(text);
+  if (value && *value > 0 && *value <= kMostDelay_s) return *value;
+  throw CLI::ValidationError(
+      "--for", "\"" + written + "\" is no time: write 600s for ten minutes of mission time");
+}
+
+void add_zone_options(CLI::App& command, AmendOptions& options) {
+  auto* zone =
+      command
+          .add_option("--zone", options.zone,
+                      "A polygon that the team leaves and does not enter, as text, GeoJSON "
+                      "or a drawing")
+          ->check(CLI::ExistingFile)
+          ->type_name("FILE");
+  auto* lasts =
+      command
+          .add_option_function<std::string>(
+              "--for",
+              [&options](const std::string& text) { options.zone_lasts_s = duration_from(text); },
+              "How long the zone lasts from when nobody is inside, in mission time: 600s")
+          ->type_name("TIME");
+  auto* force = command.add_flag(
+      "--force", options.force,
+      "Take an --at that is too early for all to leave the zone; who is inside then is named");
+  zone->needs(lasts);
+  lasts->needs(zone);
+  force->needs(zone);
+  for (const char* other : {"--target", "--set", "--list"})
+    zone->excludes(command.get_option(other));
+}
+
 void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option("--target", options.target,
@@ -164,31 +266,41 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option_function<std::string>(
           "--at", [&options](const std::string& text) { options.delay_s = delay_from(text); },
-          "How much later than necessary it holds, in mission time: +10s")
+          "How much later than necessary a target holds, or how long after it is closed nobody is "
+          "in a "
+          "zone any more, in mission time: +10s")
       ->type_name("+TIME");
   command.add_flag("--dry-run", options.dry_run,
-                   "Only check the target and show what would change; send nothing");
+                   "Only check the target or zone and show what would change; send nothing");
   auto* list = command.add_flag("--list", options.list, "List what has changed in the mission");
   for (const char* other : {"--target", "--set", "--at", "--dry-run"})
     list->excludes(command.get_option(other));
+  add_zone_options(command, options);
 }
 
 }  // namespace
 
 void add_amend(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("amend", "Give a running team a new target");
+  auto* command =
+      app.add_subcommand("amend", "Give a running team a new target, or send it out of a zone");
   auto options = std::make_shared<AmendOptions>();
   add_target_options(*command, *options);
   add_bus_options(*command, *options);
   describe_search(*command);
   command->footer(
       "From a tick that the coordinator names, all agents cover the new target. What they covered\n"
-      "before counts against the target of its time.\n"
-      "Exit codes: 0 the new target holds; 2 the target has problems, or several runs are found;\n"
-      "3 LCM cannot be used; 4 no team is found, or it was not seen to obey.");
+      "before counts against the target of its time. A zone is closed at once: nobody enters it, "
+      "and\n"
+      "who is inside leaves it by the shortest way, until nobody is inside at the named tick.\n"
+      "Exit codes: 0 the new target holds, or nobody is in the zone; 2 the file has problems, or\n"
+      "several runs are found; 3 LCM cannot be used; 4 no team is found, it was not seen to obey, "
+      "or\n"
+      "agents are in the zone.");
   command->callback([&action, options, command] {
-    const bool has_target = !options->target.empty() || !options->overrides.fields.empty();
-    if (!has_target && !options->list) throw CLI::RequiredError("--target, --set or --list");
+    const bool has_target =
+        !options->target.empty() || !options->overrides.fields.empty() || !options->zone.empty();
+    if (!has_target && !options->list)
+      throw CLI::RequiredError("--target, --set, --zone or --list");
     action = [options, command] {
       if (const auto code = find_run(*command, *options)) return *code;
       return Amending(*options).carry_out();

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
+#include "core/motion/zones.h"
 #include "plan/amendment_list.h"
 #include "runtime/bus/random_identity.h"
 #include "team/amend_parts.h"
@@ -27,6 +29,8 @@ std::string kind_text(const Amendment& amendment) {
       return "a pause";
     case AmendmentKind::kResume:
       return "the end of a pause";
+    case AmendmentKind::kZone:
+      return "zone " + to_hex(amendment.hash);
     default:
       return "target " + to_hex(amendment.hash);
   }
@@ -44,12 +48,41 @@ std::string waiting_text(const MonitoredRun& team, const TargetChange& waiting) 
          ": repeat the order then";
 }
 
+/// Why no further zone can be in force; nothing if one can.
+std::optional<std::string> why_no_place(const MonitoredRun& team) {
+  if (zones_at(team.amendments(), team.tick()) < kMaxZones) return std::nullopt;
+  Tick first = std::numeric_limits<Tick>::max();
+  for (const Zone& zone : team.amendments().zones)
+    if (zone.until > team.tick()) first = std::min(first, zone.until);
+  return std::to_string(kMaxZones) + " zones are in force, and there can be no more at a time: " +
+         "repeat the order when the first of them has ended, at " + team.mission_time(first);
+}
+
+/// ", closed since tick 500, t = 50.0 s, until tick 900, t = 90.0 s".
+std::string zone_ticks_text(const MonitoredRun& team, std::int32_t number) {
+  for (const Zone& zone : team.amendments().zones) {
+    if (zone.number != number) continue;
+    const bool closed = team.tick() >= zone.closed, ended = team.tick() >= zone.until;
+    return (closed ? ", closed since " : ", closed from ") + team.mission_time(zone.closed) +
+           (ended ? ", ended at " : ", until ") + team.mission_time(zone.until);
+  }
+  return "";
+}
+
 }  // namespace
 
 AmendOrder::AmendOrder(const TargetChange& target, Tick delay, Instant now)
     : content_(encode_target(target)),
       hash_(target_hash(target)),
       delay_(delay),
+      header_{0, kOperator, random_identity(), 0, 0},
+      since_(now) {}
+
+AmendOrder::AmendOrder(const Zone& zone, Tick notice, Instant now)
+    : kind_(AmendmentKind::kZone),
+      content_(encode_zone(zone)),
+      hash_(zone_hash(zone)),
+      delay_(notice),
       header_{0, kOperator, random_identity(), 0, 0},
       since_(now) {}
 
@@ -79,8 +112,7 @@ void AmendOrder::send_parts(const MonitoredRun& team, Outbox& out) {
   ++header_.sequence;
   header_.run = team.run();
   header_.tick = team.tick();
-  const Amend wish{
-      .header = header_, .number = *number_, .kind = AmendmentKind::kTarget, .delay_ticks = delay_};
+  const Amend wish{.header = header_, .number = *number_, .kind = kind_, .delay_ticks = delay_};
   for (Amend& part : in_parts(wish, content_)) {
     header_.sequence = part.header.sequence;
     out.push_back({Bus::kSwarm, std::move(part)});
@@ -95,6 +127,7 @@ std::optional<std::string> AmendOrder::why_impossible(const MonitoredRun& team) 
   if (delay_ >= team.ticks_left())
     return "the mission ends before that, at " +
            team.mission_time(team.tick() + team.ticks_left()) + ": name an earlier time";
+  if (kind_ == AmendmentKind::kZone) return why_no_place(team);
   const TargetChange* const waiting = waiting_target(team);
   const std::chrono::duration<double> patience = kAnswerPatience;
   if (waiting == nullptr || team.seconds_until(waiting->from) < patience.count())
@@ -113,14 +146,15 @@ OrderReport AmendOrder::report(const MonitoredRun& team, Instant now) const {
 OrderReport AmendOrder::unnamed(const MonitoredRun& team, Instant now) const {
   if (now - since_ < kAnswerPatience || sent_ < kLeastSent)
     return {State::kSent, "the coordinator has not answered yet"};
-  if (const TargetChange* const waiting = waiting_target(team))
+  const TargetChange* const waiting = waiting_target(team);
+  if (waiting != nullptr && kind_ == AmendmentKind::kTarget)
     return {State::kFailed, waiting_text(team, *waiting)};
   return {State::kFailed, why_no_tick(team)};
 }
 
 OrderReport AmendOrder::named(const MonitoredRun& team) const {
   const std::string text = amendment_text(team, *amendment_);
-  if (amendment_->kind != AmendmentKind::kTarget || amendment_->hash != hash_)
+  if (amendment_->kind != kind_ || amendment_->hash != hash_)
     return {State::kFailed, "another operator was first: " + text +
                                 ". This order had no effect: repeat it if it is still wanted"};
   if (team.tick() >= amendment_->from) return {State::kDone, text};
@@ -132,7 +166,19 @@ std::string amendment_text(const MonitoredRun& team, const Amendment& amendment)
   const bool holds = team.tick() >= amendment.from;
   return "amendment " + std::to_string(amendment.number) + ", " + kind_text(amendment) +
          (holds ? ", holds since " : ", holds from ") + team.mission_time(amendment.from) +
-         (holds ? "" : in_seconds(team.seconds_until(amendment.from)));
+         (holds ? "" : in_seconds(team.seconds_until(amendment.from))) +
+         zone_ticks_text(team, amendment.number);
+}
+
+std::string inside_text(const MonitoredRun& team, const Zone& zone) {
+  std::vector<AgentId> inside;
+  for (const auto& [id, x_m] : team.places_m())
+    if (is_inside(zone, x_m)) inside.push_back(id);
+  if (inside.empty()) return "";
+  std::string text = inside.size() == 1 ? "agent " : "agents ";
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == inside.size() ? " and " : ", ") + std::to_string(inside[i]);
+  return text + (inside.size() == 1 ? " is" : " are") + " in it";
 }
 
 }  // namespace ergocast::cli

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// New targets that a simulated coordinator knows from the beginning: `ergocast simulate --amend`.
+// New targets and zones that a simulated coordinator knows from the beginning: `ergocast simulate
+// --amend`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,14 +16,15 @@ namespace ergocast::cli {
 struct PlannedTarget {
   double t_s = 0;  ///< mission time from which it holds
   std::filesystem::path file;
-  std::string flag;  ///< as written, for problems
+  std::string flag;                              ///< as written, for problems
+  std::optional<double> lasts_s = std::nullopt;  ///< of a zone; nothing: until the end, or a target
 };
 
-/// --amend T:FILE.
+/// --amend T:FILE, and T+TIME:FILE for a zone.
 CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedTarget>& planned);
 
-/// The amendments with these targets. If a target or its time has a problem, prints it and returns
-/// nothing.
+/// The amendments with these targets and zones. If one of them or its time has a problem, prints it
+/// and returns nothing.
 /// @param file  of the scenario, which has its origin
 std::optional<Amendments> amendments_with(const std::vector<PlannedTarget>& planned,
                                           const Scenario& scenario,

@@ -64,7 +64,8 @@ void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
   note_end(arrival, world.last);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     VehicleSeen& seen = vehicles_[vehicle.id];
-    if (world.header.tick >= seen.tick) seen = {world.header.tick, vehicle.velocity_mps};
+    if (world.header.tick >= seen.tick)
+      seen = {world.header.tick, vehicle.velocity_mps, vehicle.position_m};
   }
 }
 
@@ -89,6 +90,12 @@ bool MonitoredRun::unheard() const {
 bool MonitoredRun::stands_still() const {
   const Standing vehicles = standing();
   return vehicles.standing == vehicles.all;
+}
+
+std::map<AgentId, Eigen::Vector3d> MonitoredRun::places_m() const {
+  std::map<AgentId, Eigen::Vector3d> places;
+  for (const auto& [id, vehicle] : vehicles_) places[id] = vehicle.position_m;
+  return places;
 }
 
 MonitoredRun::Standing MonitoredRun::standing() const {

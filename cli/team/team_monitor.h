@@ -82,6 +82,8 @@ class MonitoredRun {
     std::vector<std::string> moving;  ///< the others: "agent 2"
   };
   Standing standing() const;
+  /// Where each vehicle is in the newest state that names it [m].
+  std::map<AgentId, Eigen::Vector3d> places_m() const;
 
   /// Processes that are not silent and have not reported their end: "agent 2", "the world".
   std::vector<std::string> still_there(Instant now) const;
@@ -113,6 +115,7 @@ class MonitoredRun {
   struct VehicleSeen {
     Tick tick = -1;
     Eigen::Vector3d velocity_mps{0, 0, 0};
+    Eigen::Vector3d position_m{0, 0, 0};
   };
 
   Participant me_;

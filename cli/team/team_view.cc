@@ -238,6 +238,8 @@ TeamPicture TeamView::picture(Instant now) const {
   picture.holds.assign(follower().holds().begin(), follower().holds().end());
   if (const auto* change = target_at(follower().amendments().targets, picture.tick))
     picture.target = {change->number, AmendmentKind::kTarget, change->from, target_hash(*change)};
+  for (const Zone& zone : follower().amendments().zones)
+    if (zone.closed_at(picture.tick)) picture.zones.push_back(zone);
   picture.counted = counted_ticks(follower().holds(), picture.tick);
   picture.paused =
       !over() && (follower().mission() ? is_held(follower().holds(), picture.tick) : team_paused_);

@@ -62,6 +62,7 @@ struct TeamPicture {
   bool paused = false;                ///< `tick` does not count
   std::vector<Hold> holds;            ///< all that MISSION names
   std::optional<Amendment> target;    ///< which target holds at `tick`; nothing: the plan's
+  std::vector<Zone> zones;            ///< those that are closed at `tick`
   double dt_s = 0;
   std::optional<double> ergodic_metric;  ///< median of the agents' values, in cosines or …
   bool free_domain = false;              ///< … in the modes of the free domain
