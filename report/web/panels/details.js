@@ -132,7 +132,7 @@ function table(columns, objects) {
 
 const AMENDMENT_COLUMNS = [
   ['amendment', 'number', 'Its number in the mission'],
-  ['kind', 'kind', 'What it changes: a pause begins or ends, or the target is another one'],
+  ['kind', 'kind', 'What it changes: a pause begins or ends, the target is another one, or a zone is free'],
   ['from tick', 'from', 'The first tick of the world at which it holds'],
   ['t [s]', 't', 'Mission time at that tick'],
 ];
