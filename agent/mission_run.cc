@@ -67,6 +67,7 @@ void MissionRun::note_roster(const Participant& me) {
   ends_.note(known.amendments());
   shift_.note(known.amendments());
   if (shift_.any_of_samples()) exchange_.allow_shifts();
+  motion_.note_zones(known.amendments().zones, me.mission());
   motion_.note_roster(known.roster());
   if (!known.holds().empty()) held_roster_ = in_counted_ticks(known.roster(), known.holds());
 }

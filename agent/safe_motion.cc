@@ -21,14 +21,17 @@ void BlockedTicks::note(const SafeVelocity& safe) {
 SafeMotion::SafeMotion(const Mission& mission, const Author& self, std::int64_t revision)
     : id_(self.agent),
       bodies_(mission, self, revision),
+      filters_(filters_commands(mission, id_)),
       has_station_(station_of(mission, self.agent).has_value()) {
-  if (filters_commands(mission, id_)) separation_.emplace(mission, unguarded_hold_ticks(mission));
+  if (filters_) separation_.emplace(mission, unguarded_hold_ticks(mission));
   if (follows_walls(mission)) wall_follower_.emplace(mission, id_);
   if (has_station_) way_home_.emplace(mission, id_);
 }
 
 void SafeMotion::prepare_recall(const Mission& mission) {
-  if (!way_home_ && home_of(mission, id_)) way_home_.emplace(mission, id_);
+  if (way_home_ || !home_of(mission, id_)) return;
+  way_home_.emplace(mission, id_);
+  way_home_->note_zones(mission, zones_in_use_);
 }
 
 bool SafeMotion::is_home(const Mission& mission, const Eigen::Vector3d& x_m) const {
@@ -37,7 +40,46 @@ bool SafeMotion::is_home(const Mission& mission, const Eigen::Vector3d& x_m) con
 }
 
 void SafeMotion::on(const WorldState& world) {
-  if (separation_) bodies_.on(world);
+  if (filters_) bodies_.on(world);
+}
+
+/// A vehicle that no mission filters has no edges but those that reflect: its filter needs no hold.
+void SafeMotion::note_zones(const std::vector<Zone>& zones, const Mission& mission) {
+  if (zones == zones_) return;
+  zones_ = zones;
+  if (!separation_) separation_.emplace(mission, 0);
+  separation_->set_zones(zones_);
+}
+
+/// Zones close and end between two lists, too.
+void SafeMotion::use_zones(Tick tick, const Mission& mission) {
+  const auto in_use = [&](const Zone& zone) {
+    return std::ranges::find(zones_in_use_, zone) != zones_in_use_.end();
+  };
+  const auto count =
+      std::ranges::count_if(zones_, [&](const Zone& zone) { return zone.closed_at(tick); });
+  const bool same =
+      count == std::ssize(zones_in_use_) && std::ranges::all_of(zones_, [&](const Zone& zone) {
+        return zone.closed_at(tick) == in_use(zone);
+      });
+  if (same) return;
+  zones_in_use_.clear();
+  for (const Zone& zone : zones_) {
+    if (zone.closed_at(tick)) zones_in_use_.push_back(zone);
+  }
+  way_out_.reset();
+  if (way_home_) way_home_->note_zones(mission, zones_in_use_);
+}
+
+/// The velocity that leads out of zones, if the vehicle must leave one.
+std::optional<Eigen::Vector3d> SafeMotion::way_out_mps(const AgentStep& step,
+                                                       const Participant& me) {
+  if (zones_in_use_.empty()) return std::nullopt;
+  const Motion motion = motion_of(me.mission(), id_);
+  const StraightWay holding = holding_way(motion, step.body_m, step.body_mps);
+  if (!must_leave(zones_in_use_, step.tick, me.mission(), motion, holding)) return std::nullopt;
+  if (!way_out_) way_out_.emplace(me.mission(), id_, zones_in_use_);
+  return way_out_->velocity_mps(step.tick, step.body_m, step.body_mps);
 }
 
 void SafeMotion::note_roster(const std::vector<RosterEntry>& roster) {
@@ -56,8 +98,11 @@ void SafeMotion::note_roster(const std::vector<RosterEntry>& roster) {
 
 Eigen::Vector3d SafeMotion::command_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
                                         const Participant& me) {
-  const Eigen::Vector3d aim = aim_mps(wanted_mps, step, me);
-  if (!separation_) return aim;
+  if (!zones_.empty() || !zones_in_use_.empty()) use_zones(step.tick, me.mission());
+  const auto way_out = way_out_mps(step, me);
+  leaves_ = way_out.has_value();
+  const Eigen::Vector3d aim = leaves_ ? *way_out : aim_mps(wanted_mps, step, me);
+  if (!filters_ && zones_in_use_.empty()) return aim;
   const SafeVelocity command = safe(aim, step, me);
   if (wall_follower_) wall_follower_->note(command.wall);
   blocked_.note(command);
@@ -105,6 +150,11 @@ Mover SafeMotion::mover(const AgentStep& step, const Participant& me) const {
 
 SafeVelocity SafeMotion::safe(const Eigen::Vector3d& aim_mps, const AgentStep& step,
                               const Participant& me) {
+  if (!filters_) {
+    Mover self = mover(step, me);
+    self.max_speed_mps = limit_or_speed_mps(self.max_speed_mps, aim_mps);
+    return separation_->safe(self, aim_mps, {});
+  }
   const auto others = bodies_.neighbours(step, me);
   if (!others) return {.blocked = true, .blind = true};
   return separation_->safe(mover(step, me), aim_mps, *others);

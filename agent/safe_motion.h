@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the velocity that the law wants to the command of the vehicle, in four steps:
+// From the velocity that the law wants to the command of the vehicle, in five steps:
 //
+// 0. who is in a zone (core/motion/zones.h) leaves it, whatever else holds, even in a pause;
 // 1. the way home takes the law's place, once it has begun (core/motion/way_home.h), also for an
 //    agent that was recalled; one that has no home stays where it is. The way leads round bodies
 //    that no agent drives, as those of agents that were sent out;
@@ -23,9 +24,11 @@
 #include "core/base/ids.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
+#include "core/mission/zones.h"
 #include "core/motion/separation.h"
 #include "core/motion/wall_following.h"
 #include "core/motion/way_home.h"
+#include "core/motion/way_out.h"
 #include "team/messages.h"
 #include "team/participant.h"
 
@@ -48,13 +51,15 @@ class SafeMotion {
   void on(const WorldState& world);
   /// Takes in which bodies an agent drives. No other call allocates memory for it.
   void note_roster(const std::vector<RosterEntry>& roster);
+  /// Takes in the zones of the newest list.
+  void note_zones(const std::vector<Zone>& zones, const Mission& mission);
   TeamBodies& bodies() { return bodies_; }
   const TeamBodies& bodies() const { return bodies_; }
 
   /// Whether commands are filtered. The vehicle may then be outside of the domain.
-  bool filters() const { return separation_.has_value(); }
+  bool filters() const { return filters_; }
   /// Whether a tick can be answered: only once the position of every body is known.
-  bool knows_bodies(Tick tick) const { return !separation_ || bodies_.complete(tick); }
+  bool knows_bodies(Tick tick) const { return !filters_ || bodies_.complete(tick); }
 
   /// Takes in from which counted tick on an agent with a station rests.
   void set_rest(Tick counted) {
@@ -72,9 +77,13 @@ class SafeMotion {
   /// begin or go on.
   Eigen::Vector3d command_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
                               const Participant& me);
+  /// Whether it leaves a zone.
+  bool leaves_zone() const { return leaves_; }
   const BlockedTicks& blocked() const { return blocked_; }
 
  private:
+  std::optional<Eigen::Vector3d> way_out_mps(const AgentStep& step, const Participant& me);
+  void use_zones(Tick tick, const Mission& mission);
   bool goes_home(const AgentStep& step);
   Eigen::Vector3d aim_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
                           const Participant& me);
@@ -84,7 +93,12 @@ class SafeMotion {
 
   AgentId id_;
   TeamBodies bodies_;
-  std::optional<SeparationFilter> separation_;
+  bool filters_;                                // always, not only while there are zones
+  std::optional<SeparationFilter> separation_;  // if it filters, or zones were announced
+  std::vector<Zone> zones_;                     // of the list
+  std::vector<Zone> zones_in_use_;              // those that are closed
+  std::optional<WayOut> way_out_;               // of these; made when it is first needed
+  bool leaves_ = false;
   std::optional<WallFollower> wall_follower_;  // where there are walls
   bool has_station_;
   std::optional<WayHome> way_home_;  // if it has a station, or was recalled and has a home

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/motion/zones.h"
 #include "plan/amendment_list.h"
 
 namespace ergocast {
@@ -17,6 +18,8 @@ constexpr std::size_t kMostOperators = 4;
 
 /// Lockstep: how many ticks after the world's tick an amendment holds.
 constexpr Tick kLockstepNotice = 2;
+/// For so long a refused zone is not looked at again.
+constexpr Tick kSameAnswerTicks = 20;
 
 /// Real time: the tick after the notice. It counts from the newest tick that the world can be at.
 /// Nothing while the world is silent, because that tick is then unknown; the operator asks again.
@@ -42,6 +45,10 @@ void Amending::plan(Amendments list) {
     planned_.assign(all.begin() + kListed, all.end());
     list.targets.resize(kListed);
   }
+  if (list.zones.size() > kMaxZones) {
+    planned_zones_.assign(list.zones.begin() + kMaxZones, list.zones.end());
+    list.zones.resize(kMaxZones);
+  }
   replace(std::move(list));
 }
 
@@ -50,9 +57,10 @@ void Amending::adopt(const Amendments& known) {
 }
 
 /// Whether the next amendment may be of this kind and number.
-bool Amending::may_name(const Amend& amend) const {
+bool Amending::may_name(const Amend& amend, const TickWatch& ticks) const {
   if (stand_by_revision_ >= 0 || amend.number != list_.named) return false;
-  if (list_.named >= kMaxAmendments || !planned_.empty()) return false;
+  if (list_.named >= kMaxAmendments || !planned_.empty() || !planned_zones_.empty()) return false;
+  if (amend.kind == AmendmentKind::kZone) return zones_at(list_, ticks.newest()) < kMaxZones;
   if (amend.kind == AmendmentKind::kPause)
     return !is_open(list_.holds) && list_.holds.size() < kMaxHolds;
   if (amend.kind == AmendmentKind::kResume) return is_open(list_.holds);
@@ -82,22 +90,6 @@ std::optional<std::vector<std::byte>> Amending::completed(const Amend& amend) {
   return content;
 }
 
-/// Whether the content of a wish has arrived and is one of the mission; if so, reads it.
-bool Amending::read_content(const Amend& amend, const Mission& mission, Wish& wish) {
-  const bool is_target = wish.kind == AmendmentKind::kTarget;
-  if (!is_target && wish.kind != AmendmentKind::kEnd) return true;
-  const auto content = completed(amend);
-  if (!content) return false;
-  if (is_target) {
-    auto target = decode_target(*content, mission);
-    if (target) wish.target = *std::move(target);
-    return target.has_value();
-  }
-  const auto tick_count = decode_end(*content, mission);
-  wish.tick_count = tick_count.value_or(0);
-  return tick_count.has_value();
-}
-
 /// Whether a target can be named from a tick on. Only two targets travel, the one that holds and
 /// the next. A target that waits can be replaced by the one that holds.
 bool Amending::may_follow(const TargetChange& target, const Mission& mission, Tick newest,
@@ -123,16 +115,48 @@ bool Amending::possible(const Wish& wish, const Mission& mission, Tick newest, T
 void Amending::obey(const Amend& amend, const Mission& mission, const TickWatch& ticks,
                     const Team& team, Announcement& announcement) {
   const Tick end = tick_after(list_.holds, tick_count_of(mission.timing, list_.ends));
-  if (!may_name(amend) || ticks.newest() + amend.delay_ticks >= end) return;
-  Wish wish{.kind = amend.kind, .delay_ticks = amend.delay_ticks};
-  if (!read_content(amend, mission, wish)) return;
+  if (!may_name(amend, ticks) || ticks.newest() + amend.delay_ticks >= end) return;
+  auto wish = wish_of(amend, mission, ticks.newest());
+  if (!wish) return;
   const bool realtime = mission.timing.pace == Pace::kRealtime;
   const auto tick = realtime ? tick_with_notice(mission.timing, ticks, team.signs)
                              : std::optional(ticks.newest() + kLockstepNotice);
-  if (!tick || !possible(wish, mission, ticks.newest(), *tick + wish.delay_ticks, team)) return;
-  if (realtime) return name(*tick, std::move(wish), announcement);
+  if (!tick || !possible(*wish, mission, ticks.newest(), *tick + wish->delay_ticks, team)) return;
+  if (realtime) return name(*tick, *std::move(wish), announcement);
   wish_ = std::move(wish);
   stand_by(announcement);
+}
+
+/// What an AMEND wants, once its content is whole; nothing if that is not possible.
+std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Mission& mission,
+                                                Tick now) {
+  Wish wish{.kind = amend.kind, .delay_ticks = amend.delay_ticks};
+  const bool has_content = wish.kind >= AmendmentKind::kTarget;
+  const auto content = has_content ? completed(amend) : std::nullopt;
+  if (has_content && !content) return std::nullopt;
+  if (wish.kind == AmendmentKind::kTarget) {
+    auto target = decode_target(*content, mission);
+    if (!target) return std::nullopt;
+    wish.target = *std::move(target);
+  }
+  if (wish.kind == AmendmentKind::kEnd) {
+    const auto tick_count = decode_end(*content, mission);
+    if (!tick_count) return std::nullopt;
+    wish.tick_count = *tick_count;
+  }
+  if (wish.kind == AmendmentKind::kZone) {
+    const auto& [refused, since] = refused_zone_;
+    if (*content == refused && now < since + kSameAnswerTicks) return std::nullopt;
+    auto zone = decode_zone(*content, mission.domain);
+    std::vector<Zone> others = list_.zones;
+    std::erase_if(others, [now](const Zone& other) { return other.until <= now; });
+    if (!zone || zone_problem(mission, *zone, others)) {
+      refused_zone_ = {*content, now};
+      return std::nullopt;
+    }
+    wish.zone = *std::move(zone);
+  }
+  return wish;
 }
 
 void Amending::stand_by(Announcement& announcement) {
@@ -143,12 +167,11 @@ void Amending::stand_by(Announcement& announcement) {
 void Amending::note_world(const Mission& mission, const TickWatch& ticks, const Team& team,
                           Announcement& announcement) {
   if (stand_by_revision_ < 0) {
-    const bool last_holds = !planned_.empty() && list_.targets.back().from <= ticks.newest();
-    if (last_holds) stand_by(announcement);
+    if (target_is_due(ticks.newest()) || zone_is_due(ticks.newest())) stand_by(announcement);
     return;
   }
   if (ticks.world_revision() < stand_by_revision_) return;
-  if (!wish_) return list_next(announcement);
+  if (!wish_) return list_next(ticks.newest(), announcement);
   // The world goes on once it knows the named tick. No agent answers the next tick before that.
   Wish wish = *std::exchange(wish_, std::nullopt);
   const Tick tick = ticks.tick() + kLockstepNotice;
@@ -158,18 +181,39 @@ void Amending::note_world(const Mission& mission, const TickWatch& ticks, const 
   announcement.change();
 }
 
-/// Lists the next planned target in the place of one that holds no longer.
-void Amending::list_next(Announcement& announcement) {
+/// Whether a planned target can have the place of one that holds no longer.
+bool Amending::target_is_due(Tick now) const {
+  return !planned_.empty() && list_.targets.back().from <= now;
+}
+
+/// Whether a planned zone can have the place of one that has ended.
+bool Amending::zone_is_due(Tick now) const {
+  return !planned_zones_.empty() && zones_at(list_, now) < kMaxZones;
+}
+
+void Amending::list_next(Tick now, Announcement& announcement) {
   stand_by_revision_ = -1;
-  list_.targets.erase(list_.targets.begin());
-  list_.targets.push_back(std::move(planned_.front()));
-  planned_.pop_front();
+  if (target_is_due(now)) {
+    list_.targets.erase(list_.targets.begin());
+    list_.targets.push_back(std::move(planned_.front()));
+    planned_.pop_front();
+  }
+  if (zone_is_due(now)) {
+    std::erase_if(list_.zones, [now](const Zone& one) { return one.until <= now; });
+    list_.zones.push_back(std::move(planned_zones_.front()));
+    planned_zones_.pop_front();
+  }
   bytes_ = encode_amendments(list_);
   announcement.change();
 }
 
 void Amending::name(Tick tick, Wish wish, Announcement& announcement) {
   stand_by_revision_ = -1;
+  if (wish.kind == AmendmentKind::kZone) {
+    name_zone(list_, tick, wish.delay_ticks, std::move(wish.zone));
+    bytes_ = encode_amendments(list_);
+    return announcement.change();
+  }
   tick += wish.delay_ticks;
   if (wish.kind == AmendmentKind::kTarget) {
     const bool waits = !list_.targets.empty() && list_.targets.back().from >= tick;

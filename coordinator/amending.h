@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names the amendments of the mission: pauses, new targets, and other ends, each with the tick from
-// which it holds (core/mission/amendments.h).
+// Names the amendments of the mission: pauses, new targets, other ends and zones, each with the tick
+// from which it holds (core/mission/amendments.h).
 //
 // All agents must change at the same tick. In lockstep the world first stands by: it stays at a
 // tick until it knows which one is named. In real time the team gets notice.
@@ -40,7 +40,8 @@ class Amending {
   std::int64_t stand_by_revision() const { return stand_by_revision_; }
 
   /// The amendments that are known from the beginning. In lockstep there may be any number of
-  /// targets: the list has two at a time, as if an operator had sent each once the last one holds.
+  /// targets and zones: the list has two targets and kMaxZones zones at a time, as if an operator
+  /// had sent each once there was a place.
   /// @pre are_amendments(list)
   void plan(Amendments list);
   /// Takes in the list of another coordinator, if it has named more amendments than we know. Agents
@@ -48,8 +49,8 @@ class Amending {
   void adopt(const Amendments& known);
   /// Obeys a wish of the operator, once all its parts have arrived. It has no effect if it does not
   /// follow the newest amendment, or another one waits for its tick, or the list is full, or the
-  /// content is none of `mission`, or it would hold after the mission's end, or EndRules refuse it,
-  /// or the tick of the world is unknown in real time.
+  /// content is none of `mission`, or no possible zone, or it would hold after the mission's end, or
+  /// EndRules refuse it, or the tick of the world is unknown in real time.
   /// @pre the mission runs
   void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks, const Team& team,
             Announcement& announcement);
@@ -65,6 +66,7 @@ class Amending {
     Tick delay_ticks = 0;
     TargetChange target{};  // of kTarget
     Tick tick_count = 0;    // of kEnd
+    Zone zone{};            // of kZone
   };
   /// The parts of one AMEND that have arrived.
   struct Collected {
@@ -73,14 +75,16 @@ class Amending {
     std::vector<std::optional<std::vector<std::byte>>> parts{};
   };
 
-  bool may_name(const Amend& amend) const;
-  bool read_content(const Amend& amend, const Mission& mission, Wish& wish);
+  bool may_name(const Amend& amend, const TickWatch& ticks) const;
+  std::optional<Wish> wish_of(const Amend& amend, const Mission& mission, Tick now);
   bool may_follow(const TargetChange& target, const Mission& mission, Tick newest, Tick from) const;
   bool possible(const Wish& wish, const Mission& mission, Tick newest, Tick from, const Team& team);
   std::optional<std::vector<std::byte>> completed(const Amend& amend);
   void stand_by(Announcement& announcement);
   void name(Tick tick, Wish wish, Announcement& announcement);
-  void list_next(Announcement& announcement);
+  bool target_is_due(Tick now) const;
+  bool zone_is_due(Tick now) const;
+  void list_next(Tick now, Announcement& announcement);
   void replace(Amendments list);
 
   Amendments list_;
@@ -90,6 +94,9 @@ class Amending {
   std::optional<Wish> wish_;
   EndRules end_rules_;
   std::deque<TargetChange> planned_;  // the targets that the list does not have yet
+  std::deque<Zone> planned_zones_;    // the same of zones
+  // The last zone that was refused, and when, so that a repeated one costs no search.
+  std::pair<std::vector<std::byte>, Tick> refused_zone_;
 };
 
 }  // namespace ergocast

@@ -115,7 +115,7 @@ class MissionLog {
   MissionState state_ = MissionState::kWaiting;
   static const char* effect_of(AmendmentKind kind) {
     constexpr const char* kEffects[] = {"is paused", "counts", "has another target",
-                                        "has another end"};
+                                        "has another end", "is out of a zone"};
     return kEffects[static_cast<int>(kind)];
   }
 

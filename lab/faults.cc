@@ -40,6 +40,7 @@ constexpr FaultField kFields[] = {
     {"clock_offset_max_s", &Faults::clock_offset_max_s, 1e8},
     {"swarm_bus_only", &Faults::swarm_bus_only, 1},
     {"lasting_share", &Faults::lasting_share, 1},
+    {"zones_per_s", &Faults::zones_per_s, 1},
 };
 
 /// Random streams, so that one kind of fault does not change what another draws.
@@ -52,7 +53,8 @@ enum Stream : std::uint32_t {
   kOperator,
   kRecalls,
   kTargets,
-  kEnds
+  kEnds,
+  kZones
 };
 
 }  // namespace
@@ -106,6 +108,7 @@ Faults drawn(std::uint64_t seed) {
   }
   if (random.coin()) faults.targets_per_s = random.log_uniform(0.03, 0.3);
   if (random.coin()) faults.ends_per_s = random.log_uniform(0.02, 0.1);
+  if (random.coin()) faults.zones_per_s = random.log_uniform(0.03, 0.2);
   return faults;
 }
 
@@ -114,6 +117,15 @@ bool spares_the_record(const Faults& f) {
                         f.reordering > 0 || f.clogging > 0 || f.replay > 0;
   return f.partitions_per_s <= 0 && f.world_crashes_per_s <= 0 &&
          (!messages || f.swarm_bus_only > 0);
+}
+
+bool only_wishes(const Faults& f) {
+  const bool messages = f.loss > 0 || f.duplication > 0 || f.corruption > 0 || f.delay_mean_s > 0 ||
+                        f.reordering > 0 || f.clogging > 0 || f.replay > 0;
+  const bool processes = f.partitions_per_s > 0 || f.agent_crashes_per_s > 0 ||
+                         f.coordinator_crashes_per_s > 0 || f.world_crashes_per_s > 0;
+  const bool clocks = f.clock_rate_error > 0 || f.clock_offset_max_s > 0;
+  return !messages && !processes && !clocks && !(f.departure_share > 0);
 }
 
 bool hinders(const Faults& f, double patience_s) {
@@ -160,6 +172,8 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
        [](RandomStream& random) { return std::pair(kTarget, random.word()); });
   draw(kEnds, faults.ends_per_s, 0,
        [](RandomStream& random) { return std::pair(kEnd, random.word()); });
+  draw(kZones, faults.zones_per_s, 0,
+       [](RandomStream& random) { return std::pair(kZone, random.word()); });
   std::stable_sort(all.begin(), all.end(),
                    [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;

@@ -37,6 +37,7 @@ struct Faults {
   double ends_per_s = 0;          ///< an operator gives the mission another end
   double recalls_per_s = 0;       ///< an operator sends an agent home, …
   double departure_share = 0;     ///< … or, with this share of recalls, out of the mission
+  double zones_per_s = 0;         ///< an operator sends the team out of a zone
   double downtime_max_s = 0;      ///< until a crashed process is started again, uniform
   double clock_rate_error = 0;    ///< a process's clock runs at a rate of 1 ± so much, uniform
   double clock_offset_max_s = 0;  ///< and started up to so long before, uniform
@@ -48,6 +49,9 @@ struct Faults {
 
 /// Whether no fault affects the world, the logger, or messages between them.
 bool spares_the_record(const Faults& faults);
+
+/// Whether nothing goes wrong, and the operator sends no agent out of the mission.
+bool only_wishes(const Faults& faults);
 
 /// Whether faults of messages alone may keep an answer away for as long as `patience_s`.
 bool hinders(const Faults& faults, double patience_s);
@@ -76,13 +80,14 @@ struct FaultEvent {
     kRecall,
     kDeparture,
     kTarget,
-    kEnd
+    kEnd,
+    kZone
   };
   Kind kind;
   double at_s;  ///< after the start of the mission
   double lasts_s;
   std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall:
-                      ///< which agent; target or end: which one
+                      ///< which agent; target, end or zone: which one
 };
 
 /// The events of `horizon_s` seconds, by time.

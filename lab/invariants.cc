@@ -78,6 +78,8 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
     if (!truth_.receive(*part)) return;
     const Amendments& list = truth_.amendments();
     shifted_ = shifted_ || !list.targets.empty() || !list.ends.empty();
+    for (const Zone& zone : list.zones)
+      zone_revisions_.try_emplace(zone.number, truth_.revision());
     note_ends();
     return check_closed_numbers(t_s);
   }
@@ -95,6 +97,7 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
 
 void Invariants::check(double t_s, const WorldState& world) {
   if (mission_.radio_range_m > 0 && world.header.tick >= last_tick_) note_positions(t_s, world);
+  if (world.header.tick >= last_tick_) check_zones(t_s, world);
   last_tick_ = std::max(last_tick_, world.header.tick);
   if (keeps_distance(mission_)) check_distances(t_s, world);
   check_paused(t_s, world);

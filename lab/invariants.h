@@ -36,6 +36,8 @@ enum class Invariant : std::uint8_t {
   kInputsBounded,
   kDistanceKept,
   kWallsKept,
+  kZonesNotEntered,
+  kZonesLeft,
   kHomeInTime,
   kRecalledComeHome,
   kSumsBounded,
@@ -79,6 +81,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kInputsBounded, "|u| <= u_max"},
         {Invariant::kDistanceKept, "bodies keep their distance"},
         {Invariant::kWallsKept, "bodies keep out of walls"},
+        {Invariant::kZonesNotEntered, "no body enters a zone"},
+        {Invariant::kZonesLeft, "nobody is in a zone from its tick on"},
         {Invariant::kHomeInTime, "agents are home in time"},
         {Invariant::kRecalledComeHome, "recalled agents come home"},
         {Invariant::kSumsBounded, "S_00 = time covered, |S_mn| <= S_00, or 3 S_00 after a change"},
@@ -206,6 +210,8 @@ class Invariants {
   /// way has received from the next for long enough. Then it holds what the other held that long
   /// ago. δ is what it lacks, and repeats may go on.
   void recovered(double t_s, const std::vector<TableView>& living);
+  /// From now on it demands that nobody is in a zone from its tick on, if bodies keep no distance.
+  void expect_zones_to_be_left() { zones_are_left_ = !(mission_.separation.distance_m > 0); }
   /// Call it together with recovered(): checks what the coordinator knows of every running process.
   void coordinated(double t_s, const Coordinator& coordinator, Instant now,
                    const std::vector<TableView>& living);
@@ -261,6 +267,9 @@ class Invariants {
   void check_quiet(double t_s);
   void note_positions(double t_s, const WorldState& world);
   void check_wall(double t_s, const Vehicle& vehicle);
+  void check_zones(double t_s, const WorldState& world);
+  void check_zone(double t_s, const WorldState& world, const Zone& zone);
+  bool may_leave_a_zone(AgentId id, const Eigen::Vector3d& x_m, Tick tick) const;
   void check_home(double t_s, const WorldState& world);
   double nearest_to_station_m(const Vehicle& vehicle) const;
   void check_recalled_home(double t_s, const TableView& holder);
@@ -281,7 +290,16 @@ class Invariants {
   std::optional<Violation> violation_;
   std::vector<Author> authors_;
   std::map<AgentId, int> incarnation_count_;
-  MissionFollower truth_;                                  // follows all messages about the mission
+  MissionFollower truth_;  // follows all messages about the mission
+  /// Where a vehicle has been since a zone was closed.
+  struct BesideZone {
+    Tick first_seen = 0;
+    bool bound = false;  // it was surely outside
+  };
+  std::map<std::int32_t, std::int64_t> zone_revisions_;  // by which each zone was named
+  std::map<std::pair<std::int32_t, AgentId>, BesideZone> beside_zones_;
+  Incarnation zone_world_ = 0;  // the world of beside_zones_
+  bool zones_are_left_ = false;
   bool shifted_ = false;                                   // a target has been named
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, std::int64_t> own_steps_;               // after the tick begun last

@@ -111,6 +111,7 @@ void Invariants::check_home(double t_s, const WorldState& world) {
   if (home_from_.empty() || timing.pace == Pace::kRealtime ||
       timing.on_timeout == OnTimeout::kEvict)
     return;
+  if (!zone_revisions_.empty()) return;  // a zone may have been in the way
   const Tick counted = counted_ticks(truth_.holds(), world.header.tick);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     const auto from = home_from_.find(vehicle.id);
@@ -143,7 +144,8 @@ bool Invariants::recalled_in_truth(const TableView& holder) const {
 void Invariants::check_recalled_home(double t_s, const TableView& holder) {
   const AgentId id = holder.self.agent;
   const bool free = mission_.separation.distance_m == 0 && mission_.walls.empty() &&
-                    mission_.disturbance_intensity == 0 && motion_of(mission_, id).is_point();
+                    mission_.disturbance_intensity == 0 && motion_of(mission_, id).is_point() &&
+                    zone_revisions_.empty();
   const auto rested = rested_.find(holder.self);
   const auto place = places_m_.find(id);
   if (mission_.timing.pace == Pace::kRealtime || !free || rested == rested_.end() ||

@@ -37,6 +37,7 @@ void Invariants::check_paused(double t_s, const Command& command) {
   const Motion motion = motion_of(mission_, command.header.sender);
   const bool stands_at_once = motion.is_point() && !may_give_way(mission_.separation);
   if (!stands_at_once || command.velocity_mps.isZero(0)) return;
+  if (may_leave_a_zone(command.header.sender, command.position_m, command.header.tick)) return;
   violate(t_s, Invariant::kNobodyMovesWhilePaused, "agent " + std::to_string(command.header.sender),
           text("|v| = ", command.velocity_mps.norm(), " m/s at tick ", command.header.tick));
 }
@@ -52,6 +53,7 @@ void Invariants::check_paused(double t_s, const WorldState& world) {
       // The velocity is that of the step that led here.
       const Tick stands_from = hold.from + braking_ticks(motion, mission_.timing.dt_s);
       if (tick < stands_from || tick > hold.end()) continue;
+      if (may_leave_a_zone(vehicle.id, vehicle.position_m, tick)) continue;
       const double speed_mps = vehicle.velocity_mps.norm();
       const double least_mps = motion.vehicle.min_speed_mps;
       const double most_mps = std::max(least_mps * (1 + 1e-9), kStanding * motion.speed_limit_mps);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A simulated operator: it pauses a mission and resumes it, gives the team other targets, and sends
-// agents home or out of the mission.
+// A simulated operator: it pauses a mission and resumes it, gives the team other targets, sends it
+// out of zones, and sends agents home or out of the mission.
 #pragma once
 
 #include <algorithm>
@@ -41,6 +41,13 @@ class SimulatedOperator {
     end_ = tick_count;
     end_sent_ = 0;
   }
+  /// Wants the team to leave a zone. It gives up if that is not obeyed soon.
+  void want_zone(const Zone& zone, Tick notice, Instant now) {
+    zone_hash_ = zone_hash(zone);
+    zone_ = encode_zone(zone);
+    zone_notice_ = notice;
+    zone_wanted_ = now;
+  }
   /// Wants an agent to go home, or out of the mission if it `leaves`.
   void want_recall(AgentId id, bool leaves) { recalls_.push_back({{}, id, leaves, {}}); }
   /// Wants the mission to go on.
@@ -51,7 +58,8 @@ class SimulatedOperator {
   Instant next() const { return paused_until_.value_or(Instant::max()); }
   /// Whether it has wanted nothing yet, and wants nothing now.
   bool idle() const {
-    return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty() && !end_;
+    return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty() && !end_ &&
+           zone_.empty();
   }
   /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
   std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
@@ -81,6 +89,22 @@ class SimulatedOperator {
                      .number = coordinator.amendments().named,
                      .kind = AmendmentKind::kEnd},
                     encode_end(*end_));
+  }
+  /// The parts of the zone that it sends now.
+  std::vector<Amend> zones(Instant now, RunId run, const Coordinator& coordinator) {
+    const Amendments& list = coordinator.amendments();
+    const auto is_ours = [this](const Amendment& one) { return one.hash == zone_hash_; };
+    const bool named = std::ranges::any_of(list.recent, is_ours);
+    if (named || now - zone_wanted_ > kPatience) zone_.clear();
+    if (zone_.empty() || now < next_zone_) return {};
+    next_zone_ = now + kPeriod;
+    auto parts = in_parts({.header = {run, kOperator, 2, messages_ + 1, coordinator.tick()},
+                           .number = list.named,
+                           .kind = AmendmentKind::kZone,
+                           .delay_ticks = zone_notice_},
+                          zone_);
+    messages_ += std::ssize(parts);
+    return parts;
   }
 
   /// The message that it sends now. It repeats its wish until a tick is named.
@@ -128,6 +152,7 @@ class SimulatedOperator {
 
   /// As `ergocast pause` repeats it.
   static constexpr auto kPeriod = std::chrono::milliseconds(100);
+  static constexpr auto kPatience = std::chrono::seconds(5);
 
   std::optional<Instant> paused_until_;
   Instant next_message_;  // until its wish is obeyed
@@ -139,6 +164,10 @@ class SimulatedOperator {
   std::optional<Tick> end_;  // that it wants
   int end_sent_ = 0;
   Instant next_end_;
+  std::vector<std::byte> zone_;  // that it wants
+  std::uint64_t zone_hash_ = 0;
+  Tick zone_notice_ = 0;
+  Instant zone_wanted_, next_zone_;
   std::vector<Recall> recalls_;  // that it wants
   std::set<AgentId> sent_out_;
 };

@@ -2,7 +2,10 @@
 // Crashes and cuts off simulated processes by the schedule, but never destroys all
 // copies of one fact.
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
+#include "core/motion/zones.h"
 #include "lab/random_stream.h"
 #include "lab/simulation.h"
 
@@ -79,6 +82,9 @@ void Simulation::begin(const FaultEvent& event) {
       ++counts_.ends;
       operator_.want_end(drawn_end(event.who));
       return;
+    case kZone:
+      want_zone(event.who);
+      return;
     case kRecall:
     case kDeparture:
       ++counts_.recalls;
@@ -124,6 +130,40 @@ Tick Simulation::drawn_end(std::uint64_t word) const {
   return std::max<Tick>(1, std::llround(share * planned));
 }
 
+/// Asks for a polygon somewhere in the domain, if one of some is possible: of three to seven
+/// corners around a place, so that it may have dents.
+void Simulation::want_zone(std::uint64_t word) {
+  constexpr int kAttempts = 4;
+  RandomStream random(word, 0);
+  const NodeId node = coordinator_node();
+  if (!up(node) || finished(node) || coordinator().state() != MissionState::kRunning) return;
+  const auto& others = coordinator().amendments().zones;
+  const Box& domain = mission_.domain;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const Eigen::Vector2d center_m =
+        domain.origin_m.head<2>() +
+        domain.size_m.head<2>().cwiseProduct(Eigen::Vector2d(random.uniform(), random.uniform()));
+    const int corners = 3 + static_cast<int>(5 * random.uniform());
+    const double size_m = (0.05 + 0.3 * random.uniform()) * domain.shortest_side_m();
+    const double turn = 2 * std::numbers::pi * random.uniform();
+    Zone zone;
+    for (int i = 0; i < corners; ++i) {
+      const double angle = turn + 2 * std::numbers::pi * i / corners;
+      const double far_m = size_m * (0.4 + 0.6 * random.uniform());
+      zone.corners_m.push_back(center_m +
+                               far_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    }
+    if (!domain.planar()) {
+      zone.low_m = domain.origin_m.z() + domain.size_m.z() * (0.7 * random.uniform() - 0.1);
+      zone.high_m = zone.low_m + domain.size_m.z() * (0.1 + 0.5 * random.uniform());
+    }
+    zone.until = 1 + static_cast<Tick>(20 * random.uniform() / mission_.timing.dt_s);
+    if (!is_zone(zone, domain) || zone_problem(mission_, zone, others)) continue;
+    ++counts_.zones;
+    return operator_.want_zone(zone, least_notice_ticks(mission_, zone, others), now_);
+  }
+}
+
 void Simulation::send_to_coordinator() {
   const NodeId node = coordinator_node();
   if (operator_.idle()) return;
@@ -134,6 +174,8 @@ void Simulation::send_to_coordinator() {
   for (const Amend& part : operator_.targets(now_, run_, coordinator()))
     deliver(node, part, by_operator);
   for (const Amend& part : operator_.ends(now_, run_, coordinator()))
+    deliver(node, part, by_operator);
+  for (const Amend& part : operator_.zones(now_, run_, coordinator()))
     deliver(node, part, by_operator);
   // The operator repeats it; only the first one has an effect.
   const std::vector<Recall> recalls = operator_.recalls(run_, coordinator());

@@ -29,7 +29,9 @@ class Trial : SimulationObserver {
         mission_(decode_plan_with_table(options.plan).value()),
         invariants_(mission_),
         agents_(mission_.starts_m.size()),
-        simulation_(std::move(options), trajectory, metrics, this) {}
+        simulation_(std::move(options), trajectory, metrics, this) {
+    if (only_wishes(faults_)) invariants_.expect_zones_to_be_left();
+  }
 
   TrialResult run();
 

@@ -33,10 +33,25 @@ Json without_numbers(const ReceivedAmendment& one, double dt_s) {
                {"kind", to_string(amendment.kind)},
                {"from_tick", amendment.from},
                {"t_s", static_cast<double>(amendment.from) * dt_s}};
-  if (amendment.kind == AmendmentKind::kTarget) json["hash"] = to_hex(amendment.hash);
-  if (amendment.kind == AmendmentKind::kEnd) json["tick_count"] = amendment.hash;
+  if (amendment.kind == AmendmentKind::kEnd) {
+    json["tick_count"] = amendment.hash;
+  } else if (amendment.kind >= AmendmentKind::kTarget) {
+    json["hash"] = to_hex(amendment.hash);
+  }
+  if (one.zone) {
+    json["closed_tick"] = one.zone->closed;
+    json["until_tick"] = one.zone->until;
+  }
   if (one.is_void) json["void"] = true;
   return json;
+}
+
+/// Corners, and in a box the heights.
+void write_place(const Zone& zone, Json& json) {
+  json["corners_m"] = Json::array();
+  for (const Eigen::Vector2d& corner_m : zone.corners_m)
+    json["corners_m"].push_back({corner_m.x(), corner_m.y()});
+  if (zone.high_m > zone.low_m) json["heights_m"] = {zone.low_m, zone.high_m};
 }
 
 Json list_of(const Coefficients& numbers) {
@@ -64,7 +79,7 @@ std::optional<std::int64_t> count_in(const Json& object, const char* key, std::i
 
 std::optional<AmendmentKind> kind_in(const Json& object) {
   constexpr std::array kKinds{AmendmentKind::kPause, AmendmentKind::kResume, AmendmentKind::kTarget,
-                              AmendmentKind::kEnd};
+                              AmendmentKind::kEnd, AmendmentKind::kZone};
   const Json& name = value_in(object, "kind");
   const auto found =
       std::ranges::find_if(kKinds, [&](AmendmentKind kind) { return name == to_string(kind); });
@@ -107,6 +122,34 @@ Result<TargetChange> target_in(const Json& entry, const Amendment& amendment,
   return change;
 }
 
+bool read_point(const Json& pair, double& one, double& other) {
+  if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number())
+    return false;
+  one = pair[0].get<double>();
+  other = pair[1].get<double>();
+  return true;
+}
+
+/// The zone of an entry that has its corners.
+Result<Zone> zone_in(const Json& entry, const Amendment& amendment, const Mission& mission) {
+  const auto closed = count_in(entry, "closed_tick", kMostTicks);
+  const auto until = count_in(entry, "until_tick", kMostTicks);
+  const Json& corners = value_in(entry, "corners_m");
+  const auto bad = [] {
+    return failure("its zone is none of the mission of " + std::string(kPlanFile));
+  };
+  if (!closed || !until || !corners.is_array()) return bad();
+  Zone zone{amendment.number, *closed, amendment.from, *until, Ring(corners.size())};
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (!read_point(corners[i], zone.corners_m[i].x(), zone.corners_m[i].y())) return bad();
+  if (entry.contains("heights_m") &&
+      !read_point(value_in(entry, "heights_m"), zone.low_m, zone.high_m))
+    return bad();
+  if (!is_zone(zone, mission.domain)) return bad();
+  if (zone_hash(zone) != amendment.hash) return failure("its zone has another hash");
+  return zone;
+}
+
 Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission) {
   const std::string none = "is not an amendment";
   if (!entry.is_object()) return failure(none);
@@ -114,18 +157,26 @@ Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission
   const auto from = count_in(entry, "from_tick", kMostTicks);
   const auto kind = kind_in(entry);
   if (!number || !from || !kind) return failure(none);
-  ReceivedAmendment one{{static_cast<std::int32_t>(*number), *kind, *from, 0}, {}, false};
+  ReceivedAmendment one{{static_cast<std::int32_t>(*number), *kind, *from, 0}};
   one.is_void = value_in(entry, "void") == true;
   if (*kind == AmendmentKind::kEnd) {
     const auto tick_count = count_in(entry, "tick_count", kMostTicks);
     if (!tick_count || !is_tick_count(*tick_count, mission.timing))
       return failure("its end is none of the mission of " + std::string(kPlanFile));
     one.amendment.hash = static_cast<std::uint64_t>(*tick_count);
+    return one;
   }
-  if (*kind != AmendmentKind::kTarget) return one;
+  if (*kind < AmendmentKind::kTarget) return one;
   const auto hash = hash_in(entry);
-  if (!hash) return failure("its target has no hash");
+  if (!hash) return failure("its " + std::string(to_string(*kind)) + " has no hash");
   one.amendment.hash = *hash;
+  if (*kind == AmendmentKind::kZone) {
+    if (!entry.contains("corners_m")) return one;
+    auto zone = zone_in(entry, one.amendment, mission);
+    if (!zone) return failure(zone.error());
+    one.zone = *std::move(zone);
+    return one;
+  }
   if (!entry.contains("target")) return one;
   auto target = target_in(entry, one.amendment, mission);
   if (!target) return failure(target.error());
@@ -151,7 +202,7 @@ bool follow(const std::vector<ReceivedAmendment>& all) {
     return false;
   std::int32_t number = -1;
   Tick target_from = -1;
-  for (const auto& [amendment, target, is_void] : all) {
+  for (const auto& [amendment, target, zone, is_void] : all) {
     if (is_void) continue;
     if (amendment.number == std::exchange(number, amendment.number)) return false;
     if (amendment.kind != AmendmentKind::kTarget) continue;
@@ -199,6 +250,7 @@ std::string amendments_text(const ReceivedAmendments& heard, double dt_s) {
       json["target"] = list_of(one.target->target);
       if (one.target->cosine.size() > 0) json["cosine_target"] = list_of(one.target->cosine);
     }
+    if (one.zone) write_place(*one.zone, json);
     text += std::exchange(separator, ",\n") + json.dump();
   }
   return text + "]}\n";
@@ -222,18 +274,19 @@ Result<ReceivedAmendments> recorded_amendments(const std::filesystem::path& run_
 
 std::optional<std::string> missing_target(const std::filesystem::path& run_dir, const Json& summary,
                                           const ReceivedAmendments& heard) {
-  if (const ReceivedAmendment* const unknown = heard.unknown_target())
-    return "its logger did not receive the target of amendment " +
-           std::to_string(unknown->amendment.number);
+  if (const ReceivedAmendment* const unknown = heard.unknown_content())
+    return "its logger did not receive the " + std::string(to_string(unknown->amendment.kind)) +
+           " of amendment " + std::to_string(unknown->amendment.number);
   const Json listed = summary.is_object() ? value_in(summary, "amendments") : Json();
   const bool names_targets = listed.is_array() && std::ranges::any_of(listed, [](const Json& one) {
-                               return one.is_object() && kind_in(one) == AmendmentKind::kTarget;
+                               return one.is_object() && kind_in(one) >= AmendmentKind::kTarget;
                              });
   std::error_code ignored;
   if (!names_targets || std::filesystem::exists(run_dir / kAmendmentsFile, ignored))
     return std::nullopt;
   return std::string(kAmendmentsFile) +
-         " is missing, which has the targets that its summary names; copy it from where the run "
+         " is missing, which has the targets and zones that its summary names; copy it from where "
+         "the run "
          "was recorded";
 }
 

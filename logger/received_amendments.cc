@@ -24,6 +24,13 @@ void ReceivedAmendments::note(const Amendments& list) {
         all_, [&](const ReceivedAmendment& one) { return one.amendment == amendment; });
     if (!heard->target) heard->target = change;
   }
+  for (const Zone& zone : list.zones) {
+    const Amendment amendment{zone.number, AmendmentKind::kZone, zone.from, zone_hash(zone)};
+    add(amendment);
+    const auto heard = std::ranges::find_if(
+        all_, [&](const ReceivedAmendment& one) { return one.amendment == amendment; });
+    if (!heard->zone) heard->zone = zone;
+  }
 }
 
 /// Marks what the list lacks. It names its newest amendments; older ones are as they were.
@@ -66,9 +73,11 @@ const ReceivedAmendment* ReceivedAmendments::target_at(Tick tick) const {
   return found == all_.rend() ? nullptr : &*found;
 }
 
-const ReceivedAmendment* ReceivedAmendments::unknown_target() const {
+const ReceivedAmendment* ReceivedAmendments::unknown_content() const {
   const auto found = std::ranges::find_if(all_, [](const ReceivedAmendment& one) {
-    return one.amendment.kind == AmendmentKind::kTarget && !one.target && !one.is_void;
+    const bool lacks_target = one.amendment.kind == AmendmentKind::kTarget && !one.target;
+    const bool lacks_zone = one.amendment.kind == AmendmentKind::kZone && !one.zone;
+    return (lacks_target || lacks_zone) && !one.is_void;
   });
   return found == all_.end() ? nullptr : &*found;
 }
@@ -81,6 +90,7 @@ Amendments ReceivedAmendments::list() const {
     if (one.is_void) continue;
     list.named = one.amendment.number + 1;
     list.recent.push_back(one.amendment);
+    if (one.zone) list.zones.push_back(*one.zone);
     if (!one.target) continue;
     // A target that was replaced before its tick never holds.
     if (!list.targets.empty() && list.targets.back().from == one.target->from)

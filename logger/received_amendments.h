@@ -16,6 +16,8 @@ struct ReceivedAmendment {
   Amendment amendment;
   /// kTarget: its numbers; nothing if no list that was received has them.
   std::optional<TargetChange> target{};
+  /// kZone: the zone; nothing if no list that was received has it.
+  std::optional<Zone> zone{};
   /// Whether a later list lacks it: its coordinator stopped before another process knew of it.
   bool is_void = false;
 
@@ -40,9 +42,9 @@ class ReceivedAmendments {
   std::vector<EndChange> ends() const;
   /// The target that holds at a tick of the world; null: the plan's. Its numbers are there.
   const ReceivedAmendment* target_at(Tick tick) const;
-  /// The first that is not void and whose target was not received; null: there is none.
-  const ReceivedAmendment* unknown_target() const;
-  /// Those that are not void as one list, with all targets that were received.
+  /// The first that is not void and whose target or zone was not received; null: there is none.
+  const ReceivedAmendment* unknown_content() const;
+  /// Those that are not void as one list, with all targets and zones that were received.
   Amendments list() const;
 
  private:

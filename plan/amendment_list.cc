@@ -71,6 +71,16 @@ class ListReader {
 
 constexpr auto kNumber = [](auto& io, auto& number) { io.value(number); };
 
+/// Where a zone is.
+void place_fields(auto& io, auto& zone) {
+  io.value(zone.low_m);
+  io.value(zone.high_m);
+  io.list(zone.corners_m, [](auto& wire, auto& corner_m) {
+    wire.value(corner_m.x());
+    wire.value(corner_m.y());
+  });
+}
+
 /// All fields of a list, for the writer and the reader.
 void list_fields(auto& io, auto& amendments) {
   io.value(amendments.named);
@@ -95,10 +105,17 @@ void list_fields(auto& io, auto& amendments) {
     wire.value(change.from);
     wire.value(change.tick_count);
   });
+  io.list(amendments.zones, [](auto& wire, auto& zone) {
+    wire.value(zone.number);
+    wire.value(zone.closed);
+    wire.value(zone.from);
+    wire.value(zone.until);
+    place_fields(wire, zone);
+  });
 }
 
 bool is_kind(const Amendment& amendment) {
-  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kEnd;
+  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kZone;
 }
 
 }  // namespace
@@ -164,6 +181,25 @@ std::optional<TargetChange> decode_target(std::span<const std::byte> bytes,
     for (double& number : *numbers) reader.value(number);
   if (!is_target(change.target, change.cosine, mission)) return std::nullopt;
   return change;
+} catch (...) {
+  return std::nullopt;  // memory is missing
+}
+
+std::vector<std::byte> encode_zone(const Zone& zone) {
+  ListWriter writer;
+  const Tick lasts = zone.until - zone.from;
+  writer.value(lasts);
+  place_fields(writer, zone);
+  return writer.take();
+}
+
+std::optional<Zone> decode_zone(std::span<const std::byte> bytes, const Box& domain) noexcept try {
+  Zone zone;
+  ListReader reader(bytes);
+  reader.value(zone.until);
+  place_fields(reader, zone);
+  if (!reader.complete() || !is_zone(zone, domain)) return std::nullopt;
+  return zone;
 } catch (...) {
   return std::nullopt;  // memory is missing
 }

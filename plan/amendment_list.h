@@ -33,4 +33,10 @@ std::vector<std::byte> encode_target(const TargetChange& change);
 std::optional<TargetChange> decode_target(std::span<const std::byte> bytes,
                                           const Mission& mission) noexcept;
 
+/// A zone as AMEND carries it: how long it lasts, its heights and its corners.
+std::vector<std::byte> encode_zone(const Zone& zone);
+/// The zone of these bytes, from 0 to as long as it lasts, without number; nothing if it is none in
+/// `domain`.
+std::optional<Zone> decode_zone(std::span<const std::byte> bytes, const Box& domain) noexcept;
+
 }  // namespace ergocast

@@ -276,17 +276,20 @@ Json homes_from(const RunData& run, const Mission& mission) {
 }
 
 /// The amendments of the record, and the targets that it has.
-void add_amendments(const ReceivedAmendments& heard, Json& record) {
+void add_amendments(const ReceivedAmendments& heard, const Box& domain, Json& record) {
   if (heard.empty()) return;
   std::vector<Amendment> list;
+  std::vector<Zone> zones;
   Json targets = Json::object();
   for (const ReceivedAmendment& one : heard.all()) {
     if (one.is_void) continue;
     list.push_back(one.amendment);
     if (one.target) targets[page_target_name(one.amendment.hash)] = page_target(*one.target);
+    if (one.zone) zones.push_back(*one.zone);
   }
   record["amendments"] = page_amendments(list);
   record["targets"] = std::move(targets);
+  if (!zones.empty()) record["zones"] = page_zones(zones, domain);
 }
 
 /// The command of a vehicle that turns is its velocity at the tick's end.
@@ -362,6 +365,24 @@ Json page_amendments(std::span<const Amendment> list) {
   return json;
 }
 
+Json page_zones(std::span<const Zone> zones, const Box& domain) {
+  Json list = Json::array();
+  for (const Zone& zone : zones) {
+    Json corners = Json::array();
+    for (const Eigen::Vector2d& corner_m : zone.corners_m)
+      corners.push_back(rounded_list(corner_m - domain.origin_m.head<2>(), 9));
+    list.push_back({{"number", zone.number},
+                    {"closed", zone.closed},
+                    {"from", zone.from},
+                    {"until", zone.until},
+                    {"corners_m", std::move(corners)}});
+    if (!domain.planar())
+      list.back()["heights_m"] = {zone.low_m - domain.origin_m.z(),
+                                  zone.high_m - domain.origin_m.z()};
+  }
+  return list;
+}
+
 std::string page_target_name(std::uint64_t hash) { return to_hex(hash); }
 
 Json page_target(const TargetChange& change) { return rounded_list(change.in_cosines()); }
@@ -383,7 +404,7 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
                  {"tracks", grid.encode(0, grid.rows())},
                  {"team", team}};
   if (team.is_null() && any_station(mission)) record["home_from"] = homes_from(run, mission);
-  add_amendments(run.amendments, record);
+  add_amendments(run.amendments, mission.domain, record);
   return record;
 }
 

@@ -31,6 +31,9 @@ nlohmann::ordered_json page_mission(const Mission& mission, const Field& density
 /// [{"number", "kind": "target", "from": the world's tick, "hash": of the target, in hexadecimal},
 /// …]
 nlohmann::ordered_json page_amendments(std::span<const Amendment> list);
+/// [{"number", "closed", "from", "until": the world's ticks, "corners_m": from the domain's corner,
+/// in a box also "heights_m"}, …]
+nlohmann::ordered_json page_zones(std::span<const Zone> zones, const Box& domain);
 /// The name of a target in "targets": its hash in hexadecimal.
 std::string page_target_name(std::uint64_t hash);
 /// The coefficients with which the page draws a target, with a free domain those of cosines.
@@ -40,10 +43,10 @@ nlohmann::ordered_json page_target(const TargetChange& change);
 bool any_that_turn(const Mission& mission);
 
 /// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from", "amendments",
-/// "targets"}: the record's data for the page. "amendments" and "targets", {page_target_name():
-/// page_target(), …}, are present only if there are any. "home_from", {"0": tick, …}, is present
-/// only without `team`: the ticks at which agents with a station went home by the rule of
-/// core/motion/way_home.h.
+/// "targets", "zones"}: the record's data for the page. "amendments" and "targets",
+/// {page_target_name(): page_target(), …}, are present only if there are any. "home_from", {"0":
+/// tick, …}, is present only without `team`: the ticks at which agents with a station went home by
+/// the rule of core/motion/way_home.h.
 /// @param team  the agents' states over time (cli/team/recorded_team.h), or null
 nlohmann::ordered_json page_record(const RunData& run, const Mission& mission,
                                    const nlohmann::ordered_json& summary, const Field& density,

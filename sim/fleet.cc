@@ -8,6 +8,7 @@
 #include "core/motion/filter_rules.h"
 #include "core/motion/push.h"
 #include "core/motion/vehicle.h"
+#include "core/motion/zones.h"
 
 namespace ergocast {
 
@@ -80,6 +81,15 @@ AgentId Fleet::first_unheard() const {
   return kUnassigned;
 }
 
+bool Fleet::filters_always() const { return filters_again(*mission_) || any_but_points(*mission_); }
+
+void Fleet::take_zones(const std::vector<Zone>& zones) {
+  if (zones == zones_) return;
+  zones_ = zones;
+  if (!filter_) filter_.emplace(*mission_, 0);
+  filter_->set_zones(zones_);
+}
+
 // ---- moving ----
 
 void Fleet::step(Tick tick) {
@@ -88,7 +98,7 @@ void Fleet::step(Tick tick) {
     if (slot.driven(tick, mission_->timing) && slot.next_mps != slot.commands.last()->velocity_mps)
       ++clamped_commands_;
   }
-  if (filter_) filter_commands(tick);
+  if (filter_ && (filters_always() || any_closed(zones_, tick))) filter_commands(tick);
   if (physics_) return move_bodies();
   for (auto& [id, slot] : vehicles_) move(id, slot, tick);
 }
@@ -108,7 +118,8 @@ void Fleet::drive(AgentId id, Slot& slot, Tick tick) const {
 void Fleet::move(AgentId id, Slot& slot, Tick tick) const {
   const Eigen::Vector3d mean_mps =
       mean_velocity(motion_of(*mission_, id), slot.applied_mps, slot.next_mps);
-  slot.x_m = reflect(moved(*mission_, id, tick, slot.x_m, mean_mps), mission_->domain);
+  slot.x_m = reflect(moved(*mission_, id, tick, slot.x_m, mean_mps, {zones_, slot.next_mps}),
+                     mission_->domain);
   slot.applied_mps = slot.next_mps;
 }
 
@@ -124,9 +135,11 @@ void Fleet::filter_commands(Tick tick) {
   }
   for (auto& [id, slot] : vehicles_) {
     const Motion motion = motion_of(*mission_, id);
-    const bool as_wanted = motion.is_point() && !filters_again(*mission_);
+    const bool as_wanted =
+        motion.is_point() && !filters_again(*mission_) && !any_closed(zones_, tick);
     if (!slot.driven(tick, mission_->timing) || as_wanted) continue;
-    const Mover self{id, tick, slot.x_m, motion.speed_limit_mps, slot.applied_mps};
+    const double limit_mps = limit_or_speed_mps(motion.speed_limit_mps, slot.next_mps);
+    const Mover self{id, tick, slot.x_m, limit_mps, slot.applied_mps};
     slot.next_mps = filter_->safe(self, slot.next_mps, bodies_).velocity_mps;
   }
 }

@@ -5,7 +5,7 @@
 //   v_n is the command, cut to the vehicle's speed limit. Where bodies keep a distance, a world in
 //   real time then filters all commands together (core/motion/separation.h). Old and late commands
 //   do not account for where the others have gone. Where there are walls, a world always filters,
-//   and the walls stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
+//   and these stop ξ. A physics may move the bodies instead (physics.h), and x_{n+1} is its
 //   result.
 //
 // fleet.cc has members, commands and steps, placing.cc has where vehicles begin.
@@ -20,6 +20,7 @@
 #include "core/base/ids.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
+#include "core/mission/zones.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/separation.h"
 #include "sim/command_history.h"
@@ -71,6 +72,9 @@ class Fleet {
   /// The first member of which the last two commands are not known; kUnassigned: none.
   AgentId first_unheard() const;
 
+  /// Takes in the zones of the newest list.
+  void take_zones(const std::vector<Zone>& zones);
+
   // ---- beginning ----
 
   /// Puts every vehicle where it is at `tick`, by `before` if begins_by_state(), else by its
@@ -107,9 +111,10 @@ class Fleet {
     }
   };
 
+  bool filters_always() const;
   Eigen::Vector3d place_for(AgentId id, Surroundings surroundings) const;
   void settle(Tick tick, const StateAssembler& before, Surroundings surroundings);
-  void recall(AgentId id, Slot& slot, Tick now) const;
+  void recall(AgentId id, Slot& slot, Tick now);
   void keep_from_walls(AgentId id, Slot& slot, Tick tick);
   void filter_commands(Tick tick);
   void move_bodies();
@@ -121,6 +126,7 @@ class Fleet {
   std::map<AgentId, Slot> vehicles_;
   std::optional<SeparationFilter> filter_;  // if it guards, has walls, or a body is no point
   std::vector<Neighbour> bodies_;           // of the tick, for the guard
+  std::vector<Zone> zones_;
   PhysicsMaker physics_maker_;
   std::unique_ptr<Physics> physics_;  // null: core/motion/vehicle.h
   std::vector<PhysicalBody> moved_;

@@ -5,12 +5,14 @@
 #include "core/motion/filter_rules.h"
 #include "core/motion/starts.h"
 #include "core/motion/vehicle.h"
+#include "core/motion/zones.h"
 #include "sim/fleet.h"
 
 namespace ergocast {
 
 void Fleet::begin(Tick tick, const StateAssembler& before, Surroundings surroundings) {
-  if (filters_again(*mission_) || any_but_points(*mission_)) filter_.emplace(*mission_, 0);
+  if (filters_always()) filter_.emplace(*mission_, 0);
+  if (filter_) filter_->set_zones(zones_);
   if (begins_by_state(*mission_)) {
     settle(tick, before, surroundings);
   } else {
@@ -41,8 +43,8 @@ void Fleet::settle(Tick tick, const StateAssembler& before, Surroundings surroun
   for (Tick past = before.newest(); past >= 0 && past < tick && !realtime; ++past) {
     for (auto& [id, slot] : vehicles_) {
       drive(id, slot, past);
-      if (!mission_->walls.empty() && slot.driven(past, mission_->timing))
-        keep_from_walls(id, slot, past);
+      const bool keeps = !mission_->walls.empty() || any_closed(zones_, past);
+      if (keeps && slot.driven(past, mission_->timing)) keep_from_walls(id, slot, past);
       move(id, slot, past);
     }
   }
@@ -54,7 +56,7 @@ void Fleet::settle(Tick tick, const StateAssembler& before, Surroundings surroun
 }
 
 /// Computes where a slot is at tick `now` from its agent's last two commands.
-void Fleet::recall(AgentId id, Slot& slot, Tick now) const {
+void Fleet::recall(AgentId id, Slot& slot, Tick now) {
   const Tick answered = slot.commands.answered();
   if (answered < 0) return;
   slot.x_m = slot.commands.last()->position_m;
@@ -63,6 +65,8 @@ void Fleet::recall(AgentId id, Slot& slot, Tick now) const {
     slot.applied_mps = within_speed_limit(motion_of(*mission_, id), before->velocity_mps);
   for (Tick tick = answered; tick < now; ++tick) {
     drive(id, slot, tick);
+    if (any_closed(zones_, tick) && slot.driven(tick, mission_->timing))
+      keep_from_walls(id, slot, tick);
     move(id, slot, tick);
   }
 }
@@ -92,9 +96,10 @@ void Fleet::place(AgentId id, Slot& slot, const Eigen::Vector3d& x_m) const {
   slot.applied_mps = first_velocity(motion_of(*mission_, id), x_m);
 }
 
-/// Filters one command by walls and own limits, as filter_commands() does in lockstep.
+/// Filters one command by walls, zones and own limits, as filter_commands() does in lockstep.
 void Fleet::keep_from_walls(AgentId id, Slot& slot, Tick tick) {
-  const double limit_mps = motion_of(*mission_, id).speed_limit_mps;
+  const double limit_mps =
+      limit_or_speed_mps(motion_of(*mission_, id).speed_limit_mps, slot.next_mps);
   const Mover self{id, tick, slot.x_m, limit_mps, slot.applied_mps};
   slot.next_mps = filter_->safe(self, slot.next_mps, {}).velocity_mps;
 }

@@ -128,7 +128,10 @@ Surroundings World::surroundings() const {
   return tick_ == 0 && !schedule_.published() ? Surroundings::kStanding : Surroundings::kMoving;
 }
 
-void World::take_roster() { fleet_.take_roster(follower().roster(), surroundings()); }
+void World::take_roster() {
+  fleet_.take_zones(follower().amendments().zones);
+  fleet_.take_roster(follower().roster(), surroundings());
+}
 
 void World::on(const WorldState& before, const Arrival&) {
   if (!question_.since || !begins_by_state(mission())) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast amend`: gives a running team a new target or another end, cancels an amendment, or
-// lists what has changed in the mission.
+// `ergocast amend`: gives a running team a new target or another end, sends it out of a zone,
+// cancels an amendment, or lists what has changed in the mission.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -15,10 +15,13 @@
 #include "cli/record/new_end.h"
 #include "cli/record/new_target.h"
 #include "cli/watch/find_run.h"
+#include "core/motion/zones.h"
 #include "plan/amendment_list.h"
 #include "runtime/process/shipped_scenarios.h"
 #include "scenario/parse/override_options.h"
+#include "scenario/zone_file.h"
 #include "text/read_number.h"
+#include "text/shortest.h"
 
 namespace ergocast::cli {
 namespace {
@@ -29,10 +32,13 @@ constexpr double kMostDelay_s = 1e7;
 struct AmendOptions : BusOptions {
   std::filesystem::path target;
   Overrides overrides;
-  double delay_s = 0;
+  std::optional<double> delay_s;
   std::optional<EndWish> end;
   std::optional<std::int32_t> cancel;
   bool dry_run = false, list = false;
+  std::filesystem::path zone;
+  double zone_lasts_s = 0;
+  bool force = false;
 };
 
 class Amending : public TeamCommand {
@@ -46,12 +52,13 @@ class Amending : public TeamCommand {
     if (options_.list) return list();
     if (options_.end) return order_end();
     if (options_.cancel) return cancel(*options_.cancel);
+    if (!options_.zone.empty()) return zone();
     const auto compiled = compile();
     if (!compiled) return kExitBadInput;
     const TargetChange change = target_change_of(*compiled);
     // What has arrived meanwhile.
     if (!listen()) return interrupted();
-    return options_.dry_run ? describe(change) : order(wish_of(change));
+    return options_.dry_run ? describe(change) : order(wish_of(change), delay());
   }
 
   const MonitoredRun& team() const { return runs_.begin()->second; }
@@ -96,28 +103,81 @@ class Amending : public TeamCommand {
     return live.front().run_dir / "scenario.textproto";
   }
 
-  Tick delay() const {
-    return static_cast<Tick>(std::llround(options_.delay_s / team().mission().timing.dt_s));
-  }
+  Tick delay() const { return ticks(options_.delay_s.value_or(0)); }
 
-  Tick earliest() const { return earliest_tick(team(), delay()); }
+  Tick ticks(double time_s) const {
+    return static_cast<Tick>(std::llround(time_s / team().mission().timing.dt_s));
+  }
 
   int order_end() {
     // What has arrived meanwhile: the places of vehicles.
     if (!listen()) return interrupted();
     const auto tick_count = options_.end->tick_count(team().mission().timing, team().tick_count());
     if (!tick_count) return report_error(kExitBadInput, "--end: " + tick_count.error());
-    return order(wish_of_end(*tick_count));
+    return order(wish_of_end(*tick_count), delay());
   }
 
   /// Orders what held before amendment `number`.
   int cancel(std::int32_t number) {
     const auto wish = wish_to_cancel(team(), number);
-    return wish ? order(*wish) : report_error(kExitFailed, "--cancel: " + wish.error());
+    return wish ? order(*wish, delay()) : report_error(kExitFailed, "--cancel: " + wish.error());
   }
 
-  int order(AmendmentWish wish) {
-    AmendOrder order(std::move(wish), delay(), now());
+  /// A zone from the file. Prints what is wrong with it.
+  int zone() {
+    const Mission& mission = team().mission();
+    auto loaded = load_zone(options_.zone, zone_context(mission, recorded_scenario()));
+    if (!loaded) return report_error(kExitBadInput, loaded.error());
+    Zone zone = *std::move(loaded);
+    zone.until = std::max<Tick>(1, ticks(options_.zone_lasts_s));
+    std::vector<Zone> others = team().amendments().zones;
+    std::erase_if(others, [this](const Zone& one) { return one.until <= team().tick(); });
+    if (const auto problem = zone_problem(mission, zone, others))
+      return report_error(kExitBadInput, std::vector{Problem{options_.zone.string(), problem->what,
+                                                             problem->remedy}});
+    const Tick least = least_notice_ticks(mission, zone, others);
+    const Tick notice = options_.delay_s ? delay() : least;
+    if (notice < least && !options_.force)
+      return report_error(
+          kExitBadInput,
+          "--at: the agents may need " +
+              shortest(static_cast<double>(least) * mission.timing.dt_s) +
+              " s to leave the zone: name a later time, leave --at out, or add --force and see who "
+              "is inside then");
+    if (!listen()) return interrupted();
+    if (options_.dry_run) return describe(zone, notice);
+    const int code = order(wish_of(zone), notice);
+    return code == kExitDone ? who_is_inside(zone) : code;
+  }
+
+  /// Prints who is still in the zone.
+  int who_is_inside(const Zone& zone) const {
+    const std::string inside = inside_text(team(), zone);
+    if (inside.empty()) {
+      std::printf("nobody is in it\n");
+      return kExitDone;
+    }
+    return report_error(kExitFailed, inside);
+  }
+
+  int describe(const Zone& zone, Tick notice) const {
+    const Mission& mission = team().mission();
+    const std::string inside = inside_text(team(), zone);
+    std::printf("no problems: zone %s, %zu corners, for %s s\n", to_hex(zone_hash(zone)).c_str(),
+                zone.corners_m.size(),
+                shortest(static_cast<double>(zone.until) * mission.timing.dt_s).c_str());
+    std::printf("now %s\n", inside.empty() ? "nobody is in it" : inside.c_str());
+    std::printf(
+        "it would be amendment %d, closed at the earliest from %s on, and free %s s later\n",
+        team().amendments().named, team().mission_time(earliest_tick(team(), 0)).c_str(),
+        shortest(static_cast<double>(notice) * mission.timing.dt_s).c_str());
+    std::printf("nothing was sent\n");
+    return kExitDone;
+  }
+
+  /// Repeats an order until it is obeyed.
+  int order(AmendmentWish wish, Tick delay) {
+    AmendOrder order(std::move(wish), delay, now());
     const auto report = obeyed(order);
     if (!report) return interrupted();
     if (report->state == OrderReport::State::kFailed)
@@ -137,7 +197,7 @@ class Amending : public TeamCommand {
     std::printf("about %.0f %% of its mass is elsewhere than in the target that holds now\n",
                 100 * differs);
     std::printf("it would be amendment %d, at the earliest from %s on\n", list.named,
-                team().mission_time(earliest()).c_str());
+                team().mission_time(earliest_tick(team(), delay())).c_str());
     std::printf("nothing was sent\n");
     return kExitDone;
   }
@@ -178,6 +238,41 @@ EndWish end_from(const std::string& text) {
           "than the end that holds");
 }
 
+/// The seconds of "600s".
+double duration_from(std::string text) {
+  const std::string written = text;
+  if (text.ends_with('s')) text.pop_back();
+  const auto value = read_number<double>(text);
+  if (value && *value > 0 && *value <= kMostDelay_s) return *value;
+  throw CLI::ValidationError(
+      "--for", "\"" + written + "\" is no time: write 600s for ten minutes of mission time");
+}
+
+void add_zone_options(CLI::App& command, AmendOptions& options) {
+  auto* zone =
+      command
+          .add_option("--zone", options.zone,
+                      "A polygon that the team leaves and does not enter, as text, GeoJSON "
+                      "or a drawing")
+          ->check(CLI::ExistingFile)
+          ->type_name("FILE");
+  auto* lasts =
+      command
+          .add_option_function<std::string>(
+              "--for",
+              [&options](const std::string& text) { options.zone_lasts_s = duration_from(text); },
+              "How long the zone lasts from when nobody is inside, in mission time: 600s")
+          ->type_name("TIME");
+  auto* force = command.add_flag(
+      "--force", options.force,
+      "Take an --at that is too early for all to leave the zone; who is inside then is named");
+  zone->needs(lasts);
+  lasts->needs(zone);
+  force->needs(zone);
+  for (const char* other : {"--target", "--set", "--list", "--end", "--cancel"})
+    zone->excludes(command.get_option(other));
+}
+
 void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option("--target", options.target,
@@ -191,7 +286,9 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option_function<std::string>(
           "--at", [&options](const std::string& text) { options.delay_s = delay_from(text); },
-          "How much later than necessary it holds, in mission time: +10s")
+          "How much later than necessary a target holds, or how long after it is closed nobody is "
+          "in a "
+          "zone any more, in mission time: +10s")
       ->type_name("+TIME");
   command
       .add_option_function<std::string>(
@@ -204,7 +301,7 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
                   "Undo amendment N, as --list numbers it: what held before it holds again")
       ->type_name("N");
   command.add_flag("--dry-run", options.dry_run,
-                   "Only check the target and show what would change; send nothing");
+                   "Only check the target or zone and show what would change; send nothing");
   auto* list = command.add_flag("--list", options.list, "List what has changed in the mission");
   for (const char* other : {"--target", "--set", "--at", "--dry-run"})
     list->excludes(command.get_option(other));
@@ -212,28 +309,32 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
     for (const char* other : {"--target", "--set", "--at", "--dry-run", "--list"})
       command.get_option(one)->excludes(command.get_option(other));
   command.get_option("--end")->excludes(command.get_option("--cancel"));
+  add_zone_options(command, options);
 }
 
 }  // namespace
 
 void add_amend(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("amend", "Give a running team a new target or another end");
+  auto* command = app.add_subcommand(
+      "amend", "Give a running team a new target or another end, or send it out of a zone");
   auto options = std::make_shared<AmendOptions>();
   add_target_options(*command, *options);
   add_bus_options(*command, *options);
   describe_search(*command);
   command->footer(
       "From a tick that the coordinator names, all agents cover the new target. What they covered\n"
-      "before counts against the target of its time.\n"
+      "before counts against the target of its time. A zone is closed at once: nobody enters it,\n"
+      "and who is inside leaves it by the shortest way, until nobody is inside at the named tick.\n"
       "A later end must be named 10 s of mission time before the end that holds; an earlier one "
       "is\n"
       "possible if each agent can be at its station in time.\n"
-      "Exit codes: 0 it holds; 2 the target or the end has problems, or several runs are found;\n"
-      "3 LCM cannot be used; 4 no team is found, or it was not seen to obey.");
+      "Exit codes: 0 it holds, or nobody is in the zone; 2 the target, the end or the zone has\n"
+      "problems, or several runs are found; 3 LCM cannot be used; 4 no team is found, it was not\n"
+      "seen to obey, or agents are in the zone.");
   command->callback([&action, options, command] {
     const bool has_target = !options->target.empty() || !options->overrides.fields.empty();
-    if (!has_target && !options->list && !options->end && !options->cancel)
-      throw CLI::RequiredError("--target, --set, --end, --cancel or --list");
+    if (!has_target && options->zone.empty() && !options->list && !options->end && !options->cancel)
+      throw CLI::RequiredError("--target, --set, --zone, --end, --cancel or --list");
     action = [options, command] {
       if (const auto code = find_run(*command, *options)) return *code;
       return Amending(*options).carry_out();

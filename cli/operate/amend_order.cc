@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "core/motion/end_rules.h"
+#include "core/motion/zones.h"
 #include "plan/amendment_list.h"
 #include "runtime/bus/random_identity.h"
 #include "team/amend_parts.h"
@@ -39,6 +41,8 @@ std::string kind_text(const MonitoredRun& team, const Amendment& amendment) {
       return "the end of a pause";
     case AmendmentKind::kEnd:
       return "the end at " + end_text(team, static_cast<Tick>(amendment.hash));
+    case AmendmentKind::kZone:
+      return "zone " + to_hex(amendment.hash);
     default:
       return "target " + to_hex(amendment.hash);
   }
@@ -56,6 +60,27 @@ std::string waiting_text(const MonitoredRun& team, const TargetChange& waiting) 
          ": repeat the order then";
 }
 
+/// Why no further zone can be in force; nothing if one can.
+std::optional<std::string> why_no_place(const MonitoredRun& team) {
+  if (zones_at(team.amendments(), team.tick()) < kMaxZones) return std::nullopt;
+  Tick first = std::numeric_limits<Tick>::max();
+  for (const Zone& zone : team.amendments().zones)
+    if (zone.until > team.tick()) first = std::min(first, zone.until);
+  return std::to_string(kMaxZones) + " zones are in force, and there can be no more at a time: " +
+         "repeat the order when the first of them has ended, at " + team.mission_time(first);
+}
+
+/// ", closed since tick 500, t = 50.0 s, until tick 900, t = 90.0 s".
+std::string zone_ticks_text(const MonitoredRun& team, std::int32_t number) {
+  for (const Zone& zone : team.amendments().zones) {
+    if (zone.number != number) continue;
+    const bool closed = team.tick() >= zone.closed, ended = team.tick() >= zone.until;
+    return (closed ? ", closed since " : ", closed from ") + team.mission_time(zone.closed) +
+           (ended ? ", ended at " : ", until ") + team.mission_time(zone.until);
+  }
+  return "";
+}
+
 }  // namespace
 
 AmendmentWish wish_of(const TargetChange& target) {
@@ -64,6 +89,10 @@ AmendmentWish wish_of(const TargetChange& target) {
 
 AmendmentWish wish_of_end(Tick tick_count) {
   return {AmendmentKind::kEnd, encode_end(tick_count), static_cast<std::uint64_t>(tick_count)};
+}
+
+AmendmentWish wish_of(const Zone& zone) {
+  return {AmendmentKind::kZone, encode_zone(zone), zone_hash(zone)};
 }
 
 Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std::int32_t number) {
@@ -90,6 +119,8 @@ Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std:
     return failure(name + " is a pause: ergocast resume ends it");
   if (found != list.recent.end() && found->kind == AmendmentKind::kResume)
     return failure(name + " ended a pause: ergocast pause pauses the mission again");
+  if (found != list.recent.end() && found->kind == AmendmentKind::kZone)
+    return failure(name + " is a zone, which ends by itself: ergocast amend --list shows when");
   return failure("a later amendment has replaced " + name +
                  ": ergocast amend --list shows which can be cancelled");
 }
@@ -143,6 +174,7 @@ std::optional<std::string> AmendOrder::why_impossible(const MonitoredRun& team) 
     return "the mission ends before that, at " +
            team.mission_time(team.tick() + team.ticks_left()) + ": name an earlier time";
   if (wish_.kind == AmendmentKind::kEnd) return why_no_end(team);
+  if (wish_.kind == AmendmentKind::kZone) return why_no_place(team);
   const TargetChange* const waiting = waiting_target(team);
   const std::chrono::duration<double> patience = kAnswerPatience;
   if (wish_.brings_back || waiting == nullptr ||
@@ -218,7 +250,19 @@ std::string amendment_text(const MonitoredRun& team, const Amendment& amendment)
   const bool holds = team.tick() >= amendment.from;
   return "amendment " + std::to_string(amendment.number) + ", " + kind_text(team, amendment) +
          (holds ? ", holds since " : ", holds from ") + team.mission_time(amendment.from) +
-         (holds ? "" : in_seconds(team.seconds_until(amendment.from)));
+         (holds ? "" : in_seconds(team.seconds_until(amendment.from))) +
+         zone_ticks_text(team, amendment.number);
+}
+
+std::string inside_text(const MonitoredRun& team, const Zone& zone) {
+  std::vector<AgentId> inside;
+  for (const auto& [id, x_m] : team.places_m())
+    if (is_inside(zone, x_m)) inside.push_back(id);
+  if (inside.empty()) return "";
+  std::string text = inside.size() == 1 ? "agent " : "agents ";
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == inside.size() ? " and " : ", ") + std::to_string(inside[i]);
+  return text + (inside.size() == 1 ? " is" : " are") + " in it";
 }
 
 }  // namespace ergocast::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order to cover another target, or to end at another time.
+// The order to cover another target, to end at another time, or to leave a zone.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +26,9 @@ struct AmendmentWish {
 AmendmentWish wish_of(const TargetChange& target);
 /// @param tick_count  is_tick_count() of the mission
 AmendmentWish wish_of_end(Tick tick_count);
+/// @param zone  for as many ticks as it lasts; AmendOrder's delay is how many ticks it is closed
+///              before nobody is inside
+AmendmentWish wish_of(const Zone& zone);
 
 /// What undoes an amendment: what held before it. An error says why it cannot be undone, and what
 /// to do instead. @pre team.knows_mission()
@@ -62,6 +65,8 @@ class AmendOrder final : public Order {
 /// The earliest tick that a coordinator can name now, as far as this command knows.
 /// @pre team.knows_mission()
 Tick earliest_tick(const MonitoredRun& team, Tick delay);
+/// "agents 1 and 4 are in it" for the zone of an amendment; empty if nobody is.
+std::string inside_text(const MonitoredRun& team, const Zone& zone);
 
 /// "amendment 3, target 5f0c…, holds since tick 517, t = 51.7 s", or "… holds from tick 517,
 /// t = 51.7 s, in 2.0 s". @pre team.knows_mission()

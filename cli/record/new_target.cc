@@ -76,6 +76,10 @@ Result<Scenario, std::vector<Problem>> load_new_target(const Mission& mission, c
   return loaded;
 }
 
+std::string zone_context(const Mission& mission, const fs::path& recorded) {
+  return mission_text(mission) + origin_text(recorded);
+}
+
 TargetChange target_change_of(const Scenario& scenario) {
   return {.target = scenario.mission().target_coefficients,
           .cosine = scenario.mission().cosine_target};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/base/result.h"
@@ -19,6 +20,9 @@ Result<Scenario, std::vector<Problem>> load_new_target(const Mission& mission,
                                                        const std::filesystem::path& file,
                                                        const Overrides& overrides,
                                                        const std::filesystem::path& recorded);
+
+/// The text that load_zone() needs: the mission with the origin of its recorded scenario.
+std::string zone_context(const Mission& mission, const std::filesystem::path& recorded);
 
 /// The coefficients of a compiled target, as AMEND carries them.
 TargetChange target_change_of(const Scenario& scenario);

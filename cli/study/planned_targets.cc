@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiles each target for the mission, and lists them by their ticks.
+// Compiles each target and each zone for the mission, and lists them by their ticks.
 #include "cli/study/planned_targets.h"
 
 #include <algorithm>
@@ -11,46 +11,60 @@
 #include "cli/record/new_target.h"
 #include "cli/report_error.h"
 #include "core/motion/end_rules.h"
+#include "core/motion/zones.h"
 #include "plan/amendment_list.h"
 #include "plan/plan.h"
 #include "runtime/process/shipped_scenarios.h"
+#include "scenario/zone_file.h"
 #include "text/read_number.h"
 #include "text/shortest.h"
 
 namespace ergocast::cli {
 namespace {
 
-/// The T of "T:REST"; REST is left in `rest`. Nothing if it is none.
-std::optional<double> time_of(const std::string& text, std::string& rest) {
+/// "T:REST" as T and REST; REST is empty without a colon.
+std::pair<std::string_view, std::string> at_colon(const std::string& text) {
   const std::size_t colon = text.find(':');
-  const auto t_s = read_number<double>(std::string_view(text).substr(0, colon));
-  if (colon == std::string::npos || colon + 1 == text.size() || !t_s || !(*t_s >= 0))
-    return std::nullopt;
-  rest = text.substr(colon + 1);
-  return t_s;
+  const std::string_view time = std::string_view(text).substr(0, colon);
+  return {time, colon == std::string::npos ? "" : text.substr(colon + 1)};
+}
+
+std::optional<double> seconds_in(std::string_view text) {
+  const auto value = read_number<double>(text);
+  return value && *value >= 0 ? value : std::nullopt;
 }
 
 PlannedAmendment planned_from(const std::string& text) {
-  std::string file;
-  const auto t_s = time_of(text, file);
-  if (!t_s)
-    throw CLI::ValidationError("--amend", "\"" + text +
-                                              "\" is not T:FILE, such as 60:north.textproto for a "
-                                              "target from t = 60 s on");
-  if (const std::string problem = shipped_scenario()(file); !problem.empty())
+  const auto [time, file] = at_colon(text);
+  const std::size_t plus = time.find('+');
+  const auto t_s = seconds_in(time.substr(0, plus));
+  std::optional<double> lasts_s;
+  if (plus != std::string_view::npos) lasts_s = seconds_in(time.substr(plus + 1)).value_or(0);
+  if (file.empty() || !t_s || (lasts_s && *lasts_s == 0))
+    throw CLI::ValidationError("--amend",
+                               "\"" + text +
+                                   "\" is not T:FILE, such as 60:north.textproto for a target "
+                                   "from t = 60 s on, or 60+300:field.geojson for a zone that is "
+                                   "free then and for 300 s");
+  std::string found = file;
+  if (const std::string problem = shipped_scenario()(found); !problem.empty())
     throw CLI::ValidationError("--amend", problem);
-  return {.t_s = *t_s, .file = file, .flag = "--amend " + text};
+  return {.t_s = *t_s, .file = found, .lasts_s = lasts_s, .flag = "--amend " + text};
 }
 
 PlannedAmendment planned_end_from(const std::string& text) {
-  std::string time;
-  const auto t_s = time_of(text, time);
-  const auto wish = t_s ? end_wish_from(time) : std::nullopt;
+  const auto [time, rest] = at_colon(text);
+  const auto t_s = seconds_in(time);
+  const auto wish = t_s ? end_wish_from(rest) : std::nullopt;
   if (!wish)
     throw CLI::ValidationError("--end", "\"" + text +
                                             "\" is not T:TIME, such as 60:+600s for an end ten "
                                             "minutes later, named at t = 60 s");
   return {.t_s = *t_s, .end = wish, .flag = "--end " + text};
+}
+
+bool is_zone_file(const PlannedAmendment& one) {
+  return !one.end && (one.lasts_s || looks_like_zone(one.file));
 }
 
 using Planned = std::vector<std::pair<Tick, PlannedAmendment>>;
@@ -65,7 +79,8 @@ std::optional<std::string> why_impossible(Tick tick, const PlannedAmendment& one
   if (tick >= end)
     return one.flag + ": the mission has ended then, at t = " +
            shortest(static_cast<double>(end) * timing.dt_s) + " s: name an earlier time";
-  if (!one.end && !list.targets.empty() && list.targets.back().from == tick)
+  const bool is_target = !one.end && !is_zone_file(one);
+  if (is_target && !list.targets.empty() && list.targets.back().from == tick)
     return one.flag + ": another target holds from the same tick on: name another time";
   return std::nullopt;
 }
@@ -109,6 +124,45 @@ bool append_target(Tick tick, const PlannedAmendment& one, const Mission& missio
   return true;
 }
 
+/// Adds a zone that is free from a tick on, and closed as long before as agents need to leave it.
+/// If it has a problem, prints it and returns false.
+bool add_zone(Tick tick, const PlannedAmendment& planned, const Mission& mission,
+              const std::filesystem::path& scenario, Amendments& list) {
+  auto loaded = load_zone(planned.file, zone_context(mission, scenario));
+  if (!loaded) return report_error(kExitBadInput, loaded.error()) == kExitDone;
+  Zone zone = *std::move(loaded);
+  const double dt_s = mission.timing.dt_s;
+  const Tick lasts = planned.lasts_s ? static_cast<Tick>(std::llround(*planned.lasts_s / dt_s))
+                                     : mission.timing.tick_count;
+  zone.until = std::max<Tick>(1, lasts);
+  std::vector<Zone> others = list.zones;
+  std::erase_if(others, [tick](const Zone& other) { return other.until <= tick; });
+  if (const auto problem = zone_problem(mission, zone, others)) {
+    const Problem found{planned.file.string(), problem->what, problem->remedy};
+    return report_error(kExitBadInput, std::vector{found}) == kExitDone;
+  }
+  const Tick notice = least_notice_ticks(mission, zone, others);
+  if (tick < notice) {
+    print_message(planned.flag + ": the agents may need " +
+                  shortest(static_cast<double>(notice) * dt_s) +
+                  " s to leave the zone: name a later time");
+    return false;
+  }
+  const Tick closed = tick - notice;
+  if (zones_at(list, closed) >= kMaxZones) {
+    print_message(planned.flag + ": at most " + std::to_string(kMaxZones) +
+                  " zones can be in force at a time");
+    return false;
+  }
+  zone.number = list.named++;
+  zone.closed = closed;
+  zone.from = tick;
+  zone.until += tick;
+  list.recent.push_back({zone.number, AmendmentKind::kZone, tick, zone_hash(zone)});
+  list.zones.push_back(std::move(zone));
+  return true;
+}
+
 }  // namespace
 
 CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedAmendment>& planned) {
@@ -118,10 +172,10 @@ CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedAmendment>& 
           [&planned](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) planned.push_back(planned_from(text));
           },
-          "A new target from mission time T [s] on, as `ergocast amend --target FILE` gives it; "
-          "once for each target")
+          "A new target from mission time T [s] on, as `ergocast amend --target FILE` gives it, or "
+          "with T+TIME a zone that is free then and for TIME [s]; once for each")
       ->allow_extra_args(false)
-      ->type_name("T:FILE");
+      ->type_name("T[+TIME]:FILE");
 }
 
 CLI::Option* add_end_option(CLI::App& command, std::vector<PlannedAmendment>& planned) {
@@ -155,7 +209,10 @@ std::optional<Amendments> amendments_with(const std::vector<PlannedAmendment>& p
       print_message(*problem);
       return std::nullopt;
     }
-    if (!one.end && !append_target(tick, one, mission, file, list)) return std::nullopt;
+    if (one.end) continue;
+    const bool appended = is_zone_file(one) ? add_zone(tick, one, mission, file, list)
+                                            : append_target(tick, one, mission, file, list);
+    if (!appended) return std::nullopt;
   }
   if (encode_plan(mission).size() + encode_amendments(list).size() <= kMaxPlanBytes) return list;
   print_message("--amend: the targets have more coefficients than a mission can carry: plan fewer");

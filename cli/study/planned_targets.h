@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// New targets that a simulated coordinator knows from the beginning: `ergocast simulate --amend`.
+// New targets and zones that a simulated coordinator knows from the beginning: `ergocast simulate
+// --amend`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,13 +15,14 @@
 namespace ergocast::cli {
 
 struct PlannedAmendment {
-  double t_s = 0;                ///< mission time from which it holds
-  std::filesystem::path file{};  ///< a target
-  std::optional<EndWish> end{};  ///< in the place of a target
-  std::string flag;              ///< as written, for problems
+  double t_s = 0;                   ///< mission time from which it holds
+  std::filesystem::path file{};     ///< a target or a zone
+  std::optional<EndWish> end{};     ///< in the place of a file
+  std::optional<double> lasts_s{};  ///< of a zone; nothing: until the end, or no zone
+  std::string flag;                 ///< as written, for problems
 };
 
-/// --amend T:FILE.
+/// --amend T:FILE, and T+TIME:FILE for a zone.
 CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedAmendment>& planned);
 
 /// --end T:TIME.

@@ -19,6 +19,11 @@ void AmendmentHistory::note(const Amendments& list) {
   if (all.size() > kMost) all.erase(all.begin(), all.end() - kMost);
   if (all == amendments_) return;
   amendments_ = std::move(all);
+  std::erase_if(zones_, [&](const Zone& zone) {
+    return zone.number >= first || zone.number < amendments_.front().number;
+  });
+  for (const Zone& zone : list.zones)
+    if (zone.number >= first) zones_.push_back(zone);
   ++changes_;
 }
 
@@ -30,13 +35,15 @@ void AmendmentHistory::keep(const TargetChange& change) {
   if (targets_.size() > kMostTargets) targets_.pop_front();
 }
 
-void AmendmentHistory::add_new(Cursor& cursor, nlohmann::ordered_json& frame) const {
+void AmendmentHistory::add_new(Cursor& cursor, const Box& domain,
+                               nlohmann::ordered_json& frame) const {
   if (cursor.changes == changes_) return;
   auto& targets = frame["targets"] = nlohmann::ordered_json::object();
   const auto fresh = std::min<std::uint64_t>(targets_ever_ - cursor.targets, targets_.size());
   for (auto at = targets_.end() - static_cast<std::ptrdiff_t>(fresh); at != targets_.end(); ++at)
     targets[page_target_name(at->hash)] = at->coefficients;
   frame["amendments"] = page_amendments(amendments_);
+  if (!zones_.empty()) frame["zones"] = page_zones(zones_, domain);
   cursor = {changes_, targets_ever_};
 }
 

@@ -27,9 +27,9 @@ class AmendmentHistory {
   struct Cursor {
     std::uint64_t changes = 0, targets = 0;
   };
-  /// Adds "amendments", all of them, and "targets", those that this browser lacks, if anything has
-  /// changed since; report/page.h has both.
-  void add_new(Cursor& cursor, nlohmann::ordered_json& frame) const;
+  /// Adds "amendments" and "zones", all of them, and "targets", those that this browser lacks, if
+  /// anything has changed since; report/page.h has them.
+  void add_new(Cursor& cursor, const Box& domain, nlohmann::ordered_json& frame) const;
 
  private:
   struct Target {
@@ -39,6 +39,7 @@ class AmendmentHistory {
   void keep(const TargetChange& change);
 
   std::vector<Amendment> amendments_;  // ascending by number
+  std::vector<Zone> zones_;            // those of amendments_
   std::deque<Target> targets_;         // in the order of their arrival
   std::uint64_t changes_ = 0, targets_ever_ = 0;
 };

@@ -77,6 +77,12 @@ std::string team_json(const TeamPicture& at) {
     json["target"] = {{"amendment", at.target->number}, {"from_tick", at.target->from}};
   json["end"] = nullptr;
   if (at.end) json["end"] = {{"amendment", at.end->number}, {"from_tick", at.end->from}};
+  json["zones"] = nlohmann::ordered_json::array();
+  for (const Zone& zone : at.zones)
+    json["zones"].push_back({{"amendment", zone.number},
+                             {"closed_tick", zone.closed},
+                             {"from_tick", zone.from},
+                             {"until_tick", zone.until}});
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {

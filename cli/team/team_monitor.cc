@@ -102,6 +102,12 @@ std::vector<AgentPlace> MonitoredRun::places() const {
   return agents;
 }
 
+std::map<AgentId, Eigen::Vector3d> MonitoredRun::places_m() const {
+  std::map<AgentId, Eigen::Vector3d> places;
+  for (const auto& [id, vehicle] : vehicles_) places[id] = vehicle.position_m;
+  return places;
+}
+
 MonitoredRun::Standing MonitoredRun::standing() const {
   Standing found;
   found.all = static_cast<int>(vehicles_.size());

@@ -87,6 +87,8 @@ class MonitoredRun {
     std::vector<std::string> moving;  ///< the others: "agent 2"
   };
   Standing standing() const;
+  /// Where each vehicle is in the newest state that names it [m].
+  std::map<AgentId, Eigen::Vector3d> places_m() const;
 
   /// Processes that are not silent and have not reported their end: "agent 2", "the world".
   std::vector<std::string> still_there(Instant now) const;

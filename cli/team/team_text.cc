@@ -155,6 +155,13 @@ std::string target_text(const TeamPicture& at) {
          number(" since t = %.1f s", static_cast<double>(from) * at.dt_s);
 }
 
+/// "zone of amendment 3 until t = 120.0 s", in mission time if no pause begins.
+std::string zone_text(const TeamPicture& at, const Zone& zone) {
+  const Tick until = counted_ticks(at.holds, zone.until);
+  return "zone of amendment " + std::to_string(zone.number) +
+         number(" until t = %.1f s", static_cast<double>(until) * at.dt_s);
+}
+
 std::string second_line(const TeamPicture& at) {
   std::string text = at.over ? "the mission is over"
                              : std::to_string(at.agents_alive) + " of " +
@@ -167,6 +174,7 @@ std::string second_line(const TeamPicture& at) {
   if (at.end)
     text += ", end of amendment " + std::to_string(at.end->number) +
             number(" at t = %.1f s", static_cast<double>(at.tick_count) * at.dt_s);
+  for (const Zone& zone : at.zones) text += ", " + zone_text(at, zone);
   if (at.missed_deadlines > 0)
     text += ", " + std::to_string(at.missed_deadlines) + " commands late";
   if (at.skipped_ticks > 0) text += ", " + std::to_string(at.skipped_ticks) + " ticks skipped";

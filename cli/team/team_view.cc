@@ -242,6 +242,8 @@ TeamPicture TeamView::picture(Instant now) const {
   if (!ends.empty())
     picture.end = {ends.back().number, AmendmentKind::kEnd, ends.back().from,
                    static_cast<std::uint64_t>(ends.back().tick_count)};
+  for (const Zone& zone : follower().amendments().zones)
+    if (zone.closed_at(picture.tick)) picture.zones.push_back(zone);
   picture.counted = counted_ticks(follower().holds(), picture.tick);
   picture.paused =
       !over() && (follower().mission() ? is_held(follower().holds(), picture.tick) : team_paused_);

@@ -56,7 +56,7 @@ bool are_ends(std::span<const EndChange> ends) {
 }  // namespace
 
 const char* to_string(AmendmentKind kind) {
-  constexpr const char* kNames[] = {"pause", "resume", "target", "end"};
+  constexpr const char* kNames[] = {"pause", "resume", "target", "end", "zone"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -87,9 +87,11 @@ bool are_amendments(const Amendments& list, const Mission& mission) {
          named_changes(list.holds) <= list.named && list.recent.size() <= kMaxRecentAmendments &&
          ascend(list.recent, list.named) && ascend(list.targets, list.named) &&
          targets_follow(list.targets) && ascend(list.ends, list.named) && are_ends(list.ends) &&
-         std::ranges::all_of(list.targets, [&mission](const TargetChange& change) {
-           return is_target(change.target, change.cosine, mission);
-         });
+         std::ranges::all_of(list.targets,
+                             [&mission](const TargetChange& change) {
+                               return is_target(change.target, change.cosine, mission);
+                             }) &&
+         ascend(list.zones, list.named) && are_zones(list.zones, mission.domain);
 }
 
 Amendments only_pauses(std::vector<Hold> holds) {
@@ -150,6 +152,23 @@ void name_end(Amendments& list, Tick tick, Tick tick_count) {
   list.ends.push_back({list.named, tick, tick_count});
   name(list,
        {.kind = AmendmentKind::kEnd, .from = tick, .hash = static_cast<std::uint64_t>(tick_count)});
+}
+
+void name_zone(Amendments& list, Tick tick, Tick notice, Zone zone) {
+  std::erase_if(list.zones, [tick](const Zone& one) { return one.until <= tick; });
+  ERGOCAST_REQUIRE(list.zones.size() < kMaxZones);
+  const Tick lasts = zone.until - zone.from;
+  zone.number = list.named;
+  zone.closed = tick;
+  zone.from = tick + notice;
+  zone.until = zone.from + lasts;
+  name(list, {.kind = AmendmentKind::kZone, .from = zone.from, .hash = zone_hash(zone)});
+  list.zones.push_back(std::move(zone));
+}
+
+std::size_t zones_at(const Amendments& list, Tick tick) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(list.zones, [tick](const Zone& one) { return one.until > tick; }));
 }
 
 }  // namespace ergocast

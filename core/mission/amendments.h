@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What has changed in a mission since its plan: pauses, new targets, and other ends.
+// What has changed in a mission since its plan: pauses, new targets, other ends, and zones.
 //
 // The coordinator names each amendment: it gives it the next number, and the world's tick from
 // which it holds. All processes learn of an amendment before its tick, so all change at the same
@@ -15,6 +15,7 @@
 #include "core/basis/basis.h"
 #include "core/mission/hold.h"
 #include "core/mission/mission.h"
+#include "core/mission/zones.h"
 
 namespace ergocast {
 
@@ -23,6 +24,7 @@ enum class AmendmentKind {
   kResume,  ///< the mission goes on: the last Hold ends
   kTarget,  ///< the team covers another target
   kEnd,     ///< the mission has another number of ticks
+  kZone,    ///< the team leaves a part of the domain, core/mission/zones.h
 };
 const char* to_string(AmendmentKind kind);
 
@@ -31,7 +33,8 @@ struct Amendment {
   std::int32_t number = 0;  ///< from 0
   AmendmentKind kind = AmendmentKind::kPause;
   Tick from = 0;           ///< the world's tick from which it holds
-  std::uint64_t hash = 0;  ///< kTarget: target_hash(); kEnd: the number of ticks; else 0
+  /// kTarget: target_hash(); kEnd: the number of ticks; kZone: zone_hash(); else 0
+  std::uint64_t hash = 0;
 
   bool operator==(const Amendment&) const = default;
 };
@@ -72,8 +75,13 @@ struct Amendments {
   std::vector<TargetChange> targets;
   /// All ends, ascending by number.
   std::vector<EndChange> ends;
+  /// All zones that have not ended, ascending by number. They have places of their own, so that
+  /// targets cannot crowd them out.
+  std::vector<Zone> zones{};
 
-  bool empty() const { return named == 0 && holds.empty() && targets.empty() && ends.empty(); }
+  bool empty() const {
+    return named == 0 && holds.empty() && targets.empty() && ends.empty() && zones.empty();
+  }
   bool operator==(const Amendments&) const = default;
 };
 
@@ -89,8 +97,8 @@ inline constexpr std::int32_t kMaxAmendments = 1'000'000;
 inline constexpr std::size_t kMaxEnds = 32;
 
 /// Whether a coordinator can have named this list for `mission`: are_holds(), numbers and ticks
-/// ascend, and each target is one of the mission's basis within limits (is_target()). Ends have at
-/// least one tick.
+/// ascend, each target is one of the mission's basis within limits (is_target()), ends have at
+/// least one tick, and zones are_zones().
 bool are_amendments(const Amendments& list, const Mission& mission);
 
 /// Whether the numbers are a target of `mission`: as many as its basis has modes, finite, |μ| ≤ 1
@@ -125,5 +133,12 @@ void name_target(Amendments& list, Tick tick, TargetChange change);
 void replace_target(Amendments& list, TargetChange change);
 /// Names the next amendment, an end. @pre the list has room: ends.size() < kMaxEnds
 void name_end(Amendments& list, Tick tick, Tick tick_count);
+/// Names the next amendment, a zone that is closed from `tick` on and free `notice` ticks later.
+/// Zones that have ended leave the list.
+/// @param zone  with `until` − `from` alone of its ticks
+/// @pre zones_at(list, tick) < kMaxZones
+void name_zone(Amendments& list, Tick tick, Tick notice, Zone zone);
+/// How many zones have not ended at a tick.
+std::size_t zones_at(const Amendments& list, Tick tick);
 
 }  // namespace ergocast

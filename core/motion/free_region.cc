@@ -119,18 +119,24 @@ void FreeRegion::grow(int seed, int part) {
   }
 }
 
-std::vector<double> FreeRegion::ways_m(int from) const {
+std::vector<double> FreeRegion::ways_m(int from) const { return ways_m({from}, {}); }
+
+std::vector<double> FreeRegion::ways_m(const std::vector<int>& from,
+                                       const std::vector<bool>& crossed) const {
   std::vector<double> ways(part_.size(), std::numeric_limits<double>::infinity());
   using Reached = std::pair<double, int>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
-  ways[static_cast<std::size_t>(from)] = 0;
-  front.emplace(0, from);
+  for (const int cell : from) {
+    ways[static_cast<std::size_t>(cell)] = 0;
+    front.emplace(0, cell);
+  }
   while (!front.empty()) {
     const auto [way_m, cell] = front.top();
     front.pop();
     if (way_m > ways[static_cast<std::size_t>(cell)]) continue;
     const double so_far_m = way_m;
     for_joined(cell, [&](int next, double step_m) {
+      if (!crossed.empty() && !crossed[static_cast<std::size_t>(next)]) return;
       const double longer_m = so_far_m + step_m;
       double& its_m = ways[static_cast<std::size_t>(next)];
       if (longer_m >= its_m) return;

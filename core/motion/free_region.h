@@ -39,11 +39,17 @@ class FreeRegion {
   Eigen::Vector2d middle_m(int part) const;
 
   int cells() const { return columns_ * rows_; }
+  /// The longer side of a cell.
+  double cell_size_m() const { return std::max(steps_m_[0], steps_m_[2]); }
+  bool is_free(int cell) const { return part_[static_cast<std::size_t>(cell)] >= 0; }
   int cell_at(const Eigen::Vector2d& x_m) const;
   Eigen::Vector2d center_m(int cell) const;
   /// The length of the shortest way along neighbours from the centre of a cell to that of each
   /// cell. It is at most 8 % too long, and infinite where there is no way.
   std::vector<double> ways_m(int from) const;
+  /// The same from the nearest of several cells, and only through cells that may be crossed.
+  /// @param crossed  for each cell whether it may be; empty: all may
+  std::vector<double> ways_m(const std::vector<int>& from, const std::vector<bool>& crossed) const;
   /// The neighbour through which the shortest of these ways leads; the cell itself at the end of
   /// the ways and where there is none. Ways that differ only by rounding are equally short. Among
   /// them the one with the longest first step is taken, so neither the domain's origin nor its axes

@@ -12,6 +12,7 @@
 #include "core/mission/kinds.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/walls.h"
+#include "core/motion/zones.h"
 
 namespace ergocast {
 namespace {
@@ -53,13 +54,24 @@ SeparationFilter::SeparationFilter(const Mission& mission, Tick hold_ticks)
                   (greatest_coordinate_m(mission.domain) + mission.separation.distance_m)),
       // A wall that touches a body may need four sets.
       constraints_(kMaxAgents + 4 * vertex_count(mission.walls)) {
-  ERGOCAST_REQUIRE(any_filtered(mission));
   taken_.reserve(kMaxAgents + 4 * vertex_count(mission.walls));
   for (const Motion& motion : motions_)
     kept_from_walls_m_.push_back(kept_from_walls_m(mission, motion));
+  for (const Motion& motion : motions_) {
+    kept_from_zones_m_.push_back(kept_from_zones_m(mission, motion));
+    bound_from_zones_m_.push_back(bound_from_zones_m(mission, motion));
+  }
   for (const Motion& one : motions_) {
     for (const Motion& other : motions_) pairs_.push_back(pair_between(one, other));
   }
+}
+
+void SeparationFilter::set_zones(std::span<const Zone> zones) {
+  zones_.assign(zones.begin(), zones.end());
+  std::size_t edges = vertex_count(mission_.walls);
+  for (const Zone& zone : zones_) edges += zone.corners_m.size();
+  constraints_ = StepConstraints(kMaxAgents + 4 * edges);
+  taken_.reserve(kMaxAgents + 4 * edges);
 }
 
 const Motion& SeparationFilter::motion_of(AgentId id) const {
@@ -190,7 +202,7 @@ SafeVelocity SeparationFilter::safe_step(const Mover& self, const Eigen::Vector3
   Eigen::Vector3d step_m = constraints_.nearest(wanted_m);
   const double shortest_m = kBlockedShare * length_of(wanted_m);
   // An agent that faces a wall goes along it for longer, core/motion/wall_following.h.
-  if (length_of(step_m) < shortest_m && !safe.wall) {
+  if (length_of(step_m) < shortest_m && (!safe.wall || !mission_.domain.planar())) {
     const Eigen::Vector3d beside_m = constraints_.nearest(sideways(self, wanted_m));
     const bool better = constraints_.allow(beside_m) && length_of(beside_m) > length_of(step_m);
     if (better) step_m = beside_m;

@@ -31,6 +31,7 @@
 
 #include "core/base/ids.h"
 #include "core/mission/mission.h"
+#include "core/mission/zones.h"
 #include "core/motion/step_constraints.h"
 #include "core/motion/vehicle.h"
 
@@ -75,6 +76,10 @@ class SeparationFilter {
   /// @param hold_ticks  for how many ticks after its own one a command may still be executed
   SeparationFilter(const Mission& mission, Tick hold_ticks);
 
+  /// From now on the zones of this list count, each at the ticks at which it is closed, and for
+  /// bodies that it binds (core/motion/zones.h).
+  void set_zones(std::span<const Zone> zones);
+
   /// The part of `wanted_mps` that `self` may execute: all of it, bit for bit, if that is allowed.
   /// For vehicles that are no points it is the velocity at the tick's end, which the vehicle can
   /// reach. The result depends on the arguments alone. In a lockstep mission all positions are
@@ -110,7 +115,10 @@ class SeparationFilter {
   void begin(const Mover& self, double reach_m);
   void take(AgentId whose, const StepConstraints::Set& set);
   void keep_from_walls(const Mover& self, const HoldingSet& own);
-  void keep_from_wall(const Mover& self, const HoldingSet& own, const Segment& edge);
+  void keep_from_wall(const Mover& self, const HoldingSet& own, const Segment& edge, double kept_m);
+  void keep_from_zones(const Mover& self, const HoldingSet& own);
+  void keep_from_plane(const Mover& self, const HoldingSet& own, const Eigen::Vector3d& y_m,
+                       double square_m2, double kept_m);
   SafeVelocity blocked_by(const Eigen::Vector3d& wanted_m) const;
   double side(const Mover& self) const;
   SafeVelocity stopped(const Mover& self, const Neighbour& other) const;
@@ -140,6 +148,8 @@ class SeparationFilter {
   StepConstraints constraints_;
   std::vector<AgentId> taken_;             // body of each constraint; kUnassigned: a wall
   std::vector<double> kept_from_walls_m_;  // by each kind of agents
+  std::vector<Zone> zones_;
+  std::vector<double> kept_from_zones_m_, bound_from_zones_m_;  // by each kind of agents
 };
 
 /// κ, the share of a gap that two bodies may close in a tick: 1, or min(1, dt/4T) if they follow

@@ -18,53 +18,78 @@
 #include "core/mission/kinds.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/separation.h"
+#include "core/motion/zones.h"
 
 namespace ergocast {
-namespace {
-
-/// The vector between the nearest points of a way and an edge, from the way to the edge, if the two
-/// do not cross.
-Eigen::Vector2d shortest_to_m(const Segment& way, const Segment& edge) {
-  const Eigen::Vector2d candidates[] = {
-      edge.nearest_m(way.from_m) - way.from_m, edge.nearest_m(way.to_m) - way.to_m,
-      edge.from_m - way.nearest_m(edge.from_m), edge.to_m - way.nearest_m(edge.to_m)};
-  return *std::ranges::min_element(candidates, {},
-                                   [](const Eigen::Vector2d& one) { return one.squaredNorm(); });
-}
-
-}  // namespace
 
 void SeparationFilter::keep_from_walls(const Mover& self, const HoldingSet& own) {
-  for_segments(mission_.walls, [&](const Segment& edge) { keep_from_wall(self, own, edge); });
+  const auto kind = static_cast<std::size_t>(planned_kind(mission_, self.id));
+  for_segments(mission_.walls, [&](const Segment& edge) {
+    keep_from_wall(self, own, edge, kept_from_walls_m_[kind]);
+  });
+  if (!zones_.empty()) keep_from_zones(self, own);
 }
 
-/// An edge that no step reaches needs no set.
-void SeparationFilter::keep_from_wall(const Mover& self, const HoldingSet& own,
-                                      const Segment& edge) {
-  const Separation& rule = mission_.separation;
+/// A zone that binds counts as a wall around it, or in a box as a floor below or a ceiling above,
+/// if that is farther away.
+void SeparationFilter::keep_from_zones(const Mover& self, const HoldingSet& own) {
   const auto kind = static_cast<std::size_t>(planned_kind(mission_, self.id));
+  const StraightWay way{own.from_m, own.along_m};
+  for (const Zone& zone : zones_) {
+    if (!zone.closed_at(self.tick)) continue;
+    const double beside = beside_m(zone, way), above = above_or_below_m(zone, way);
+    if (std::max(beside, above) < bound_from_zones_m_[kind]) continue;
+    const double kept_m = kept_from_zones_m_[kind];
+    if (above >= beside) {
+      const double up = way.from_m.z() > zone.low_m ? 1 : -1;
+      keep_from_plane(self, own, {0, 0, -up * above}, above * above, kept_m);
+      continue;
+    }
+    for (std::size_t i = 0; i < zone.corners_m.size(); ++i) {
+      const std::size_t next = i + 1 < zone.corners_m.size() ? i + 1 : 0;
+      keep_from_wall(self, own, {zone.corners_m[i], zone.corners_m[next]}, kept_m);
+    }
+  }
+}
+
+void SeparationFilter::keep_from_wall(const Mover& self, const HoldingSet& own, const Segment& edge,
+                                      double kept_m) {
+  const Segment way{own.from_m.head<2>(), (own.from_m + own.along_m).head<2>()};
+  const Eigen::Vector2d y_m = shortest_to_m(way, edge);
+  keep_from_plane(self, own, on_ground(y_m), y_m.squaredNorm(), kept_m);
+}
+
+/// Keeps from what lies beyond the plane through the end of `y_m`, which is perpendicular to it. A
+/// plane that no step reaches needs no set.
+void SeparationFilter::keep_from_plane(const Mover& self, const HoldingSet& own,
+                                       const Eigen::Vector3d& y_m, double square_m2,
+                                       double clearance_m) {
+  const Separation& rule = mission_.separation;
   // V T + e more if the body follows late. late_edge_margin_m() has 2 e, and one of them is already
   // in the uncertainty.
   const double late_m =
       rule.response_s > 0 ? late_edge_margin_m(mission_, self.id) - rule.position_error_m : 0;
-  const double kept_m = kept_from_walls_m_[kind] + late_m;
+  const double kept_m = clearance_m + late_m;
   const double hold_ticks = rule.distance_m > 0 ? hold_ticks_ : 0;
   const double unsure_m =
       rule.position_error_m +
       hold_ticks * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m);
-  const Segment way{own.from_m.head<2>(), (own.from_m + own.along_m).head<2>()};
-  const Eigen::Vector2d y_m = shortest_to_m(way, edge);
   const double far_m = kept_m + unsure_m + rule.disturbance_m + constraints_.reach_m() / gain_;
-  if (y_m.squaredNorm() >= far_m * far_m) return;
-  const double rho_m = std::sqrt(y_m.squaredNorm());
+  if (square_m2 >= far_m * far_m) return;
+  const double rho_m = std::sqrt(square_m2);
   if (rho_m <= unsure_m) {  // it may be on either side
+    if (y_m.z() != 0) {
+      take(kUnassigned, {{0, 0, 1}, 0, 0, 0});
+      take(kUnassigned, {{0, 0, -1}, 0, 0, 0});
+      return;
+    }
     for (const Eigen::Vector3d& u : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
       take(kUnassigned, {u, 0, 0, 0});
       take(kUnassigned, {-u, 0, 0, 0});
     }
     return;
   }
-  const Eigen::Vector3d n = on_ground(y_m) / rho_m;
+  const Eigen::Vector3d n = y_m / rho_m;
   const double end_m = std::max(0.0, n.dot(own.along_m));
   const double gap_m = gain_ * (rho_m - unsure_m - kept_m), hard_m = end_m + std::max(0.0, gap_m);
   const double bound_m = rule.disturbance_m > 0 ? end_m + gap_m - rule.disturbance_m : hard_m;

@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/base/geometry.h"
 #include "core/mission/station.h"
 #include "core/motion/home.h"
 #include "core/motion/walls.h"
+#include "core/motion/zones.h"
 
 namespace ergocast {
 namespace {
@@ -45,12 +47,32 @@ double closing_s(double response_s, double dt_s) {
 
 }  // namespace
 
+double slack_on_way_s(const Mission& mission, AgentId id) {
+  const Motion motion = motion_of(mission, id);
+  const double speed_mps = home_speed_mps(mission, id);
+  const double dt_s = motion.dt_s, corners = mission.walls.empty() ? 1 : kCorners;
+  const VehicleLimits& vehicle = motion.vehicle;
+  double slack = 2 * dt_s + closing_s(mission.separation.response_s, dt_s);
+  if (mission.timing.pace == Pace::kRealtime) slack += 2 * dt_s + mission.timing.command_hold_s;
+  if (motion.has_inertia())
+    slack += corners * kTurnsRound * speed_mps / vehicle.max_acceleration_mps2;
+  const bool turns = vehicle.max_turn_radps > 0, circles = vehicle.kind == VehicleKind::kFixedWing;
+  if (turns)
+    slack += corners * (circles ? 2 * kCircles : 1) * std::numbers::pi / vehicle.max_turn_radps;
+  return slack;
+}
+
+double drift_on_way_s(const Mission& mission, AgentId id, double travel_s) {
+  const double drift = kWayDeviations * mission.disturbance_intensity / home_speed_mps(mission, id);
+  return drift * std::sqrt(travel_s);
+}
+
 WayHome::WayHome(const Mission& mission, AgentId id)
     : motion_(motion_of(mission, id)),
       home_m_(home_of(mission, id).value()),
       rest_from_(rest_from(mission, id)),
       speed_mps_(home_speed_mps(mission, id)),
-      slack_s_(slack_s(mission)),
+      slack_s_(slack_on_way_s(mission, id)),
       ahead_(motion_.vehicle.min_speed_mps == 0
                  ? kAhead
                  : std::min(kAheadOfWings,
@@ -68,24 +90,45 @@ WayHome::WayHome(const Mission& mission, AgentId id)
     ways_m_ = region_->ways_m(*cell);
 }
 
-double WayHome::slack_s(const Mission& mission) const {
-  const double dt_s = motion_.dt_s, corners = mission.walls.empty() ? 1 : kCorners;
-  const VehicleLimits& vehicle = motion_.vehicle;
-  double slack = 2 * dt_s + closing_s(mission.separation.response_s, dt_s);
-  if (mission.timing.pace == Pace::kRealtime) slack += 2 * dt_s + mission.timing.command_hold_s;
-  if (motion_.has_inertia())
-    slack += corners * kTurnsRound * speed_mps_ / vehicle.max_acceleration_mps2;
-  const bool turns = vehicle.max_turn_radps > 0, circles = vehicle.kind == VehicleKind::kFixedWing;
-  if (turns)
-    slack += corners * (circles ? 2 * kCircles : 1) * std::numbers::pi / vehicle.max_turn_radps;
-  return slack;
+void WayHome::note_zones(const Mission& mission, std::vector<Zone> zones) {
+  if (!mission.domain.planar() || zones == zones_) return;
+  zones_ = std::move(zones);
+  cell_.reset();
+  const double kept_m = kept_from_zones_m(mission, motion_);
+  seen_zones_m_ = kept_m * (1 - kRounded);
+  if (walls_.empty()) region_.reset();
+  if (!region_ && !zones_.empty()) region_.emplace(walls_, mission.domain, kept_m);
+  open_.clear();
+  ways_m_.clear();
+  if (!region_) return;
+  for (int cell = 0; cell < region_->cells() && !zones_.empty(); ++cell) {
+    const StraightWay place{on_ground(region_->center_m(cell)), {0, 0, 0}};
+    open_.push_back(std::ranges::all_of(
+        zones_, [&](const Zone& zone) { return beside_m(zone, place) >= kept_m; }));
+  }
+  if (const auto cell = open_cell_near(home_m_.head<2>()))
+    ways_m_ = region_->ways_m({*cell}, open_);
+}
+
+/// The nearest cell that is free and outside of zones; nothing if none is near.
+std::optional<int> WayHome::open_cell_near(const Eigen::Vector2d& x_m) const {
+  if (open_.empty()) return region_->free_cell_near(x_m);
+  std::optional<int> best;
+  double best_m2 = std::numeric_limits<double>::infinity();
+  region_->for_cells_near(x_m, [&](int cell) {
+    const double apart_m2 = (region_->center_m(cell) - x_m).squaredNorm();
+    if (!open_[static_cast<std::size_t>(cell)] || apart_m2 >= best_m2) return;
+    best_m2 = apart_m2;
+    best = cell;
+  });
+  return best;
 }
 
 double WayHome::way_m(const Eigen::Vector3d& x_m) const {
   if (!region_) return length_of(home_m_ - x_m);
   const Eigen::Vector2d here_m = x_m.head<2>(), there_m = home_m_.head<2>();
-  const auto from = region_->free_cell_near(here_m), to = region_->free_cell_near(there_m);
-  if (!from || !to) return std::numeric_limits<double>::infinity();
+  const auto from = open_cell_near(here_m), to = open_cell_near(there_m);
+  if (!from || !to || ways_m_.empty()) return std::numeric_limits<double>::infinity();
   return length_of(on_ground(region_->center_m(*from) - here_m)) +
          ways_m_[static_cast<std::size_t>(*from)] +
          length_of(on_ground(region_->center_m(*to) - there_m));
@@ -114,7 +157,10 @@ bool WayHome::clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) con
   bool clear = true;
   for_segments(walls_,
                [&](const Segment& edge) { clear = clear && distance_m(way, edge) >= seen_m_; });
-  return clear;
+  const StraightWay seen{x_m, on_ground(to_m - x_m.head<2>())};
+  return clear && std::ranges::all_of(zones_, [&](const Zone& zone) {
+           return beside_m(zone, seen) >= seen_zones_m_;
+         });
 }
 
 /// The visible cell around `x_m` through which the way is shortest.
@@ -129,7 +175,7 @@ std::optional<int> WayHome::first_cell(const Eigen::Vector3d& x_m) const {
     best_m = way_m;
     best = cell;
   });
-  return best ? best : region_->free_cell_near(x_m.head<2>());
+  return best ? best : open_cell_near(x_m.head<2>());
 }
 
 /// The station, or the farthest visible cell on the way to it.

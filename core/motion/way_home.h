@@ -18,16 +18,23 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/ids.h"
 #include "core/base/rings.h"
 #include "core/mission/mission.h"
+#include "core/mission/zones.h"
 #include "core/motion/detour.h"
 #include "core/motion/free_region.h"
 #include "core/motion/vehicle.h"
 
 namespace ergocast {
+
+/// What a vehicle of agent `id` may lose on a way, at its own speed [s]: the slack above.
+double slack_on_way_s(const Mission& mission, AgentId id);
+/// What disturbances may cost on a way that takes so long [s].
+double drift_on_way_s(const Mission& mission, AgentId id, double travel_s);
 
 class WayHome {
  public:
@@ -46,6 +53,10 @@ class WayHome {
   bool begun(Tick counted, const Eigen::Vector3d& x_m);
   bool begun() const { return begun_; }
 
+  /// From now on the way leads round these zones, too, which are closed. In a box it stays
+  /// straight.
+  void note_zones(const Mission& mission, std::vector<Zone> zones);
+
   /// Takes the bodies that stand for good. velocity_mps() leads round them.
   Detour& detour() { return detour_; }
 
@@ -55,8 +66,8 @@ class WayHome {
 
  private:
   double way_m(const Eigen::Vector3d& x_m) const;
-  double slack_s(const Mission& mission) const;
   bool clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) const;
+  std::optional<int> open_cell_near(const Eigen::Vector2d& x_m) const;
   std::optional<int> first_cell(const Eigen::Vector3d& x_m) const;
   Eigen::Vector3d next_place_m(const Eigen::Vector3d& x_m);
   double speed_mps(double way_m) const;
@@ -70,8 +81,11 @@ class WayHome {
   double ahead_;  // the cosine of the angle within which it goes on
   double drift_;  // 4 σ / v; times √ of the way's time it is what disturbances cost
   Rings walls_;
+  std::vector<Zone> zones_;
   double seen_m_ = 0;                 // how far a straight way keeps from walls
-  std::optional<FreeRegion> region_;  // where there are walls
+  double seen_zones_m_ = 0;           // and from zones
+  std::optional<FreeRegion> region_;  // where there are walls or zones
+  std::vector<bool> open_;            // its cells outside of zones; empty: all
   std::vector<double> ways_m_;        // from its cells to that of the station
   std::optional<int> cell_;           // of the way, the farthest that can be seen
   Detour detour_;

@@ -9,6 +9,7 @@
 
 #include "core/motion/filter_rules.h"
 #include "core/motion/starts.h"
+#include "core/motion/zones.h"
 
 namespace ergocast::example {
 namespace {
@@ -49,9 +50,10 @@ void Driver::on(const MissionPart& part, const Arrival& arrival) {
     return stop(*why);
   }
   take_roster();
+  take_zones();
   if (running_ || follower().state() != MissionState::kRunning) return;
   running_ = true;
-  if (filters_again(me_.mission())) guard_.emplace(me_.mission(), 0);
+  if (filters_again(me_.mission()) && !guard_) guard_.emplace(me_.mission(), 0);
   tick_ = part.header.tick;
   begun_ = next_tick_ = arrival.now + (only_ ? kListening : std::chrono::nanoseconds(0));
 }
@@ -70,6 +72,15 @@ std::optional<std::string> Driver::why_not() const {
            "{ lease_s }, so that agents send each other their positions, or drive all robots "
            "without --id";
   return std::nullopt;
+}
+
+/// Once a zone was announced, the robots' commands are filtered again.
+void Driver::take_zones() {
+  const std::vector<Zone>& zones = follower().amendments().zones;
+  if (zones == zones_) return;
+  zones_ = zones;
+  if (!guard_) guard_.emplace(me_.mission(), 0);
+  guard_->set_zones(zones_);
 }
 
 /// Another driver may be one tick ahead, because it started at another moment. A larger difference
@@ -153,7 +164,7 @@ void Driver::hold_apart() {
     bodies.push_back(
         {id, drive.robot.position_m(), limit_of(id), 0, true, drive.robot.velocity_mps()});
   for (auto& [id, drive] : drives_) {
-    const double limit_mps = limit_of(id);
+    const double limit_mps = limit_or_speed_mps(limit_of(id), drive.commanded_mps);
     const Mover self{id, tick_, drive.robot.position_m(), limit_mps, drive.robot.velocity_mps()};
     const bool stands = drive.commanded_mps.isZero(0);
     drive.robot.drive(

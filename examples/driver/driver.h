@@ -69,6 +69,7 @@ class Driver {
   std::optional<std::string> why_not() const;
   void catch_up(Tick team_tick);
   void take_roster();
+  void take_zones();
   void pass_tick();
   void hold_apart();
   static bool has_vehicles_for(const Mission& mission);
@@ -82,6 +83,7 @@ class Driver {
   std::optional<AgentId> only_;
   std::map<AgentId, VehicleSlot> drives_;
   std::optional<SeparationFilter> guard_;
+  std::vector<Zone> zones_;
   bool running_ = false, published_ = false, finished_ = false, failed_ = false;
   bool emergency_stopped_ = false;  // by a STOP at once; the last state must still be sent
   std::string reason_;

@@ -33,6 +33,7 @@ const char* const kPauses = "pauses_per_s = 0.3\npause_max_s = 5";
 const char* const kTargets = "targets_per_s = 0.3";
 const char* const kTargetsAndPauses = "targets_per_s = 0.3\npauses_per_s = 0.3\npause_max_s = 5";
 const char* const kEnds = "ends_per_s = 0.3";
+const char* const kZones = "zones_per_s = 0.3";
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
@@ -144,6 +145,11 @@ const Plant kPlants[] = {
     {Invariant::kWallsKept, "held commands know no walls", "loss = 0.3", kWalled},
     {Invariant::kWallsKept, "nobody brakes before walls", "", kWalledWithInertia},
     {Invariant::kWallsKept, "a loiter circle may reach into walls", "", kWalledWithWings},
+    {Invariant::kZonesNotEntered, "no filter knows zones", kZones, "", "", "--lockstep"},
+    {Invariant::kZonesNotEntered, "no filter knows zones", kZones},
+    {Invariant::kZonesNotEntered, "a zone closes only at its tick", kZones, "", "", "--lockstep"},
+    {Invariant::kZonesNotEntered, "a zone ends early", kZones, "", "", "--lockstep"},
+    {Invariant::kZonesLeft, "nobody is led out of a zone", kZones, "", "", "--lockstep"},
     {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
     {Invariant::kHomeInTime, "agents go by the plan's end", kEnds, kStations, "", "--lockstep"},
     {Invariant::kHomeInTime, "the way home is not asked for", kEnds, kStations, "", "--lockstep"},

@@ -10,6 +10,7 @@
 #include "core/motion/separation.h"
 #include "core/motion/vehicle.h"
 #include "core/motion/way_home.h"
+#include "core/motion/zones.h"
 #include "tests/checks_can_fail/bugs.h"
 
 namespace ergocast {
@@ -26,7 +27,25 @@ WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN
 WRAPPED(void, make_book, "_ZN8ergocast10BeaconBookC1ERKNS_7MissionERKNS_6AuthorEl", BeaconBook*, const Mission&, const Author&, std::int64_t)
 WRAPPED(void, receive_beacon, "_ZN8ergocast10BeaconBook7receiveERKNS_6BeaconEbRKNS_6MomentE", BeaconBook*, const Beacon&, bool, const Moment&)
 WRAPPED(std::span<const Neighbour>, bodies, "_ZN8ergocast10BeaconBook6bodiesERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_6MomentE", BeaconBook*, const Eigen::Vector3d&, const Moment&)
+WRAPPED(bool, must_leave, "_ZN8ergocast10must_leaveESt4spanIKNS_4ZoneELm18446744073709551615EElRKNS_7MissionERKNS_6MotionERKNS_11StraightWayE", std::span<const Zone>, Tick, const Mission&, const Motion&, const StraightWay&)
+WRAPPED(void, set_zones, "_ZN8ergocast16SeparationFilter9set_zonesESt4spanIKNS_4ZoneELm18446744073709551615EE", SeparationFilter*, std::span<const Zone>)
 // clang-format on
+
+bool bug_must_leave(std::span<const Zone> zones, Tick tick, const Mission& mission,
+                    const Motion& motion, const StraightWay& way) {
+  if (bug("nobody is led out of a zone")) return false;
+  return real_must_leave(zones, tick, mission, motion, way);
+}
+
+void bug_set_zones(SeparationFilter* self, std::span<const Zone> zones) {
+  std::vector<Zone> known(zones.begin(), zones.end());
+  if (bug("no filter knows zones")) known.clear();
+  if (bug("a zone closes only at its tick"))
+    for (Zone& zone : known) zone.closed = zone.from;
+  if (bug("a zone ends early"))
+    for (Zone& zone : known) zone.until = (zone.from + zone.until) / 2;
+  real_set_zones(self, known);
+}
 
 Eigen::Vector3d bug_command(Controller* self, AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
                             const BasisAt& at) {

@@ -229,5 +229,63 @@ TEST(Amending, ASuccessorKnowsTheTargets) {
   EXPECT_EQ(coordinator.amendments(), list);
 }
 
+// ---- zones ----
+
+/// An AMEND that asks for a square zone.
+Amend zone_wish(double x_m, std::int32_t number, double size_m = 200, Tick lasts = 100) {
+  Zone zone;
+  zone.until = lasts;
+  zone.corners_m = {
+      {x_m, 100}, {x_m + size_m, 100}, {x_m + size_m, 100 + size_m}, {x_m, 100 + size_m}};
+  return in_parts({.header = {kRun, kOperator, 1, next_sequence(), 0},
+                   .number = number,
+                   .kind = AmendmentKind::kZone,
+                   .delay_ticks = 50},
+                  encode_zone(zone))
+      .front();
+}
+
+TEST(Amending, ClosesAZoneAtOnceAndFreesItLater) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  give(coordinator, zone_wish(300, 0), at(1s));
+  let_world_stand_by(coordinator, 11);
+  ASSERT_EQ(coordinator.amendments().zones.size(), 1U);
+  const Zone& zone = coordinator.amendments().zones[0];
+  EXPECT_EQ(zone.closed, 13);
+  EXPECT_EQ(zone.from, 63);
+  EXPECT_EQ(zone.until, 163);
+}
+
+TEST(Amending, RefusesAZoneThatIsNotPossible) {
+  const Amend outside = zone_wish(5000, 0), everything = zone_wish(-100, 0, 4000);
+  Amend cut = zone_wish(300, 0);
+  cut.content.pop_back();
+  for (const Amend& wish : {outside, everything, cut}) {
+    Coordinator coordinator = running_coordinator(wide_mission());
+    give(coordinator, world_where(10, {9, 9}), at(1s));
+    for (int i = 0; i < 3; ++i) give(coordinator, wish, at(1s));
+    let_world_stand_by(coordinator, 11);
+    EXPECT_EQ(coordinator.amendments().named, 0);
+  }
+}
+
+TEST(Amending, NamesNoNinthZoneUntilOneHasEnded) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  Tick tick = 10;
+  const auto ask = [&](int number, Tick lasts) {
+    give(coordinator, world_where(tick, {tick - 1, tick - 1}), at(1s));
+    give(coordinator, zone_wish(100 + 10 * number, number, 50, lasts), at(1s));
+    let_world_stand_by(coordinator, ++tick);
+  };
+  for (int i = 0; i < 9; ++i) ask(i, 100);
+  EXPECT_EQ(coordinator.amendments().named, 8);
+  tick = coordinator.amendments().zones[0].until - 1;
+  ask(8, 100);
+  EXPECT_EQ(coordinator.amendments().named, 8) << "it ends a tick later";
+  ask(8, 100);
+  EXPECT_EQ(coordinator.amendments().named, 9);
+}
+
 }  // namespace
 }  // namespace ergocast

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "plan/amendment_list.h"
 #include "tests/support/team.h"
@@ -130,6 +133,80 @@ TEST(TargetBytes, AreATargetOfTheMission) {
   EXPECT_EQ(target_hash(*read), target_hash(target(0.25)));
   EXPECT_FALSE(decode_target(std::span(bytes).first(bytes.size() - 8), mission));
   EXPECT_FALSE(decode_target(encode_target(target(1.5)), mission));
+}
+
+// ---- zones ----
+
+Zone square(double x_m, Tick lasts = 100) {
+  Zone zone;
+  zone.until = lasts;
+  zone.corners_m = {{x_m, 100}, {x_m + 50, 100}, {x_m + 50, 150}, {x_m, 150}};
+  return zone;
+}
+
+TEST(Amendments, AZoneIsClosedFreeAndOver) {
+  Amendments list;
+  name_pause(list, 10);
+  name_zone(list, 20, 30, square(100));
+  ASSERT_EQ(list.zones.size(), 1U);
+  const Zone& zone = list.zones[0];
+  EXPECT_EQ(std::tuple(zone.number, zone.closed, zone.from, zone.until),
+            (std::tuple<std::int32_t, Tick, Tick, Tick>{1, 20, 50, 150}));
+  EXPECT_EQ(list.recent[1], (Amendment{1, AmendmentKind::kZone, 50, zone_hash(square(100))}));
+  EXPECT_EQ(zones_at(list, 149), 1U);
+  EXPECT_EQ(zones_at(list, 150), 0U);
+  EXPECT_TRUE(are_amendments(list, small_mission(1)));
+  EXPECT_EQ(decode_amendments(encode_amendments(list), small_mission(1)), list);
+}
+
+TEST(Amendments, ZonesThatHaveEndedLeaveAndTargetsDoNotCrowdThemOut) {
+  Amendments list;
+  for (int i = 0; i < 8; ++i) name_zone(list, i, 10, square(100 + i, i == 3 ? 20 : 1000));
+  EXPECT_TRUE(are_amendments(list, small_mission(1)));
+  for (int i = 0; i < 100; ++i) name_target(list, 100 + i, target(0.001 * i));
+  EXPECT_EQ(list.zones.size(), 8U);
+  EXPECT_TRUE(are_amendments(list, small_mission(1)));
+  name_zone(list, 200, 10, square(300));
+  ASSERT_EQ(list.zones.size(), 8U);
+  EXPECT_EQ(list.zones[3].number, 4) << "the fourth has ended";
+  EXPECT_EQ(decode_amendments(encode_amendments(list), small_mission(1)), list);
+}
+
+TEST(Amendments, RefusesZonesThatNoCoordinatorNames) {
+  Amendments list;
+  name_zone(list, 20, 30, square(100));
+  const Mission mission = small_mission(1);
+  const auto refused = [&](auto change) {
+    Amendments forged = list;
+    change(forged.zones[0]);
+    return !decode_amendments(encode_amendments(forged), mission);
+  };
+  EXPECT_TRUE(refused([](Zone& zone) { zone.number = 1; }));
+  EXPECT_TRUE(refused([](Zone& zone) { zone.closed = 51; }));
+  EXPECT_TRUE(refused([](Zone& zone) { zone.until = 50; }));
+  EXPECT_TRUE(refused([](Zone& zone) { zone.corners_m.resize(2); }));
+  EXPECT_TRUE(refused([](Zone& zone) { std::swap(zone.corners_m[0], zone.corners_m[1]); }));
+  EXPECT_TRUE(refused([](Zone& zone) { zone.corners_m[0].x() = std::nan(""); }));
+  EXPECT_TRUE(refused([](Zone& zone) { zone.high_m = 1; })) << "a plane has no heights";
+  EXPECT_FALSE(refused([](Zone&) {}));
+  for (int i = 0; i < 7; ++i) name_zone(list, 20, 30, square(100));
+  list.zones.push_back(list.zones.back());
+  list.zones.back().number = list.named++;
+  EXPECT_FALSE(decode_amendments(encode_amendments(list), mission)) << "there are nine";
+}
+
+TEST(Amendments, AZoneOfAnAmendIsWhole) {
+  const std::vector<std::byte> bytes = encode_zone(square(100));
+  const Box domain = small_mission(1).domain;
+  EXPECT_EQ(decode_zone(bytes, domain), square(100));
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_EQ(decode_zone(std::span(bytes).first(size), domain), std::nullopt) << size;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    auto damaged = bytes;
+    damaged[i] ^= std::byte{0xff};
+    const auto zone = decode_zone(damaged, domain);
+    EXPECT_TRUE(!zone || is_zone(*zone, domain)) << i;
+  }
 }
 
 }  // namespace

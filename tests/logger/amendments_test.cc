@@ -65,7 +65,7 @@ TEST(ReceivedAmendments, AllTargetsAreKeptThoughAListHasTwo) {
   }
   EXPECT_EQ(heard.list().targets.size(), 5U);
   EXPECT_TRUE(are_amendments(heard.list(), small_mission(1)));
-  EXPECT_EQ(heard.unknown_target(), nullptr);
+  EXPECT_EQ(heard.unknown_content(), nullptr);
 }
 
 TEST(ReceivedAmendments, AnAmendmentThatALaterListLacksIsVoid) {
@@ -109,10 +109,25 @@ TEST(ReceivedAmendments, ATargetWithoutNumbersIsNamed) {
   for (int i = 0; i < 3; ++i)
     name_target(list, 10 * (i + 1), target_of(static_cast<std::uint64_t>(i)));
   heard.note(list);
-  ASSERT_NE(heard.unknown_target(), nullptr);
-  EXPECT_EQ(heard.unknown_target()->amendment.number, 0);
+  ASSERT_NE(heard.unknown_content(), nullptr);
+  EXPECT_EQ(heard.unknown_content()->amendment.number, 0);
   EXPECT_EQ(target_at(heard, 19), -1);
   EXPECT_EQ(target_at(heard, 20), 1);
+}
+
+TEST(ReceivedAmendments, AllZonesAreKeptThoughAListHasThoseInForce) {
+  ReceivedAmendments heard;
+  Amendments list;
+  for (int i = 0; i < 20; ++i) {
+    Zone zone;
+    zone.until = 5;
+    zone.corners_m = {{100, 100}, {200, 100}, {200, 200.0 + i}};
+    name_zone(list, 10 * i, 2, zone);
+    ASSERT_EQ(list.zones.size(), 1U);
+    heard.note(list);
+  }
+  EXPECT_EQ(heard.list().zones.size(), 20U);
+  EXPECT_EQ(heard.unknown_content(), nullptr);
 }
 
 // ---- amendments.json ----
@@ -156,6 +171,33 @@ TEST_F(AmendmentsFile, ReadsBackBitForBit) {
     EXPECT_EQ(read_again->list(), heard.list());
     EXPECT_EQ(amendments_text(*read_again, 0.1), amendments_text(heard, 0.1));
   }
+}
+
+TEST_F(AmendmentsFile, HasZones) {
+  ReceivedAmendments heard;
+  Amendments list;
+  Zone zone;
+  zone.until = 5;
+  zone.corners_m = {{100, 100.1}, {200, 100}, {200, 200 + 1e-13}};
+  name_zone(list, 10, 2, zone);
+  heard.note(list);
+  const std::string text = amendments_text(heard, 0.1);
+  write(text);
+  auto again = read();
+  ASSERT_TRUE(again) << again.error();
+  EXPECT_EQ(again->list(), list);
+  EXPECT_FALSE(amendments_json(heard, 0.1)[0].contains("corners_m"));
+  const auto damaged = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    write(changed);
+    return !read();
+  };
+  EXPECT_TRUE(damaged("100.1", "100.2")) << "it has another hash";
+  EXPECT_TRUE(damaged("[100.0,100.1],", ""));
+  EXPECT_TRUE(damaged("100.1", "\"x\""));
+  EXPECT_TRUE(damaged("\"until_tick\":17", "\"until_tick\":12"));
+  EXPECT_TRUE(damaged("\"closed_tick\":10", "\"closed_tick\":13"));
 }
 
 TEST_F(AmendmentsFile, HasWhatTheSummaryListsAndTheNumbers) {

@@ -168,6 +168,31 @@ TEST_F(AmendedMissionInABrowser, ShowsTheTargetOfTheTimeInAViewOfABox) {
   expect_no_errors();
 }
 
+TEST_F(AmendedMissionInABrowser, DrawsAZoneWhileItIsClosed) {
+  std::ofstream(folder_ / "zone.textproto") << R"(
+      vertices { x_m: 900 y_m: 900 } vertices { x_m: 1100 y_m: 900 }
+      vertices { x_m: 1100 y_m: 1100 } vertices { x_m: 900 y_m: 1100 })";
+  open_report({"--duration", "60", "--amend", "30+20:" + (folder_ / "zone.textproto").string()},
+              "#theme=light");
+  js("ergocast.set('tail', 0)");
+  const std::string colours =
+      "const g = document.getElementById('shading').getContext('2d'), { view } = ergocast;"
+      "const at = (x, y) => [...g.getImageData(Math.round(view.px(x) * devicePixelRatio),"
+      "  Math.round(view.py(y) * devicePixelRatio), 1, 1).data].join();"
+      "return [5, 29, 40, 55].map(t => {"
+      "  ergocast.draw(t); return [at(960, 960), at(800, 960)]; })";
+  const auto seen = js(colours);
+  EXPECT_NE(seen[1][0], seen[0][0]) << "it is closed";
+  EXPECT_EQ(seen[2][0], seen[1][0]);
+  EXPECT_EQ(seen[3][0], seen[0][0]) << "it has ended";
+  for (const auto& one : seen) EXPECT_EQ(one[1], seen[0][1]) << "beside it";
+  EXPECT_EQ(js("return [...document.querySelectorAll('#strip button')].map(mark => mark.title)"),
+            nlohmann::json::parse(R"(["amendment 0: zone at 30.0 s"])"));
+  js("ergocast.draw(40)");
+  screenshot("zone");
+  expect_no_errors();
+}
+
 // A page that connects late does not receive all targets.
 TEST_F(AmendedMissionInABrowser, SaysThatItLacksATarget) {
   open_amended();

@@ -154,7 +154,7 @@ export function watchLive(page) {
   on('frame', frame => {
     if (frame.log) addLog(frame.log);
     if (!run) return;
-    if (frame.amendments) run.setAmendments(frame.amendments, frame.targets);
+    if (frame.amendments) run.setAmendments(frame.amendments, frame.targets, frame.zones);
     if (frame.tracks) run.add(frame.tracks);
     if (frame.roster) run.setRoster(frame.roster);
     if (frame.incidents) {

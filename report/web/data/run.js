@@ -45,6 +45,7 @@ export class Run {
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
     this.amendments = []; // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
+    this.zones = []; // {number, closed, from, until: ticks, corners_m, heights_m}, ascending
     this.received = new Map(); // coefficients of new targets, by hash
     this.targets = [plannedTarget(mission)]; // ascending by row
     this.coverage = new Coverage(this);
@@ -63,8 +64,9 @@ export class Run {
     this.noteEnds();
     this.coverage.reset(0);
   }
-  // What has changed since the plan, and the coefficients of targets that are new to the page, by hash.
-  setAmendments(list, coefficients = {}) {
+  // What has changed since the plan, the coefficients of targets that are new to the page, by hash, and all zones.
+  setAmendments(list, coefficients = {}, zones = this.zones) {
+    this.zones = zones;
     for (const [hash, mu] of Object.entries(coefficients)) this.received.set(hash, mu);
     const before = this.targets;
     const targetOf = amendment => {
@@ -96,18 +98,31 @@ export class Run {
   targetAt(row) {
     return this.targets.findLast(target => target.row <= row);
   }
+  // The zones that are closed at a row.
+  zonesAt(row) {
+    const tick = row * this.stride;
+    return this.zones.filter(zone => zone.closed <= tick && tick < zone.until);
+  }
   // Whether the page has received all of them since the plan.
   get knowsTargets() {
     return (this.amendments[0]?.number ?? 0) === 0 && this.targets.every(target => target.known);
   }
-  // Incidents, and the new targets and ends that hold by now, ascending.
+  // Incidents, and the new targets, ends and zones that hold by now, ascending.
   get marks() {
-    const ends = this.amendments.filter(one => one.kind === 'end');
+    const ends = this.amendments.filter(one => one.kind === 'end'),
+      dt = this.mission.dt_s;
     const marks = [
       ...this.targets.slice(1).map(({ from }) => ({ from, kind: 'target', sign: '◎', text: 'new target' })),
       ...ends.map(({ from }) => ({ from, kind: 'end', sign: '⏱', text: 'another end' })),
+      ...this.zones.map(({ from, until }) => ({
+        from,
+        until: until * dt,
+        kind: 'zone',
+        sign: '⊘',
+        text: 'zone',
+      })),
     ]
-      .map(({ from, ...mark }) => ({ t: from * this.mission.dt_s, ...mark }))
+      .map(({ from, ...mark }) => ({ t: from * dt, ...mark }))
       .filter(({ t }) => t <= this.end + TOLERANCE_S);
     return marks.length ? [...this.incidents, ...marks].sort((a, b) => a.t - b.t) : this.incidents;
   }
@@ -212,7 +227,7 @@ function listOf(value) {
 // A record as report/page.h writes it.
 export function recordedRun(record) {
   const run = new Run(record.mission, record.stride, record.rows);
-  if (record.amendments) run.setAmendments(record.amendments, record.targets);
+  if (record.amendments) run.setAmendments(record.amendments, record.targets, record.zones);
   run.add(record.tracks);
   run.metrics = record.metrics;
   run.summary =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paints the ground of the map: shading, the target's outline, where nobody is wanted, and walls.
+// Paints the ground of the map: shading, the target's outline, where nobody is wanted, walls, and zones.
 // It draws on a canvas, or on anything with the same methods (svg.js).
 import { clamp } from '../text.js';
 
@@ -144,6 +144,32 @@ function paintWalls(g, run, view, colours) {
   g.restore();
 }
 
+// Closed zones, seen from above: bodies leave them, with a dashed outline, until they are free.
+function paintZones(g, run, view, row, colours) {
+  const [lx, ly] = run.size;
+  if (run.axes[0] !== 0 || run.axes[1] !== 1) return;
+  for (const { corners_m: corners, from } of run.zonesAt(row)) {
+    g.save();
+    g.beginPath();
+    g.rect(view.px(0), view.py(ly), lx * view.scale, ly * view.scale);
+    g.clip();
+    g.beginPath();
+    corners.forEach(([x, y], i) => {
+      if (i) g.lineTo(view.px(x), view.py(y));
+      else g.moveTo(view.px(x), view.py(y));
+    });
+    g.closePath();
+    g.fillStyle = g.strokeStyle = colours.bad;
+    g.globalAlpha = 0.22;
+    g.fill();
+    g.globalAlpha = 1;
+    g.lineWidth = 1.8;
+    if (row * run.stride < from) g.setLineDash?.([6, 4]);
+    g.stroke();
+    g.restore();
+  }
+}
+
 // Open squares where agents are to be at the end.
 function paintStations(g, run, view, colours) {
   const half = 12,
@@ -193,5 +219,6 @@ export function paintShading(g, run, view, { layer, row, colours }) {
   for (const pieces of layer === 'target' ? target.levels : [target.outline]) stroke(g, view, pieces);
   g.globalAlpha = 1;
   paintWalls(g, run, view, colours);
+  paintZones(g, run, view, row, colours);
   paintStations(g, run, view, colours);
 }

@@ -132,7 +132,7 @@ function table(columns, objects) {
 
 const AMENDMENT_COLUMNS = [
   ['amendment', 'number', 'Its number in the mission'],
-  ['kind', 'kind', 'What it changes: a pause begins or ends, or the target or the end is another one'],
+  ['kind', 'kind', 'What it changes: a pause, the target, the end, or a zone that is kept free'],
   ['from tick', 'from', 'The first tick of the world at which it holds'],
   ['t [s]', 't', 'Mission time at that tick'],
   ['ticks', 'tick_count', 'Another end: how many ticks the mission has by it'],

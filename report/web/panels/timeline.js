@@ -10,6 +10,7 @@ const COLOUR = {
   ok: 'var(--ok)',
   paused: 'var(--muted)',
   target: 'var(--accent)',
+  zone: 'var(--bad)',
 };
 let last = 0;
 
