@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names the amendments of the mission: pauses, new targets, other ends and zones, each with the tick
-// from which it holds (core/mission/amendments.h).
+// Names the amendments of the mission: pauses, new targets, other ends and zones, each with the
+// tick from which it holds (core/mission/amendments.h).
 //
 // All agents must change at the same tick. In lockstep the world first stands by: it stays at a
 // tick until it knows which one is named. In real time the team gets notice.
@@ -49,8 +49,8 @@ class Amending {
   void adopt(const Amendments& known);
   /// Obeys a wish of the operator, once all its parts have arrived. It has no effect if it does not
   /// follow the newest amendment, or another one waits for its tick, or the list is full, or the
-  /// content is none of `mission`, or no possible zone, or it would hold after the mission's end, or
-  /// EndRules refuse it, or the tick of the world is unknown in real time.
+  /// content is none of `mission`, or no possible zone, or it would hold after the mission's end,
+  /// or EndRules refuse it, or the tick of the world is unknown in real time.
   /// @pre the mission runs
   void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks, const Team& team,
             Announcement& announcement);

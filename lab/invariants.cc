@@ -78,8 +78,7 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
     if (!truth_.receive(*part)) return;
     const Amendments& list = truth_.amendments();
     shifted_ = shifted_ || !list.targets.empty() || !list.ends.empty();
-    for (const Zone& zone : list.zones)
-      zone_revisions_.try_emplace(zone.number, truth_.revision());
+    for (const Zone& zone : list.zones) zone_revisions_.try_emplace(zone.number, truth_.revision());
     note_ends();
     return check_closed_numbers(t_s);
   }

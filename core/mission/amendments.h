@@ -32,7 +32,7 @@ const char* to_string(AmendmentKind kind);
 struct Amendment {
   std::int32_t number = 0;  ///< from 0
   AmendmentKind kind = AmendmentKind::kPause;
-  Tick from = 0;           ///< the world's tick from which it holds
+  Tick from = 0;  ///< the world's tick from which it holds
   /// kTarget: target_hash(); kEnd: the number of ticks; kZone: zone_hash(); else 0
   std::uint64_t hash = 0;
 

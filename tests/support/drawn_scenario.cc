@@ -198,7 +198,8 @@ const std::map<std::string, Rule>& rules() {
       {"Law.contraction_y_m", may(kPlace)},
       {"Law.contraction_z_m", may(kPlace)},
       {"Law.anticipation", may(either(0, spread(0.01, 10)))},
-      {"Law.memory_half_life_s", may(either(0, spread(10.1, 40)))},  // in ticks: see drawn_agreement.h
+      {"Law.memory_half_life_s",
+       may(either(0, spread(10.1, 40)))},  // in ticks: see drawn_agreement.h
 
       {"Time.dt_s", may(spread(0.02, 1))},
       {"Time.duration_s", must(number(0.5, 60))},  // in ticks: see drawn_agreement.h
