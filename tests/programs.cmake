@@ -132,6 +132,7 @@ target_compile_definitions(process_tests PRIVATE
 ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
   SOURCES
     page/amendment_test.cc
+    page/drawing_test.cc
     page/layout_test.cc
     page/map_test.cc
     page/control_test.cc

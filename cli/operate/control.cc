@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "cli/operate/amend_process.h"
 #include "cli/watch/page_socket.h"
 #include "runtime/bus/clock.h"
 
@@ -48,7 +49,9 @@ Control::Control(const BusOptions& team, std::pair<ControlLink, ControlLink> lin
       print_(std::move(print)),
       token_(random_token()),
       team_(team.run, now()),
-      desk_(host_name(), team.authenticator.keyed()) {}
+      desk_(host_name(), team.authenticator.keyed(), [team](const DrawnTarget& target) {
+        return std::make_unique<AmendProcess>(team, target);
+      }) {}
 
 void Control::attend(Instant now) {
   transport_->deliver_until(now, -1);

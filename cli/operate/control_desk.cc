@@ -29,6 +29,8 @@ std::string what(const ControlRequest& request) {
       return "agent " + std::to_string(request.agent) + " home";
     case ControlAct::kOut:
       return "agent " + std::to_string(request.agent) + " out of the mission";
+    case ControlAct::kTarget:
+      return "new target";
     default:
       return to_string(request.act);
   }
@@ -93,6 +95,10 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
     return "the page has shown nothing new for several seconds: look at the team again";
   if (request.act == ControlAct::kTake) return std::nullopt;
   if (team.unheard()) return "no message of the team arrives";
+  const bool one_waits = std::ranges::any_of(
+      acts_, [](const Act& act) { return !act.over() && act.request.act == ControlAct::kTarget; });
+  if (request.act == ControlAct::kTarget && one_waits)
+    return "the last new target does not hold yet: send this one then";
   const auto unanswered = std::ranges::count_if(
       acts_, [](const Act& act) { return !act.over() && act.report.state < State::kObeyed; });
   if (recalls(request.act) && unanswered >= static_cast<std::ptrdiff_t>(kMostActs))
@@ -193,6 +199,8 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
     case ControlAct::kHome:
     case ControlAct::kOut:
       return std::make_unique<RecallOrder>(request.agent, request.act == ControlAct::kOut, now);
+    case ControlAct::kTarget:
+      return amend_with_(*request.target);
     default:
       return nullptr;
   }

@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -41,9 +42,13 @@ class ControlDesk {
   /// agent on its way home, is no longer shown; Home and Out wait while all are unanswered.
   static constexpr std::size_t kMostActs = 8;
 
+  /// Makes the order to cover a drawn target.
+  using AmendWith = std::function<std::unique_ptr<Order>(const DrawnTarget&)>;
+
   /// @param host   the operator's place in the record of a stop
   /// @param keyed  whether the team has a key
-  ControlDesk(std::string host, bool keyed) : host_(std::move(host)), keyed_(keyed) {}
+  ControlDesk(std::string host, bool keyed, AmendWith amend_with)
+      : host_(std::move(host)), keyed_(keyed), amend_with_(std::move(amend_with)) {}
 
   /// Turns a request into an order, or refuses it.
   void receive(const ControlRequest& request, const MonitoredRun& team, Instant now);
@@ -95,6 +100,7 @@ class ControlDesk {
 
   std::string host_;
   bool keyed_;
+  AmendWith amend_with_;
   std::optional<Operator> operator_;
   Numbers numbers_;
   CommandWindow window_;

@@ -20,6 +20,7 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
                                  {"silent_s", row.silent_s},
                                  {"restarts", row.restarts}};
   if (!row.kind.empty()) json["kind"] = row.kind;
+  json["position_m"] = or_null(!row.position_m.empty(), row.position_m);
   if (!row.status) return json;
   const AgentStatus& status = *row.status;
   json["host"] = status.host;

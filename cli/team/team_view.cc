@@ -72,6 +72,11 @@ void TeamView::on(const WorldState& world, const Arrival& arrival) {
   missed_deadlines_ = std::max(missed_deadlines_, world.missed_deadlines);
   skipped_ticks_ = std::max(skipped_ticks_, world.skipped_ticks);
   clamped_commands_ = std::max(clamped_commands_, world.clamped_commands);
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
+    const auto [at, is_new] = places_m_.try_emplace(vehicle.id);
+    if (is_new || arrival.from.tick >= at->second.first)
+      at->second = {arrival.from.tick, vehicle.position_m};
+  }
 }
 
 Instant TeamView::last_sign(const Author& author) const {
@@ -125,6 +130,7 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
     const double dt_s = follower().mission() ? follower().mission()->timing.dt_s : 0;
     row.blocked_s = static_cast<double>(row.status->blocked_now_ticks) * dt_s;
   }
+  if (member) row.position_m = position_of(author.agent);
   if (!member && row.condition != Condition::kFinished) row.condition = Condition::kGone;
   const auto& roster = follower().roster();
   const RosterEntry* const own = follower().entry_of(author.incarnation);
@@ -135,6 +141,14 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
         return entry.author.agent == author.agent && entry.author != author;
       }));
   return row;
+}
+
+std::vector<double> TeamView::position_of(AgentId id) const {
+  const auto found = places_m_.find(id);
+  if (found == places_m_.end() || !follower().mission()) return {};
+  const Eigen::Vector3d& at_m = found->second.second;
+  if (follower().mission()->domain.planar()) return {at_m.x(), at_m.y()};
+  return {at_m.x(), at_m.y(), at_m.z()};
 }
 
 /// For each number: the newest incarnation, and whether it is a member.

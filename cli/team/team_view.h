@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -37,6 +38,8 @@ struct AgentRow {
   Tick tick = 0;         ///< of its last status, the number among those that count
   std::string kind{};    ///< empty: its team has no kinds
   double blocked_s = 0;  ///< without a break, by a teammate's body or an edge, in mission time
+  /// Its place in the newest state of the world: two numbers, in a box three; empty: not known.
+  std::vector<double> position_m{};
 };
 
 /// Coordinator, world or logger.
@@ -111,6 +114,7 @@ class TeamView {
   const MissionFollower& follower() const { return me_.follower(); }
   Instant last_sign(const Author& author) const;
   AgentRow row_of(const Author& author, bool member, Instant now) const;
+  std::vector<double> position_of(AgentId id) const;
   Condition condition_of(const Author& author, const Seen& seen, Instant now) const;
   std::map<AgentId, std::pair<Author, bool>> newest_incarnations() const;
   void add_agents(TeamPicture& picture, Instant now) const;
@@ -126,6 +130,7 @@ class TeamView {
   Tick tick_ = 0, world_tick_ = 0;
   std::map<Author, Seen> agents_;
   std::map<AgentId, Header> processes_;  // the newest message of each
+  std::map<AgentId, std::pair<Tick, Eigen::Vector3d>> places_m_;  // each vehicle's newest
   std::string coordinator_host_;
   std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;

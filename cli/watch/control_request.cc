@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kNames[] = {"take", "release",  "here", "pause", "resume",
-                                  "stop", "stop-now", "home", "out"};
+                                  "stop", "stop-now", "home", "out",   "target"};
 
 std::optional<std::int64_t> whole_number(const json& object, const char* key, std::int64_t least,
                                          std::int64_t most) {
@@ -75,7 +75,11 @@ std::optional<ControlRequest> ControlRequest::parse(std::string_view text) {
   const bool names_agent = request.act == ControlAct::kHome || request.act == ControlAct::kOut;
   const auto agent = whole_number(object, "agent", 0, kMaxAgents - 1);
   if (names_agent != object.contains("agent") || (names_agent && !agent)) return std::nullopt;
-  if (object.size() != (names_agent ? 6U : 5U)) return std::nullopt;
+  const bool has_target = request.act == ControlAct::kTarget;
+  if (has_target != object.contains("target")) return std::nullopt;
+  if (has_target) request.target = DrawnTarget::parse(object["target"]);
+  if (has_target != request.target.has_value()) return std::nullopt;
+  if (object.size() != (names_agent || has_target ? 6U : 5U)) return std::nullopt;
   if (agent) request.agent = static_cast<AgentId>(*agent);
   return request;
 }

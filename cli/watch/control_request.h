@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "cli/watch/drawn_target.h"
 #include "core/base/ids.h"
 
 namespace ergocast::cli {
@@ -26,13 +27,14 @@ enum class ControlAct {
   kStopNow,  ///< at once
   kHome,     ///< one agent goes home
   kOut,      ///< one agent leaves the mission
+  kTarget,   ///< the team covers a drawn target
 };
-/// "take", "release", "here", "pause", "resume", "stop", "stop-now", "home" or "out".
+/// "take", "release", "here", "pause", "resume", "stop", "stop-now", "home", "out" or "target".
 const char* to_string(ControlAct act);
 
 struct ControlRequest {
   /// Limit (Page): length of a request of an operator [bytes]. Beyond it: it is refused with 400.
-  static constexpr std::size_t kLongest = 512;
+  static constexpr std::size_t kLongest = 4096;
   /// Limit (Page): length of an operator's name [bytes]. Beyond it: the request counts
   /// without a name.
   static constexpr std::size_t kLongestName = 48;
@@ -44,7 +46,8 @@ struct ControlRequest {
   std::int64_t number = 0;  ///< greater than in all earlier requests of this operator
   Tick tick = 0;            ///< the newest that the page has shown
   ControlAct act = ControlAct::kHere;
-  AgentId agent = kUnassigned;  ///< for kHome and kOut only
+  AgentId agent = kUnassigned;          ///< for kHome and kOut only
+  std::optional<DrawnTarget> target{};  ///< for kTarget only
 
   /// Nothing if a field is unknown, missing, of a wrong type or out of range.
   static std::optional<ControlRequest> parse(std::string_view text);

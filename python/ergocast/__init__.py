@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ergodic coverage by teams of agents: records, simulations, and the method.
+"""Ergodic coverage by teams of agents: records, simulations, running teams, and the method.
 
-load() reads a run directory, simulate() simulates a mission. The classes of the method are those
-of the C++ code, and compute the same bits. docs/python.md is the introduction.
+load() reads a run directory, simulate() simulates a mission, connect() names a running one. The
+classes of the method are those of the C++ code, and compute the same bits. docs/python.md is the
+introduction.
 """
 
-from ergocast._errors import ErgocastError, RecordError, ScenarioError
+from ergocast._errors import ErgocastError, RecordError, ScenarioError, TeamError
+from ergocast._live import Amendment, LiveRun, connect
 from ergocast._native import (
     Basis,
     ControlLaw,
@@ -24,6 +26,7 @@ from ergocast._run import Run, load
 from ergocast._simulate import compile_mission, simulate
 
 __all__ = [
+    "Amendment",
     "Basis",
     "ControlLaw",
     "Controller",
@@ -32,14 +35,17 @@ __all__ = [
     "ErgocastError",
     "Gaussian",
     "IdealTeam",
+    "LiveRun",
     "Mission",
     "RecordError",
     "Region",
     "Run",
     "ScenarioError",
     "Target",
+    "TeamError",
     "__version__",
     "compile_mission",
+    "connect",
     "ergodic_metric",
     "load",
     "simulate",

@@ -31,6 +31,10 @@ class ScenarioError(ErgocastError):
         self.problems: list[str] = text.split("\n")
 
 
+class TeamError(ErgocastError):
+    """No team is found, LCM cannot be used, or the team was not seen to obey."""
+
+
 @contextmanager
 def raised_as(kind: type[ErgocastError]) -> Iterator[None]:
     """Turns a refusal of the C++ part into `kind`, with the same text."""

@@ -69,7 +69,7 @@ def _compile(
     if seed is not None and not 0 <= seed < 2**64:
         raise ScenarioError(f"seed={seed}: is not a whole number from 0 to 2**64 - 1")
     with raised_as(ScenarioError):
-        return _native.Scenario(_file(scenario), seed, _fields(values))
+        return _native.Scenario(_file(scenario), seed, fields_of(values))
 
 
 def _file(scenario: str | os.PathLike[str]) -> str:
@@ -85,16 +85,17 @@ def _file(scenario: str | os.PathLike[str]) -> str:
     return name
 
 
-def _fields(values: Mapping[str, Value] | None) -> list[tuple[str, str, str]]:
+def fields_of(values: Mapping[str, Value] | None) -> list[tuple[str, str, str]]:
     """(path, value in a scenario's format, name in errors)."""
     fields = []
     for path, value in (values or {}).items():
-        text = _text(value)
+        text = text_of(value)
         fields.append((path, text, f"set {path}={text}"))
     return fields
 
 
-def _text(value: Value) -> str:
+def text_of(value: Value) -> str:
+    """A value in a scenario's format."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, numbers.Integral):

@@ -41,6 +41,7 @@ class Desk : public ::testing::Test {
     request.number = ++numbers_;
     request.tick = tick.value_or(team_.tick());
     request.act = act;
+    if (act == ControlAct::kTarget) request.target = {{{300, 400, 50}}, {}, 0.5};
     last_ = request;
     desk_.receive(request, team_, now_);
     advance();
@@ -63,9 +64,22 @@ class Desk : public ::testing::Test {
     }));
   }
 
+  /// An order whose report the test sets.
+  struct Drawn final : Order {
+    explicit Drawn(const OrderReport& reported) : now(reported) {}
+    void send(const MonitoredRun&, Instant, Outbox&) override {}
+    OrderReport report(const MonitoredRun&, Instant) const override { return now; }
+    const OrderReport& now;
+  };
+
+  OrderReport drawn_report_;
+  std::vector<std::string> drawn_;  // the texts of drawn targets
   Instant now_ = at(1s);
   MonitoredRun team_{kRun, at(0s)};
-  ControlDesk desk_{"here", true};
+  ControlDesk desk_{"here", true, [this](const DrawnTarget& target) {
+                      drawn_.push_back(target.text());
+                      return std::make_unique<Drawn>(drawn_report_);
+                    }};
   Outbox sent_;
   std::vector<std::string> lines_;
   ControlRequest last_;
@@ -110,6 +124,27 @@ TEST_F(Desk, APauseIsDoneOnceAllVehiclesStandAndNamesThoseThatMove) {
   EXPECT_EQ(lines_.back(),
             "control: pause of anna, asked for at tick 100, t = 10.0 s: paused at "
             "tick 110, t = 11.0 s: 2 of 2 stand");
+}
+
+TEST_F(Desk, ASecondDrawnTargetWaitsUntilTheFirstOneHolds) {
+  ask(ControlAct::kTake);
+  ask(ControlAct::kTarget);
+  ASSERT_EQ(drawn_.size(), 1U);
+  EXPECT_EQ(drawn_[0],
+            "target {\n  gaussians { mean_x_m: 300 mean_y_m: 400 sigma_m: 50 weight: 1 }\n"
+            "  uniform_weight: 1\n}\n");
+  drawn_report_ = {OrderReport::State::kAnswered, "amendment 0, target 5f, holds from tick 120"};
+  ask(ControlAct::kTarget);
+  EXPECT_EQ(refusal(), "the last new target does not hold yet: send this one then");
+  EXPECT_EQ(drawn_.size(), 1U);
+  EXPECT_EQ(state()["acts"][0]["text"], drawn_report_.text);
+  drawn_report_ = {OrderReport::State::kDone, "amendment 0, target 5f, holds since tick 120"};
+  advance();
+  EXPECT_EQ(lines_.back(),
+            "control: new target of anna, asked for at tick 100, t = 10.0 s: amendment 0, target "
+            "5f, holds since tick 120");
+  ask(ControlAct::kTarget);
+  EXPECT_EQ(drawn_.size(), 2U);
 }
 
 TEST_F(Desk, ANumberCountsOnce) {

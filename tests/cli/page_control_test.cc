@@ -66,5 +66,38 @@ TEST_F(PassedOn, SilenceAfterTheMissionsEndIsNoFault) {
   EXPECT_FALSE(pass_on(ControlAct::kStopNow));
 }
 
+/// A request with that target.
+std::optional<ControlRequest> drawn(const std::string& target) {
+  return ControlRequest::parse(
+      R"({"operator":1,"name":"","number":1,"tick":0,"act":"target","target":)" + target + "}");
+}
+
+TEST(DrawnTargetRequest, HasPeaksAndPolygonsOfNumbers) {
+  const auto request =
+      drawn(R"({"peaks":[[1,2,3.5]],"polygons":[[[0,0],[4,0],[4,4]]],"uniform":0.5})");
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->target->text(),
+            "target {\n  gaussians { mean_x_m: 1 mean_y_m: 2 sigma_m: 3.5 weight: 1 }\n"
+            "  regions { weight: 1 polygon { vertices { x_m: 0 y_m: 0 } vertices { x_m: 4 y_m: 0 } "
+            "vertices { x_m: 4 y_m: 4 } } }\n  uniform_weight: 2\n}\n");
+}
+
+TEST(DrawnTargetRequest, IsRefusedIfItHasAnythingElse) {
+  std::string many = "[1,2,3]";
+  for (std::size_t i = 0; i < DrawnTarget::kMostParts; ++i) many += ",[1,2,3]";
+  for (const std::string& wrong :
+       {std::string("null"), std::string(R"({"peaks":[],"polygons":[],"uniform":0})"),
+        std::string(R"({"peaks":[[1,2]],"polygons":[],"uniform":0})"),
+        std::string(R"({"peaks":[[1,2,"3"]],"polygons":[],"uniform":0})"),
+        std::string(R"({"peaks":[[1,2,1e999]],"polygons":[],"uniform":0})"),
+        std::string(R"({"peaks":[[1,2,3]],"polygons":[[[0,0],[1,1]]],"uniform":0})"),
+        std::string(R"({"peaks":[[1,2,3]],"polygons":[],"uniform":1})"),
+        std::string(R"({"peaks":[[1,2,3]],"polygons":[],"uniform":0,"file":"/etc/passwd"})"),
+        R"({"peaks":[)" + many + R"(],"polygons":[],"uniform":0})"})
+    EXPECT_FALSE(drawn(wrong)) << wrong;
+  EXPECT_FALSE(ControlRequest::parse(
+      R"({"operator":1,"name":"","number":1,"tick":0,"act":"pause","target":{}})"));
+}
+
 }  // namespace
 }  // namespace ergocast::cli

@@ -44,6 +44,7 @@ TeamPicture running_team() {
   picture.agents[0].silent_s = 4.2;
   picture.agents[0].status->refused = {0, 0, 3, 0, 0, 0, 1};
   picture.agents[1].restarts = 1;
+  picture.agents[1].position_m = {10, 20.5};
   picture.processes = {{"coordinator", true, false, 0.1, 0xc0ffee, "base", 599999},
                        {"world", true, true, 3.4, 0xabc, "", 599990},
                        {"logger", false, false, 3.4, 0, "", 0}};
@@ -175,6 +176,8 @@ TEST(TeamJson, IsOneLineWithNullForWhatIsNotKnown) {
   EXPECT_EQ(json["agents"][0]["state"], "silent");
   EXPECT_EQ(json["agents"][0]["refused"]["tag"], 3);
   EXPECT_EQ(json["agents"][1]["restarts"], 1);
+  EXPECT_EQ(json["agents"][1]["position_m"], nlohmann::json::parse("[10.0, 20.5]"));
+  EXPECT_EQ(json["agents"][2]["position_m"], nullptr);
   EXPECT_EQ(json["processes"]["world"]["state"], "silent");
   EXPECT_EQ(json["processes"]["logger"]["tick"], nullptr);
   const auto unknown = nlohmann::json::parse(team_json(TeamPicture{}));

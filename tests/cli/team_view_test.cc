@@ -112,6 +112,17 @@ TEST_F(TeamViewTest, OfATeamThatIsWellHasNoTrouble) {
   EXPECT_FALSE(view_.over());
 }
 
+TEST_F(TeamViewTest, KnowsTheNewestPlaceOfEachVehicle) {
+  hear_mission(at(0s));
+  hear_all(at(100ms), 40);
+  EXPECT_EQ(row(0, at(100ms)).position_m, (std::vector<double>{1, 1}));
+  EXPECT_TRUE(row(1, at(100ms)).position_m.empty());
+  give(view_, world_state(42, {{7, 1, 0}, {2, 8, 0}}), at(200ms));
+  give(view_, world_state(41, {{6, 1, 0}}), at(200ms));  // it was overtaken
+  EXPECT_EQ(row(0, at(200ms)).position_m, (std::vector<double>{7, 1}));
+  EXPECT_EQ(row(1, at(200ms)).position_m, (std::vector<double>{2, 8}));
+}
+
 TEST_F(TeamViewTest, IsCompleteOnceTheMissionAndEveryMemberAreKnown) {
   EXPECT_FALSE(view_.complete());
   hear_all(at(0s), 0, 2);

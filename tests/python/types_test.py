@@ -39,6 +39,8 @@ mu, error = ergocast.Target([ergocast.Gaussian((0, 0), sigma_m=1)]).coefficients
 ax = plot.map(run, view="xy")
 plot.metric({"ours": [run, simulated], "theirs": run}, ax)
 plot.study("runs/noise", y="slope")
+amended: ergocast.Amendment = ergocast.connect(key_file="k").amend(np.ones((2, 2)), at=10, dry_run=True)
+ergocast.connect().amend({"uniform_weight": 1}, set={"target.uniform_weight": 0.1})
 command: npt.NDArray[np.float64] = ergocast.Controller(run.mission).command(0, 0, (1.0, 2.0))
 """
 

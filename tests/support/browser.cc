@@ -135,10 +135,12 @@ void Browser::click(const std::string& selector) {
   ask("POST", "/element/" + found.begin()->get<std::string>() + "/click");
 }
 
-void Browser::drag(const std::string& selector, int right, int down) {
+void Browser::drag(const std::string& selector, int right, int down, int from_right,
+                   int from_down) {
   const json found = ask("POST", "/element", {{"using", "css selector"}, {"value", selector}});
   json steps = json::array();
-  steps.push_back({{"type", "pointerMove"}, {"origin", found}, {"x", 0}, {"y", 0}});
+  steps.push_back(
+      {{"type", "pointerMove"}, {"origin", found}, {"x", from_right}, {"y", from_down}});
   steps.push_back({{"type", "pointerDown"}, {"button", 0}});
   steps.push_back({{"type", "pointerMove"}, {"origin", "pointer"}, {"x", right}, {"y", down}});
   steps.push_back({{"type", "pointerUp"}, {"button", 0}});

@@ -32,9 +32,10 @@ class Browser {
   /// @param held  a key that is held meanwhile, such as Shift
   void press(const std::string& key, const std::string& held = "");
   void click(const std::string& selector);
-  /// Presses the mouse in the middle of an element, moves it by `right` and `down` pixels, and
-  /// releases it.
-  void drag(const std::string& selector, int right, int down);
+  /// Presses the mouse in the middle of an element, or so many pixels beside it, moves it by
+  /// `right` and `down` pixels, and releases it.
+  void drag(const std::string& selector, int right, int down, int from_right = 0,
+            int from_down = 0);
   /// Errors in its console since the last call, also of the page's policy.
   std::vector<std::string> errors();
   /// Processor time of the page's main thread since the first call [s].

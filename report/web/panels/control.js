@@ -26,7 +26,7 @@ function takeToken() {
   return found;
 }
 
-const say = text => put($('controlText'), text);
+export const say = text => put($('controlText'), text);
 const speak = text => put($('controlSpoken'), text);
 
 // A header holds ASCII only.
@@ -40,15 +40,20 @@ function fitting(name) {
   return letters.join('');
 }
 
-async function send(act, agent) {
+// Whether this page may give orders now, and whether it may take control.
+export const hasControl = () => me.mine;
+export const mayTakeControl = () => token !== null && !$('control').hidden;
+
+// Sends a request; `more` has what only this act needs.
+export async function send(act, more = {}) {
   const request = {
     operator: me.id,
     name: fitting($('operatorName').value.trim()),
     number: ++me.number,
     tick: S.facts?.state?.world_tick ?? 0,
     act,
+    ...more,
   };
-  if (agent !== undefined) request.agent = agent;
   try {
     const answer = await fetch('control', {
       method: 'POST',
@@ -63,7 +68,7 @@ async function send(act, agent) {
   }
 }
 
-function complain(text) {
+export function complain(text) {
   say(text);
   speak(text);
 }
@@ -77,11 +82,11 @@ function disarm() {
 }
 
 // Every order but the stop at once needs a second press, so that no order comes by accident.
-function press(button) {
-  const { act, label } = button.dataset;
+export function press(button, order) {
+  const { label } = button.dataset;
   if (armed?.button === button) {
     disarm();
-    give(act, label);
+    order();
     return;
   }
   disarm();
@@ -94,7 +99,7 @@ function press(button) {
 function give(act, label) {
   say(`${label}: sent`);
   const named = act === 'home' || act === 'out';
-  send(act, named ? Number($('orderedAgent').value) : undefined);
+  send(act, named ? { agent: Number($('orderedAgent').value) } : {});
 }
 
 // Lists the agents that can be chosen. An agent that is pinned on the map or in the table is chosen.
@@ -180,8 +185,10 @@ export function connectControl() {
   $('take').onclick = () => send('take');
   $('release').onclick = () => send('release');
   for (const button of document.querySelectorAll('#orders [data-act]')) {
-    button.dataset.label = button.textContent;
-    button.onclick = () => press(button);
+    const { act } = button.dataset,
+      label = button.textContent;
+    button.dataset.label = label;
+    button.onclick = () => press(button, () => give(act, label));
   }
   setInterval(() => {
     if (me.mine) send('here');

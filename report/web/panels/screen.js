@@ -6,6 +6,7 @@ import { Space } from '../map/space.js';
 import { SpaceView } from '../map/space_view.js';
 import { TAILS, paintMarkers, paintTracks, rowsPerPiece, trailOf } from '../map/map.js';
 import { paintShading } from '../map/ground.js';
+import { paintDrawn } from '../map/drawn_layer.js';
 import { paintChart, readingAt } from './chart.js';
 import { buildStrip } from './timeline.js';
 import { $, clamp, put } from '../text.js';
@@ -19,6 +20,7 @@ let space = null;
 export let view = flat;
 let scale = 1,
   shadingKey = '',
+  drawnKey = '',
   trail = { key: '', row: -1, upto: 0 };
 
 function context(id) {
@@ -83,6 +85,18 @@ function drawMarkers() {
   paintMarkers(g, shown(), view, mapState());
 }
 
+// The new target that is being drawn.
+function drawDrawn() {
+  const { drawing } = S;
+  if (!drawing) return;
+  const key = [drawing.version, drawing.open.length ? drawing.pointer : '', view.key, S.theme].join();
+  if (key === drawnKey) return;
+  drawnKey = key;
+  const g = context('drawn');
+  g.clearRect(0, 0, view.width, view.height);
+  paintDrawn(g, S.run.size, view, drawing, S.colours);
+}
+
 function drawChart() {
   const canvas = $('chart'),
     g = context('chart');
@@ -99,6 +113,7 @@ export function drawPictures() {
     drawTrails();
   }
   drawMarkers();
+  drawDrawn();
   drawChart();
 }
 
@@ -110,7 +125,7 @@ export function readPixels() {
 
 // Everything anew.
 export function redraw() {
-  shadingKey = trail.key = '';
+  shadingKey = drawnKey = trail.key = '';
   $('fit').hidden = view.whole;
   ask();
 }
@@ -139,7 +154,7 @@ export function layout() {
   }
   scale = Math.min(devicePixelRatio || 1, 2);
   view.resize($('stage').clientWidth, $('stage').clientHeight);
-  for (const id of [...LAYERS, 'space']) {
+  for (const id of [...LAYERS, 'space', 'drawn']) {
     const canvas = $(id),
       width = Math.round(canvas.clientWidth * scale),
       height = Math.round(canvas.clientHeight * scale);

@@ -16,7 +16,10 @@ const TOP = {
 const MAP = {
   Target:
     'Where the target wants the team to spend its time. ' +
-    'While a team runs, the command “ergocast amend --target FILE” gives it another target.',
+    'While a team runs, “New target” or the command “ergocast amend --target FILE” gives it another one.',
+  'New target':
+    'Draws peaks and polygons over the present target, and shows what they would change. ' +
+    'With control you send them; without, the page shows the command.',
   amendment:
     'The target at the chosen time is no longer that of the plan. ' +
     'Each moment counts against the target of its time.',
@@ -120,6 +123,7 @@ function isShown(label) {
     'no-entry sign': mission.body_radius_m > 0 || mission.walls?.length > 0,
     pin: true,
     amendment: S.run.targets.length > 1,
+    'New target': S.live && !S.run.inBox,
     square: mission.stations?.length > 0,
     'Radio range': mission.radio_range_m > 0,
     'hatched area': S.run.targetAt(S.run.rowAt(S.t)).nowhere?.rectangles.length > 0,

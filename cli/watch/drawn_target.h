@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A target that an operator has drawn on the page: peaks, polygons and a uniform part, in a plane.
+//
+// A request of a page has numbers only, so that it can name no file of this host.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ergocast::cli {
+
+struct DrawnTarget {
+  /// Limit (Page): peaks and polygons of a drawn target. Beyond it: it is refused with 400.
+  static constexpr std::size_t kMostParts = 16;
+  /// Limit (Page): share of the uniform part of a drawn target. Beyond it: it is refused with 400.
+  static constexpr double kMostUniform = 0.9;
+
+  /// A round Gaussian.
+  struct Peak {
+    double x_m = 0, y_m = 0, sigma_m = 0;
+  };
+  using Corner = std::array<double, 2>;
+  using Corners = std::vector<Corner>;
+
+  std::vector<Peak> peaks;
+  std::vector<Corners> polygons;
+  double uniform =
+      0;  ///< its share of the mass; all peaks and polygons have equal parts of the rest
+
+  /// The target of {"peaks": [[x_m, y_m, sigma_m], …], "polygons": [[[x_m, y_m], …], …],
+  /// "uniform": share}. Nothing if a key is unknown or missing, a value has another form, or there
+  /// is neither peak nor polygon.
+  static std::optional<DrawnTarget> parse(const nlohmann::json& object);
+  /// As a scenario's text. `ergocast amend` finds what is wrong with its numbers.
+  std::string text() const;
+};
+
+}  // namespace ergocast::cli
