@@ -74,6 +74,7 @@ class TextWriter : public FieldVisitor {
   }
 
   void number(const Field& field, double value) {
+    if (field.number > last_number_) put_last();
     if (is_given(field)) put(field.name, shortest(value));
   }
   void flag(const Field& field, bool value) {
@@ -96,12 +97,12 @@ class TextWriter : public FieldVisitor {
   void part(const Field& field, const auto& part) {
     part_ = std::string(field.name) + '.';
     list_fields(*this, part);
-    if (!last_.empty()) put("contraction_z_m", last_);
-    last_.clear();
+    put_last();
     part_.clear();
   }
   /// The centre of the contraction.
-  void places(const Field&, const Field&, const Eigen::Vector3d& center_m) {
+  void places(const Field&, const Field& z, const Eigen::Vector3d& center_m) {
+    last_number_ = z.number;
     if (center_m == mission_.domain.center_m()) return put("contraction_center", "DOMAIN_CENTER");
     if (center_m.isZero(0)) return put("contraction_center", "COORDINATE_ORIGIN");
     put("contraction_center", "POINT");
@@ -153,6 +154,9 @@ class TextWriter : public FieldVisitor {
     if (!block.empty()) text_ += block + " {\n";
     block_ = block;
   }
+  void put_last() {
+    if (!last_.empty()) put("contraction_z_m", std::exchange(last_, {}));
+  }
   void put(const char* name, const std::string& value) {
     const std::string path = part_ + name;
     const std::size_t dot = path.rfind('.');
@@ -162,7 +166,8 @@ class TextWriter : public FieldVisitor {
 
   const Mission& mission_;
   std::string text_, part_, block_;
-  std::string last_;  // the last field of a part, if not empty
+  std::string last_;     // contraction_z_m, if it is yet to be written: …
+  int last_number_ = 0;  // … after the fields of the law up to this number
 };
 
 }  // namespace
