@@ -128,15 +128,15 @@ class Amending : public TeamCommand {
           kExitBadInput,
           "--at: the agents may need " +
               shortest(static_cast<double>(least) * mission.timing.dt_s) +
-              " s to leave the zone: name a later time, leave --at out, or add --force and see who "
-              "is inside then");
+              " s to leave the zone: name a later time, leave --at out, or add --force and see "
+              "which agents are inside then");
     if (!listen()) return interrupted();
     if (options_.dry_run) return describe(zone, notice);
     AmendOrder order(zone, notice, now());
     return order_of(order, [&] { return who_is_inside(zone); });
   }
 
-  /// Prints who is still in the zone.
+  /// Prints which agents are still in the zone.
   int who_is_inside(const Zone& zone) const {
     const std::string inside = inside_text(team(), zone);
     if (inside.empty()) {
@@ -245,7 +245,7 @@ void add_zone_options(CLI::App& command, AmendOptions& options) {
           ->type_name("TIME");
   auto* force = command.add_flag(
       "--force", options.force,
-      "Take an --at that is too early for all to leave the zone; who is inside then is named");
+      "Take an --at that is too early for all to leave the zone; the agents inside are named");
   zone->needs(lasts);
   lasts->needs(zone);
   force->needs(zone);
@@ -266,9 +266,8 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option_function<std::string>(
           "--at", [&options](const std::string& text) { options.delay_s = delay_from(text); },
-          "How much later than necessary a target holds, or how long after it is closed nobody is "
-          "in a "
-          "zone any more, in mission time: +10s")
+          "How much later than necessary a target holds, or how long after it is closed a zone is "
+          "free, in mission time: +10s")
       ->type_name("+TIME");
   command.add_flag("--dry-run", options.dry_run,
                    "Only check the target or zone and show what would change; send nothing");
@@ -289,13 +288,11 @@ void add_amend(CLI::App& app, Action& action) {
   describe_search(*command);
   command->footer(
       "From a tick that the coordinator names, all agents cover the new target. What they covered\n"
-      "before counts against the target of its time. A zone is closed at once: nobody enters it, "
-      "and\n"
-      "who is inside leaves it by the shortest way, until nobody is inside at the named tick.\n"
+      "before counts against the target of its time. A zone is closed at once: nobody enters it.\n"
+      "An agent inside leaves it by the shortest way, until nobody is inside at the named tick.\n"
       "Exit codes: 0 the new target holds, or nobody is in the zone; 2 the file has problems, or\n"
-      "several runs are found; 3 LCM cannot be used; 4 no team is found, it was not seen to obey, "
-      "or\n"
-      "agents are in the zone.");
+      "several runs are found; 3 LCM cannot be used; 4 no team is found, it was not seen to\n"
+      "obey, or agents are in the zone.");
   command->callback([&action, options, command] {
     const bool has_target =
         !options->target.empty() || !options->overrides.fields.empty() || !options->zone.empty();
