@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From the velocity that the law wants to the command of the vehicle, in five steps:
 //
-// 0. who is in a zone (core/motion/zones.h) leaves it, whatever else holds, even in a pause;
+// 0. a vehicle in a zone (core/motion/zones.h) leaves it, whatever else holds, even in a pause;
 // 1. the way home takes the law's place, once it has begun (core/motion/way_home.h), also for an
 //    agent that was recalled; one that has no home stays where it is. The way leads round bodies
 //    that no agent drives, as those of agents that were sent out;

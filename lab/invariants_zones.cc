@@ -81,7 +81,7 @@ void Invariants::check_zone(double t_s, const WorldState& world, const Zone& zon
                   std::to_string(zone.from));
     };
     if (apart_m < 0 && beside.bound) violated(Invariant::kZonesNotEntered);
-    // Who joined later may have begun inside.
+    // An agent that joined later may have begun inside.
     const bool was_there = beside.first_seen == zone.closed;
     if (apart_m < 0 && zones_are_left_ && tick >= zone.from && was_there)
       violated(Invariant::kZonesLeft);

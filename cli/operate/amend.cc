@@ -142,15 +142,15 @@ class Amending : public TeamCommand {
           kExitBadInput,
           "--at: the agents may need " +
               shortest(static_cast<double>(least) * mission.timing.dt_s) +
-              " s to leave the zone: name a later time, leave --at out, or add --force and see who "
-              "is inside then");
+              " s to leave the zone: name a later time, leave --at out, or add --force and see "
+              "which agents are inside then");
     if (!listen()) return interrupted();
     if (options_.dry_run) return describe(zone, notice);
     const int code = order(wish_of(zone), notice);
     return code == kExitDone ? who_is_inside(zone) : code;
   }
 
-  /// Prints who is still in the zone.
+  /// Prints which agents are still in the zone.
   int who_is_inside(const Zone& zone) const {
     const std::string inside = inside_text(team(), zone);
     if (inside.empty()) {
@@ -265,7 +265,7 @@ void add_zone_options(CLI::App& command, AmendOptions& options) {
           ->type_name("TIME");
   auto* force = command.add_flag(
       "--force", options.force,
-      "Take an --at that is too early for all to leave the zone; who is inside then is named");
+      "Take an --at that is too early for all to leave the zone; the agents inside are named");
   zone->needs(lasts);
   lasts->needs(zone);
   force->needs(zone);
@@ -286,9 +286,8 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option_function<std::string>(
           "--at", [&options](const std::string& text) { options.delay_s = delay_from(text); },
-          "How much later than necessary a target holds, or how long after it is closed nobody is "
-          "in a "
-          "zone any more, in mission time: +10s")
+          "How much later than necessary a target holds, or how long after it is closed a zone is "
+          "free, in mission time: +10s")
       ->type_name("+TIME");
   command
       .add_option_function<std::string>(
@@ -323,11 +322,10 @@ void add_amend(CLI::App& app, Action& action) {
   describe_search(*command);
   command->footer(
       "From a tick that the coordinator names, all agents cover the new target. What they covered\n"
-      "before counts against the target of its time. A zone is closed at once: nobody enters it,\n"
-      "and who is inside leaves it by the shortest way, until nobody is inside at the named tick.\n"
-      "A later end must be named 10 s of mission time before the end that holds; an earlier one "
-      "is\n"
-      "possible if each agent can be at its station in time.\n"
+      "before counts against the target of its time. A zone is closed at once: nobody enters it.\n"
+      "An agent inside leaves it by the shortest way, until nobody is inside at the named tick.\n"
+      "A later end must be named 10 s of mission time before the end that holds; an earlier one\n"
+      "is possible if each agent can be at its station in time.\n"
       "Exit codes: 0 it holds, or nobody is in the zone; 2 the target, the end or the zone has\n"
       "problems, or several runs are found; 3 LCM cannot be used; 4 no team is found, it was not\n"
       "seen to obey, or agents are in the zone.");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Zones: which are possible, which bodies they bind, that nobody enters one, and that who is inside
+// Zones: which are possible, which bodies they bind, that nobody enters one, and that a body inside
 // leaves it in time. Each flaw must be seen to break that.
 #include "core/motion/zones.h"
 
@@ -196,7 +196,7 @@ TEST(ZoneFilter, LetsNobodyInAndAllOut) {
     EXPECT_GT(attack(task).entered, 0) << "each zone counts";
     task = {mission_of(kind, kSide_m)};
     task.leave = false;
-    EXPECT_GT(attack(task).late, 0) << "nobody leaves who is not led";
+    EXPECT_GT(attack(task).late, 0) << "no body leaves that is not led";
   }
 }
 

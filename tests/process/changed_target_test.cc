@@ -5,7 +5,7 @@
 
 #include "core/basis/basis.h"
 #include "core/mission/amendments.h"
-#include "logger/run_record.h"
+#include "logger/run_data.h"
 #include "plan/amendment_list.h"
 #include "runtime/bus/clock.h"
 #include "runtime/bus/transport.h"

@@ -33,7 +33,16 @@ function drawShading() {
   const row = S.run.rowAt(S.t),
     target = S.run.targetAt(row),
     zones = S.run.zonesAt(row).map(({ number, from }) => number + (row * S.run.stride < from ? 'c' : 'f')),
-    key = [S.layer, S.layer === 'target' ? '' : row, target.id, ...zones, view.key, S.theme, S.run.id, S.view].join();
+    key = [
+      S.layer,
+      S.layer === 'target' ? '' : row,
+      target.id,
+      ...zones,
+      view.key,
+      S.theme,
+      S.run.id,
+      S.view,
+    ].join();
   if (key === shadingKey) return;
   shadingKey = key;
   paintShading(context('shading'), shown(), view, mapState());
