@@ -13,6 +13,7 @@ WRAPPED(void, note_targets, "_ZN8ergocast11TargetShift4noteERKNS_10AmendmentsE",
 WRAPPED(void, shift_sample, "_ZN8ergocast13CoverageTable12shift_sampleERKNS_6AuthorEPKd", CoverageTable*, const Author&, const double*)
 WRAPPED(void, note_ends, "_ZN8ergocast11EndSchedule4noteESt4spanIKNS_4HoldELm18446744073709551615EES1_IKNS_9EndChangeELm18446744073709551615EE", EndSchedule*, std::span<const Hold>, std::span<const EndChange>)
 WRAPPED(EndProblem, end_problem, "_ZN8ergocast8EndRules7problemERKNS_7MissionERKNS_10AmendmentsElllSt4spanIKNS_10AgentPlaceELm18446744073709551615EE", EndRules*, const Mission&, const Amendments&, Tick, Tick, Tick, std::span<const AgentPlace>)
+WRAPPED(void, set_rest, "_ZN8ergocast7WayHome8set_restEl", WayHome*, Tick)
 // clang-format on
 
 void bug_note_targets(TargetShift* self, const Amendments& list) {
@@ -33,11 +34,6 @@ void bug_shift_sample(CoverageTable* self, const Author& author, const double* s
 void bug_note_ends(EndSchedule* self, std::span<const Hold> holds,
                    std::span<const EndChange> ends) {
   if (bug("agents go by the plan's end")) ends = {};
-  if (bug("an end holds at once")) {
-    std::vector<EndChange> earlier(ends.begin(), ends.end());
-    for (EndChange& change : earlier) change.from = 0;
-    return real_note_ends(self, holds, earlier);
-  }
   real_note_ends(self, holds, ends);
 }
 
@@ -46,6 +42,11 @@ EndProblem bug_end_problem(EndRules* self, const Mission& mission, const Amendme
                            std::span<const AgentPlace> agents) {
   if (bug("the way home is not asked for")) agents = {};
   return real_end_problem(self, mission, list, tick, from, tick_count, agents);
+}
+
+void bug_set_rest(WayHome* self, Tick counted) {
+  if (bug("agents go home by the plan's end")) return;
+  real_set_rest(self, counted);
 }
 
 }  // namespace ergocast

@@ -33,6 +33,7 @@ const char* const kPauses = "pauses_per_s = 0.3\npause_max_s = 5";
 const char* const kTargets = "targets_per_s = 0.3";
 const char* const kTargetsAndPauses = "targets_per_s = 0.3\npauses_per_s = 0.3\npause_max_s = 5";
 const char* const kEnds = "ends_per_s = 0.3";
+const char* const kManyEnds = "ends_per_s = 1";
 const char* const kZones = "zones_per_s = 0.3";
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
@@ -114,6 +115,11 @@ const char* const kStations =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 20 } "
     "kind { name: \"b\" count: 2 } }";
 
+const char* const kStationsForAll =
+    "agents { kind { name: \"a\" count: 4 station { x_m: 8 y_m: 50 } reserve_s: 1 } }";
+const char* const kLongRests =
+    "agents { kind { name: \"a\" count: 4 station { x_m: 8 y_m: 50 } reserve_s: 20 } }";
+
 const Plant kPlants[] = {
     {Invariant::kPositionsInTheDomain, "the edges push outwards"},
     {Invariant::kInputsBounded, "the input is not cut"},
@@ -151,9 +157,11 @@ const Plant kPlants[] = {
     {Invariant::kZonesNotEntered, "a zone ends early", kZones, "", "", "--lockstep"},
     {Invariant::kZonesLeft, "nobody is led out of a zone", kZones, "", "", "--lockstep"},
     {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
-    {Invariant::kHomeInTime, "agents go by the plan's end", kEnds, kStations, "", "--lockstep"},
-    {Invariant::kHomeInTime, "the way home is not asked for", kEnds, kStations, "", "--lockstep"},
-    {Invariant::kForecastOfWhatIsKnown, "an end holds at once", kEnds, kStations, "", "--lockstep"},
+    {Invariant::kHomeInTime, "agents go home by the plan's end", kManyEnds, kStationsForAll, "",
+     "--lockstep"},
+    {Invariant::kForecastOfWhatIsKnown, "agents go by the plan's end", kEnds, kStations, "",
+     "--lockstep"},
+    {Invariant::kNothingCountsWhilePaused, "the way home is not asked for", kManyEnds, kLongRests},
     {Invariant::kRecalledComeHome, "a recalled agent stays where it is", kRecalls, "", "",
      "--lockstep"},
     {Invariant::kForecastOfWhatIsKnown, "the resting are foreseen", "", kStations},

@@ -269,7 +269,7 @@ TEST_F(AmendmentsFile, IsRefusedWithItsNameIfItIsDamaged) {
         text.substr(0, text.size() / 2), changed("[[30,40]]", "[[40,30]]"),
         changed("\"number\":0", "\"number\":9"), changed("\"number\":0", "\"number\":-1"),
         changed("\"from_tick\":10", "\"from_tick\":1e3"),
-        changed("\"from_tick\":10", "\"from_tick\":50"), changed("\"target\"", "\"aim\""),
+        changed("\"from_tick\":10", "\"from_tick\":51"), changed("\"target\"", "\"aim\""),
         changed("[1.0,", "[1.0,0.25,"), changed("[1.0,", "[1.0,\"a\","), changed("[1.0,", "[0.5,"),
         changed("\"hash\":\"", "\"hash\":\"z"), changed("\"hash\":\"", "\"hash\":\"1"),
         changed("\"void\":true", "\"void\":1")}) {
