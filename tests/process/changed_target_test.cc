@@ -182,7 +182,7 @@ TEST_F(ChangedTargets, AreComparedWithAllTimeWhereTheHistoryIsKept) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   EXPECT_TRUE(answered("identical to its simulation")) << output();
   const auto plan = read_mission(out());
-  ASSERT_TRUE(plan) << plan.error().text;
+  ASSERT_TRUE(plan) << plan.error();
   // The last target is the plan's, mirrored along neither axis.
   Coefficients c = Coefficients::Zero(plan->basis.mode_count());
   double samples = 0;
