@@ -2,6 +2,8 @@
 // Writes the list of a mission's fields in Protobuf's text format.
 #include "logger/mission_text.h"
 
+#include <utility>
+
 #include "plan/mission_fields.h"
 #include "text/shortest.h"
 
