@@ -21,7 +21,6 @@
 #include "scenario/parse/override_options.h"
 #include "scenario/zone_file.h"
 #include "text/read_number.h"
-#include "text/shortest.h"
 
 namespace ergocast::cli {
 namespace {
@@ -140,9 +139,8 @@ class Amending : public TeamCommand {
     if (notice < least && !options_.force)
       return report_error(
           kExitBadInput,
-          "--at: the agents may need " +
-              shortest(static_cast<double>(least) * mission.timing.dt_s) +
-              " s to leave the zone: name a later time, leave --at out, or add --force and see "
+          "--at: the agents may need " + seconds_text(least, mission) +
+              " to leave the zone: name a later time, leave --at out, or add --force and see "
               "which agents are inside then");
     if (!listen()) return interrupted();
     if (options_.dry_run) return describe(zone, notice);
@@ -163,14 +161,12 @@ class Amending : public TeamCommand {
   int describe(const Zone& zone, Tick notice) const {
     const Mission& mission = team().mission();
     const std::string inside = inside_text(team(), zone);
-    std::printf("no problems: zone %s, %zu corners, for %s s\n", to_hex(zone_hash(zone)).c_str(),
-                zone.corners_m.size(),
-                shortest(static_cast<double>(zone.until) * mission.timing.dt_s).c_str());
+    std::printf("no problems: zone %s, %zu corners, for %s\n", to_hex(zone_hash(zone)).c_str(),
+                zone.corners_m.size(), seconds_text(zone.until, mission).c_str());
     std::printf("now %s\n", inside.empty() ? "nobody is in it" : inside.c_str());
-    std::printf(
-        "it would be amendment %d, closed at the earliest from %s on, and free %s s later\n",
-        team().amendments().named, team().mission_time(earliest_tick(team(), 0)).c_str(),
-        shortest(static_cast<double>(notice) * mission.timing.dt_s).c_str());
+    std::printf("it would be amendment %d, closed at the earliest from %s on, and free %s later\n",
+                team().amendments().named, team().mission_time(earliest_tick(team(), 0)).c_str(),
+                seconds_text(notice, mission).c_str());
     std::printf("nothing was sent\n");
     return kExitDone;
   }

@@ -80,6 +80,12 @@ std::string zone_context(const Mission& mission, const fs::path& recorded) {
   return mission_text(mission) + origin_text(recorded);
 }
 
+std::string seconds_text(Tick ticks, const Mission& mission) {
+  constexpr double kDigits = 1e6;  // not those of rounding
+  const double time_s = static_cast<double>(ticks) * mission.timing.dt_s;
+  return shortest(std::round(time_s * kDigits) / kDigits) + " s";
+}
+
 TargetChange target_change_of(const Scenario& scenario) {
   return {.target = scenario.mission().target_coefficients,
           .cosine = scenario.mission().cosine_target};

@@ -24,6 +24,9 @@ Result<Scenario, std::vector<Problem>> load_new_target(const Mission& mission,
 /// The text that load_zone() needs: the mission with the origin of its recorded scenario.
 std::string zone_context(const Mission& mission, const std::filesystem::path& recorded);
 
+/// How long ticks take, as people write it: "39.3 s".
+std::string seconds_text(Tick ticks, const Mission& mission);
+
 /// The coefficients of a compiled target, as AMEND carries them.
 TargetChange target_change_of(const Scenario& scenario);
 

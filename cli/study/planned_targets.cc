@@ -143,9 +143,8 @@ bool add_zone(Tick tick, const PlannedAmendment& planned, const Mission& mission
   }
   const Tick notice = least_notice_ticks(mission, zone, others);
   if (tick < notice) {
-    print_message(planned.flag + ": the agents may need " +
-                  shortest(static_cast<double>(notice) * dt_s) +
-                  " s to leave the zone: name a later time");
+    print_message(planned.flag + ": the agents may need " + seconds_text(notice, mission) +
+                  " to leave the zone: name a later time");
     return false;
   }
   const Tick closed = tick - notice;

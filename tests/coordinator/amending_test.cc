@@ -2,6 +2,8 @@
 // A new target: it is named once all its parts have come, and only if it follows the newest one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "team/amend_parts.h"
 #include "tests/coordinator/driven_coordinator.h"
 #include "tests/coordinator/successor.h"
@@ -235,8 +237,8 @@ TEST(Amending, ASuccessorKnowsTheTargets) {
 Amend zone_wish(double x_m, std::int32_t number, double size_m = 200, Tick lasts = 100) {
   Zone zone;
   zone.until = lasts;
-  zone.corners_m = {
-      {x_m, 100}, {x_m + size_m, 100}, {x_m + size_m, 100 + size_m}, {x_m, 100 + size_m}};
+  const double y_m = std::min(x_m, 100.0), far_x_m = x_m + size_m, far_y_m = y_m + size_m;
+  zone.corners_m = {{x_m, y_m}, {far_x_m, y_m}, {far_x_m, far_y_m}, {x_m, far_y_m}};
   return in_parts({.header = {kRun, kOperator, 1, next_sequence(), 0},
                    .number = number,
                    .kind = AmendmentKind::kZone,
@@ -276,13 +278,18 @@ TEST(Amending, NamesNoNinthZoneUntilOneHasEnded) {
   const auto ask = [&](int number, Tick lasts) {
     give(coordinator, world_where(tick, {tick - 1, tick - 1}), at(1s));
     give(coordinator, zone_wish(100 + 10 * number, number, 50, lasts), at(1s));
-    let_world_stand_by(coordinator, ++tick);
+    const auto parts = only<MissionPart>(advance(coordinator, at(1s)));
+    if (parts.empty()) return;  // it is refused
+    WorldState world = world_where(++tick, {9, 9});
+    world.roster_revision = parts[0].revision;
+    give(coordinator, world, at(1s));
   };
   for (int i = 0; i < 9; ++i) ask(i, 100);
   EXPECT_EQ(coordinator.amendments().named, 8);
   tick = coordinator.amendments().zones[0].until - 1;
   ask(8, 100);
   EXPECT_EQ(coordinator.amendments().named, 8) << "it ends a tick later";
+  ++tick;
   ask(8, 100);
   EXPECT_EQ(coordinator.amendments().named, 9);
 }

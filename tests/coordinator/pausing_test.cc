@@ -112,7 +112,11 @@ TEST(Pausing, EndsTheLastOfTheMostHoldsButBeginsNoOther) {
     amending.plan(only_pauses(holds));
     Announcement announcement;
     const int changes = named_changes(holds);
-    amending.obey(pause_after(changes), small_mission(2), {}, {me, at(1s)}, announcement);
+    const SignsOfLife signs{me, at(1s)};
+    const TeamPlaces places;
+    const std::vector<RosterEntry> roster;
+    amending.obey(pause_after(changes), small_mission(2), {}, {signs, places, roster},
+                  announcement);
     EXPECT_EQ(amending.stand_by_revision() >= 0, open);
     EXPECT_EQ(announcement.revision(), open ? 1 : 0);
   }
