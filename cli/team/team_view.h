@@ -129,7 +129,7 @@ class TeamView {
   Instant since_;
   Tick tick_ = 0, world_tick_ = 0;
   std::map<Author, Seen> agents_;
-  std::map<AgentId, Header> processes_;  // the newest message of each
+  std::map<AgentId, Header> processes_;                           // the newest message of each
   std::map<AgentId, std::pair<Tick, Eigen::Vector3d>> places_m_;  // each vehicle's newest
   std::string coordinator_host_;
   std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
