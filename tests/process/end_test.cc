@@ -141,6 +141,34 @@ TEST_F(EndCommand, LetsOneOfTwoOperatorsWin) {
   let_end(mission, end_s);
 }
 
+TEST_F(EndCommand, TargetsAreCancelledWhileTheyHoldAndWhileTheyWait) {
+  Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+  std::ofstream(folder_ / "east.textproto")
+      << "target { gaussians { mean_x_m: 1600 mean_y_m: 1000 sigma_m: 200 } }";
+  const std::string east = folder_ / "east.textproto";
+  ASSERT_EQ(amend({"--target", east}), 0) << output();
+  ASSERT_EQ(amend({"--cancel", "0"}), 0) << output();
+  EXPECT_TRUE(answered("amendment 1, target ")) << output();
+  ASSERT_EQ(send_command("pause"), 0) << output();
+  Child waits = start("ergocast", {"amend", "--target", east, "--at", "+50s", "--lcm-url", kUrl});
+  ASSERT_TRUE(logs("coordinator", "amendment 3")) << log_of("coordinator");
+  Child cancels = start("ergocast", {"amend", "--cancel", "3", "--lcm-url", kUrl});
+  ASSERT_TRUE(logs("coordinator", "amendment 4")) << log_of("coordinator");
+  ASSERT_EQ(send_command("resume"), 0) << output();
+  EXPECT_EQ(wait_for(waits), 0);
+  EXPECT_EQ(wait_for(cancels), 0);
+  EXPECT_EQ(amend({"--cancel", "3"}), 4) << output();
+  EXPECT_TRUE(answered("a later amendment has replaced amendment 3")) << output();
+  ASSERT_TRUE(moves_on());
+  ASSERT_EQ(send_command("stop"), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
+  const auto all = summary()["amendments"];
+  ASSERT_EQ(all.size(), 6U);
+  EXPECT_EQ(all[3]["from_tick"], all[4]["from_tick"]) << "amendment 3 never held";
+  EXPECT_EQ(summary()["targets"].size(), 4U) << "the plan's, and amendments 0, 1 and 4";
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
 TEST_F(EndCommand, IsRehearsedInASimulation) {
   const auto rehearse = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"simulate", scenario(), "--duration", "200", "--out", out()});
