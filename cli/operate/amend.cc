@@ -250,7 +250,6 @@ void add_zone_options(CLI::App& command, AmendOptions& options) {
           .add_option("--zone", options.zone,
                       "A polygon that the team leaves and does not enter, as text, GeoJSON "
                       "or a drawing")
-          ->check(CLI::ExistingFile)
           ->type_name("FILE");
   auto* lasts =
       command
