@@ -91,7 +91,6 @@ void list_fields(auto& io, MaybeConst<Basis> auto& basis) {
 
 void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
   const When adaptive = only_if(law.perturbation == Perturbation::kAdaptive);
-  const When kept = only_if(law.history != TargetHistory::kByTime);
   const When forgets = unless(law.memory_half_life_s, 0);
   io.number({1, "u_max_mps", limits::above(0, 1e6)}, law.u_max_mps);
   io.choice({2, "regularization"}, law.regularization, {"ABSOLUTE", "RELATIVE"});
@@ -106,7 +105,7 @@ void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
   io.flag({11, "ends_with_plan"}, law.ends_with_plan);
   io.flag({12, "paired_pushes"}, law.paired_pushes);
   io.number({14, "memory_half_life_s", limits::between(0, 1e9), forgets}, law.memory_half_life_s);
-  io.choice({15, "history", {}, kept}, law.history, {"BY_TIME", "KEEP"});
+  io.choice({15, "history"}, law.history, {"BY_TIME", "KEEP"});
 }
 
 void list_fields(auto& io, MaybeConst<Timing> auto& timing) {

@@ -2,9 +2,9 @@
 // Which end of the mission holds at which tick, and from when agents rest by it.
 //
 // The plan has tick_count ticks that count. An amendment may give the mission another number of
-// ticks (EndChange). Whoever knows it knows at once when the mission is over. What an agent
-// computes, however, follows the end that holds at the tick, because its teammates may not know a
-// later one yet.
+// ticks (EndChange). A process that has received it knows at once when the mission is over. What an
+// agent computes, however, follows the end that holds at the tick, because its teammates may not
+// know a later one yet.
 //
 // An agent with a station rests from R = tick_count − ⌈reserve_s / dt⌉ on, core/mission/station.h.
 // An end that is named before R moves R. An agent that rests already stays at its station.
