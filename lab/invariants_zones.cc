@@ -73,18 +73,18 @@ void Invariants::check_zone(double t_s, const WorldState& world, const Zone& zon
     BesideZone& beside =
         beside_zones_.try_emplace({zone.number, vehicle.id}, BesideZone{tick}).first->second;
     const double apart_m = outside_m(zone, vehicle.position_m);
-    const auto violated = [&](Invariant invariant) {
-      violate(t_s, invariant, "vehicle " + std::to_string(vehicle.id),
-              std::to_string(-apart_m) + " m inside the zone of amendment " +
-                  std::to_string(zone.number) + " at tick " + std::to_string(tick) +
-                  ", closed from tick " + std::to_string(zone.closed) + ", free from " +
-                  std::to_string(zone.from));
+    const std::string who = "vehicle " + std::to_string(vehicle.id);
+    const auto where = [&] {
+      return std::to_string(-apart_m) + " m inside the zone of amendment " +
+             std::to_string(zone.number) + " at tick " + std::to_string(tick) +
+             ", closed from tick " + std::to_string(zone.closed) + ", free from " +
+             std::to_string(zone.from);
     };
-    if (apart_m < 0 && beside.bound) violated(Invariant::kZonesNotEntered);
+    if (apart_m < 0 && beside.bound) violate(t_s, Invariant::kZonesNotEntered, who, where());
     // An agent that joined later may have begun inside.
     const bool was_there = beside.first_seen == zone.closed;
     if (apart_m < 0 && zones_are_left_ && tick >= zone.from && was_there)
-      violated(Invariant::kZonesLeft);
+      violate(t_s, Invariant::kZonesLeft, who, where());
     beside.bound = beside.bound || apart_m > surely_bound_m(mission_, vehicle.id);
   }
 }

@@ -24,8 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using Problems = std::vector<Problem>;
 
-constexpr std::string_view kBefore = "target { keep_outs { ", kAfter = "\n} }";
+constexpr std::string_view kBefore = "target{keep_outs{", kAfter = "\n}}";
 constexpr std::string_view kPath = "target.keep_outs[0]";
+const std::string kBlock = "target.keep_outs.";
 
 std::string field(const std::string& name) { return std::string(kPath) + "." + name; }
 
@@ -45,7 +46,7 @@ Problems as_in_file(Problems problems, const fs::path& file) {
     for (std::string* text : {&problem.where, &problem.what, &problem.remedy}) {
       replace_all(*text, field(""), "");
       replace_all(*text, std::string(kPath), "polygon");
-      replace_all(*text, "target.keep_outs.", "");
+      replace_all(*text, kBlock, "");
     }
     const std::string first = file.string() + ":1:";
     if (!problem.where.starts_with(first)) continue;

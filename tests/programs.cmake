@@ -157,6 +157,7 @@ ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
     checks_can_fail/target_mistakes.cc
     checks_can_fail/verify_test.cc
     checks_can_fail/words.cc
+    checks_can_fail/zone_files_test.cc
   LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
 # The real `ergocast` with selectable bugs, whose files have the linker's names of the wrapped
 # functions.

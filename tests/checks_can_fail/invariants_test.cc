@@ -38,6 +38,9 @@ const char* const kZones = "zones_per_s = 0.3";
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
+const char* const kTenAgents =
+    "agents { starts { x_m: 30 y_m: 30 } starts { x_m: 70 y_m: 65 } starts { x_m: 50 y_m: 45 } "
+    "starts { x_m: 25 y_m: 60 } starts { x_m: 75 y_m: 30 } starts { x_m: 50 y_m: 90 } }";
 const char* const kHalfLife = "law { memory_half_life_s: 3 }";
 const char* const kHalfLifeByRowsAlone =
     "law { memory_half_life_s: 3 }\nagents { dead_reckoning: false }";
@@ -151,11 +154,12 @@ const Plant kPlants[] = {
     {Invariant::kWallsKept, "held commands know no walls", "loss = 0.3", kWalled},
     {Invariant::kWallsKept, "nobody brakes before walls", "", kWalledWithInertia},
     {Invariant::kWallsKept, "a loiter circle may reach into walls", "", kWalledWithWings},
-    {Invariant::kZonesNotEntered, "no filter knows zones", kZones, "", "", "--lockstep"},
-    {Invariant::kZonesNotEntered, "no filter knows zones", kZones},
-    {Invariant::kZonesNotEntered, "a zone closes only at its tick", kZones, "", "", "--lockstep"},
-    {Invariant::kZonesNotEntered, "a zone ends early", kZones, "", "", "--lockstep"},
-    {Invariant::kZonesLeft, "nobody is led out of a zone", kZones, "", "", "--lockstep"},
+    {Invariant::kZonesNotEntered, "no filter knows zones", kZones, kTenAgents, "", "--lockstep"},
+    {Invariant::kZonesNotEntered, "no filter knows zones", kZones, kTenAgents},
+    {Invariant::kZonesNotEntered, "a zone closes only at its tick", kZones, kTenAgents, "",
+     "--lockstep"},
+    {Invariant::kZonesNotEntered, "a zone ends early", kZones, kTenAgents, "", "--lockstep"},
+    {Invariant::kZonesLeft, "nobody is led out of a zone", kZones, kTenAgents},
     {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
     {Invariant::kHomeInTime, "agents go home by the plan's end", kManyEnds, kStationsForAll, "",
      "--lockstep"},

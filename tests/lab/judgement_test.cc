@@ -101,7 +101,7 @@ TEST(Laboratory, MissesEachMessageThatARoleDoesNotSubscribeTo) {
     const bool of_bodies =
         heard.role == Role::kWorld && MessageTypes{1} << heard.type == kTypes<WorldState>;
     bool missed = false;
-    for (std::uint64_t seed = 1; seed <= (never_missed(heard) ? 1 : 10) && !missed; ++seed) {
+    for (std::uint64_t seed = 1; seed <= (never_missed(heard) ? 1 : 40) && !missed; ++seed) {
       const bool of_places = MessageTypes{1} << heard.type == kTypes<Beacon>;
       const Scenario& scenario = of_places ? hearsay : of_bodies ? crowded : real_time;
       missed = run_trial(scenario, seed, lab::drawn(seed), without(heard)).violation.has_value();

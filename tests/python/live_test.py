@@ -156,7 +156,7 @@ class ARunningTeam(unittest.TestCase):
             self.assertIn(words, str(raised.exception))
         with self.assertRaisesRegex(ergocast.ScenarioError, "only the target of a running mission"):
             self.run_.amend(set={"law.u_max_mps": 3}, dry_run=True)
-        with self.assertRaisesRegex(ergocast.ScenarioError, "--target, --set or --list"):
+        with self.assertRaisesRegex(ergocast.ScenarioError, "--target, --set, --zone"):
             self.run_.amend()
         with self.assertRaisesRegex(ergocast.TeamError, "the mission ends before that"):
             self.run_.amend(EAST, at=1e7)

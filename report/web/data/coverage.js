@@ -4,8 +4,8 @@
 // along y fastest. Where kinds of agents see differently, each place counts with its kind's quality and
 // footprint. With a half-life, all sums are halved at its ticks, as in core/law/half_life.h.
 // After a change of the target each place counts against the target of its own time: c_k is compared with the
-// average of the targets, each weighted by what was covered while it held. With law.history KEEP it is compared
-// with the present target.
+// average of the targets, each weighted by what was covered while it held. With law.history KEEP it is
+// compared with the present target.
 const EVERY = 128;
 
 // cos(m π u) of all m, by recurrence.

@@ -59,8 +59,8 @@ export function addLog(lines) {
   if (low) log.scrollTop = log.scrollHeight;
 }
 
-// φ² each mission second from all positions; if the page lacks some of them, a target, or the modes of the free
-// domain, what the agents report. A few lost rows would change a small φ² much.
+// φ² each mission second from all positions; if the page lacks some of them, a target, or the modes of the
+// free domain, what the agents report. A few lost rows would change a small φ² much.
 function addMetrics(run) {
   const { told } = run,
     every = Math.max(1, Math.round(1 / run.step)),

@@ -44,7 +44,8 @@ export class Run {
     this.recalledFrom = new Map(); // world's tick from which a recalled agent rests
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
-    this.amendments = []; // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
+    // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
+    this.amendments = [];
     this.zones = []; // {number, closed, from, until: ticks, corners_m, heights_m}, ascending
     this.received = new Map(); // coefficients of new targets, by hash
     this.targets = [plannedTarget(mission)]; // ascending by row
@@ -64,7 +65,8 @@ export class Run {
     this.noteEnds();
     this.coverage.reset(0);
   }
-  // What has changed since the plan, the coefficients of targets that are new to the page, by hash, and all zones.
+  // What has changed since the plan, the coefficients of targets that are new to the page, by hash, and all
+  // zones.
   setAmendments(list, coefficients = {}, zones = this.zones) {
     this.zones = zones;
     for (const [hash, mu] of Object.entries(coefficients)) this.received.set(hash, mu);

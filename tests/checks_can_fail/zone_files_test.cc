@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Each problem of the file of a zone, through a rehearsal. A zone of a running mission is read by
+// the same functions.
+#include "tests/checks_can_fail/expect_said.h"
+#include "tests/process/support/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+class ZoneFilesCanFail : public OwnHost {
+ protected:
+  static std::string corner(int x_m, int y_m) {
+    return "vertices { x_m: " + std::to_string(x_m) + " y_m: " + std::to_string(y_m) + " }\n";
+  }
+  /// Rehearses a zone in a plane of 2 km, and stores what is printed.
+  void expect_problem(const std::string& name, const std::string& content,
+                      const std::string& problem) {
+    write_file(folder_ / name, content);
+    EXPECT_EQ(ergocast({"simulate", "quadrimodal_corners", "--duration", "60", "--out",
+                        folder_ / "run", "--amend", "30+10:" + (folder_ / name).string()}),
+              2)
+        << content;
+    EXPECT_NE(output().find(problem), std::string::npos) << problem << ":\n" << output();
+    EXPECT_NE(output().find(name), std::string::npos) << "the file is not named:\n" << output();
+    said_.push_back(output());
+  }
+
+  const std::string square_ =
+      corner(100, 100) + corner(400, 100) + corner(400, 400) + corner(100, 400);
+  std::vector<std::string> said_;
+};
+
+TEST_F(ZoneFilesCanFail, InEachOfTheirProblems) {
+  expect_problem("solid.textproto", square_ + "solid: true", "is not for zones");
+  expect_problem(
+      "hole.textproto",
+      square_ + "holes { " + corner(200, 200) + corner(300, 200) + corner(300, 300) + "}",
+      "a zone has no holes");
+  expect_problem("two.textproto", square_ + "} keep_outs {" + square_, "the file has 2 polygons");
+  std::string many;
+  for (int i = 0; i < 33; ++i) many += corner(100 + 10 * i, 100) + corner(105 + 10 * i, 130);
+  expect_problem("many.textproto", many + corner(400, 900), "has 67 corners, above the limit 64");
+  std::string far = square_;
+  for (auto at = far.find("00 "); at != far.npos; at = far.find("00 ", at + 5))
+    far.replace(at, 3, "00000 ");
+  expect_problem("far.textproto", far, "is far from the domain");
+  expect_problem("crossing.textproto",
+                 corner(100, 100) + corner(400, 400) + corner(400, 100) + corner(100, 400),
+                 "cross");
+  expect_problem("typo.textproto", "vertex { x_m: 1 }", "unknown field \"vertex\"");
+  const std::vector<Unsayable> unsayable = {{"scenario/zone_file.cc", "the running mission",
+                                             "the mission is one that a program has written"}};
+  expect_all_said({"scenario/zone_file.cc"}, said_, unsayable);
+}
+
+}  // namespace
+}  // namespace ergocast::test
