@@ -98,6 +98,11 @@ void check(const proto::Scenario& scenario, Checks& checks) {
   }
 }
 
+bool is_sound(const proto::Scenario& scenario, Checks& checks, const Findings& findings) {
+  check(scenario, checks);
+  return findings.empty();
+}
+
 Zone zone_of(const proto::Polygon& polygon, const Box& domain) {
   Zone zone;
   zone.until = 1;
@@ -143,8 +148,7 @@ Result<Zone, Problems> load_zone(const fs::path& file, const std::string& runnin
     *as_written.mutable_holes() = polygon.holes();
     polygon = as_written;
   }
-  check(scenario, checks);
-  if (!findings.empty()) return problems();
+  if (!is_sound(scenario, checks, findings)) return problems();
   const Zone zone = zone_of(scenario.target().keep_outs(0), domain);
   if (!is_zone(zone, domain)) {
     checks.problem(std::string(kPath), "is far from the domain, or its heights are",
