@@ -3,6 +3,7 @@
 #include "scenario/zone_file.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "scenario/compile/defaults.h"
@@ -50,8 +51,8 @@ Problems as_in_file(Problems problems, const fs::path& file) {
     }
     const std::string first = file.string() + ":1:";
     if (!problem.where.starts_with(first)) continue;
-    const int column = std::atoi(problem.where.c_str() + first.size());
-    problem.where = first + std::to_string(std::max(1, column - static_cast<int>(kBefore.size())));
+    const auto column = std::strtol(problem.where.c_str() + first.size(), nullptr, 10);
+    problem.where = first + std::to_string(std::max(1L, column - std::ssize(kBefore)));
   }
   return problems;
 }
