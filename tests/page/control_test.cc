@@ -48,6 +48,8 @@ class ControlledPage : public PageInABrowser {
   }
   void end_with_the_mission() {
     ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+    // A browser that has not received the end yet would connect again, in vain.
+    EXPECT_TRUE(browser_->becomes("return ergocast.S.live === false"));
     mission_->send(SIGINT);
     EXPECT_EQ(wait_for(*mission_), 0) << printed();
   }
