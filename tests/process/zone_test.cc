@@ -13,10 +13,10 @@ class ZoneCommand : public RunningMission, public ::testing::WithParamInterface<
     return ergocast(arguments);
   }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
-  /// A square round one of the target's peaks.
+  /// A square round all peaks of the target, so that agents are inside.
   std::filesystem::path square() const {
     std::ofstream file(folder_ / "square.textproto");
-    for (const auto& [x_m, y_m] : {std::pair{200, 200}, {800, 200}, {800, 800}, {200, 800}})
+    for (const auto& [x_m, y_m] : {std::pair{200, 200}, {1800, 200}, {1800, 1800}, {200, 1800}})
       file << "vertices { x_m: " << x_m << " y_m: " << y_m << " }\n";
     return folder_ / "square.textproto";
   }
@@ -25,7 +25,7 @@ class ZoneCommand : public RunningMission, public ::testing::WithParamInterface<
     std::pair<int, int> count;
     for (const auto& [tick, row] : recorded_rows(out()))
       for (const auto& [id, one] : row)
-        if (one.x_m > 200 && one.x_m < 800 && one.y_m > 200 && one.y_m < 800)
+        if (one.x_m > 200 && one.x_m < 1800 && one.y_m > 200 && one.y_m < 1800)
           ++(tick >= from ? count.first : count.second);
     return count;
   }
@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Paces, ZoneCommand, ::testing::Values("--lockstep", "--
 
 TEST_P(ZoneCommand, SendsTheTeamOutAndKeepsItOut) {
   Child mission = launch_endless(scenario(), {GetParam(), "--lcm-url", kUrl});
-  ASSERT_TRUE(moves_on(400000)) << printed();  // an agent has been inside
+  ASSERT_TRUE(moves_on(400000)) << printed();  // all are inside
   const std::vector<std::string> order = {"--zone", square(), "--for", "1000000s"};
   std::vector<std::string> tried = order;
   tried.emplace_back("--dry-run");
