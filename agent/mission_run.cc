@@ -60,11 +60,13 @@ std::optional<MissionOver> MissionRun::evicted(const Participant& me, Tick tick)
 // ---- what the agent learns ----
 
 /// Prepares here what depends on roster and amendments, because a control step must not allocate.
+/// Only the ways round zones are computed in the step in which a zone closes or ends.
 void MissionRun::note_roster(const Participant& me) {
   const MissionFollower& known = me.follower();
   const RosterEntry* const own = known.entry_of(me.incarnation());
   if (own != nullptr && own->recalled()) motion_.prepare_recall(me.mission());
   ends_.note(known.amendments());
+  has_known_ends_ = has_known_ends_ || !ends_.is_plans();
   shift_.note(known.amendments());
   if (shift_.any_of_samples()) exchange_.allow_shifts();
   motion_.note_zones(known.amendments().zones, me.mission());
@@ -227,7 +229,7 @@ AgentId MissionRun::awaited(const Participant& me) const {
 void MissionRun::answer(Participant& me, Outbox& out) {
   command_before_ = last_command_;
   exchange_.forget_silent(step_, me);
-  if (!ends_.is_plans()) {
+  if (has_known_ends_) {
     motion_.set_rest(ends_.rest_from(me.mission(), me.id(), step_.counted));
     guidance_.note_ends(me.mission(), ends_, step_.counted);
   }

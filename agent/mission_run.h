@@ -115,6 +115,7 @@ class MissionRun {
   RadioRange radio_;
   CoverageExchange exchange_;
   EndSchedule ends_;
+  bool has_known_ends_ = false;  // also if they are void by now
   TargetShift shift_;
   Guidance guidance_;
   SafeMotion motion_;

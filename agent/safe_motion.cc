@@ -100,8 +100,7 @@ Eigen::Vector3d SafeMotion::command_mps(const Eigen::Vector3d& wanted_mps, const
                                         const Participant& me) {
   if (!zones_.empty() || !zones_in_use_.empty()) use_zones(step.tick, me.mission());
   const auto way_out = way_out_mps(step, me);
-  leaves_ = way_out.has_value();
-  const Eigen::Vector3d aim = leaves_ ? *way_out : aim_mps(wanted_mps, step, me);
+  const Eigen::Vector3d aim = way_out ? *way_out : aim_mps(wanted_mps, step, me);
   if (!filters_ && zones_in_use_.empty()) return aim;
   const SafeVelocity command = safe(aim, step, me);
   if (wall_follower_) wall_follower_->note(command.wall);

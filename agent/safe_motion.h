@@ -77,8 +77,6 @@ class SafeMotion {
   /// begin or go on.
   Eigen::Vector3d command_mps(const Eigen::Vector3d& wanted_mps, const AgentStep& step,
                               const Participant& me);
-  /// Whether it leaves a zone.
-  bool leaves_zone() const { return leaves_; }
   const BlockedTicks& blocked() const { return blocked_; }
 
  private:
@@ -98,8 +96,7 @@ class SafeMotion {
   std::vector<Zone> zones_;                     // of the list
   std::vector<Zone> zones_in_use_;              // those that are closed
   std::optional<WayOut> way_out_;               // of these; made when it is first needed
-  bool leaves_ = false;
-  std::optional<WallFollower> wall_follower_;  // where there are walls
+  std::optional<WallFollower> wall_follower_;   // where there are walls
   bool has_station_;
   std::optional<WayHome> way_home_;  // if it has a station, or was recalled and has a home
   std::vector<AgentId> undriven_;    // bodies without an agent, ascending

@@ -53,7 +53,11 @@ void Amending::plan(Amendments list) {
 }
 
 void Amending::adopt(const Amendments& known) {
-  if (known.named > list_.named) replace(known);
+  if (known.named <= list_.named) return;
+  replace(known);
+  // A wish that waits for its tick does not follow that list. Its operator repeats it.
+  wish_.reset();
+  stand_by_revision_ = -1;
 }
 
 /// Whether the next amendment may be of this kind and number.
@@ -64,7 +68,8 @@ bool Amending::may_name(const Amend& amend, const TickWatch& ticks) const {
   if (amend.kind == AmendmentKind::kPause)
     return !is_open(list_.holds) && list_.holds.size() < kMaxHolds;
   if (amend.kind == AmendmentKind::kResume) return is_open(list_.holds);
-  if (amend.kind == AmendmentKind::kEnd) return list_.ends.size() < kMaxEnds;
+  if (amend.kind == AmendmentKind::kEnd)
+    return list_.ends.size() < kMaxEnds && amend.delay_ticks == 0;
   return true;
 }
 
@@ -122,7 +127,7 @@ void Amending::obey(const Amend& amend, const Mission& mission, const TickWatch&
   const auto tick = realtime ? tick_with_notice(mission.timing, ticks, team.signs)
                              : std::optional(ticks.newest() + kLockstepNotice);
   if (!tick || !possible(*wish, mission, ticks.newest(), *tick + wish->delay_ticks, team)) return;
-  if (realtime) return name(*tick, *std::move(wish), announcement);
+  if (realtime) return name(ticks.newest(), *tick, *std::move(wish), announcement);
   wish_ = std::move(wish);
   stand_by(announcement);
 }
@@ -148,9 +153,7 @@ std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Missio
     const auto& [refused, since] = refused_zone_;
     if (*content == refused && now < since + kSameAnswerTicks) return std::nullopt;
     auto zone = decode_zone(*content, mission.domain);
-    std::vector<Zone> others = list_.zones;
-    std::erase_if(others, [now](const Zone& other) { return other.until <= now; });
-    if (!zone || zone_problem(mission, *zone, others)) {
+    if (!zone || zone_problem(mission, *zone, not_ended(list_.zones, now))) {
       refused_zone_ = {*content, now};
       return std::nullopt;
     }
@@ -176,7 +179,7 @@ void Amending::note_world(const Mission& mission, const TickWatch& ticks, const 
   Wish wish = *std::exchange(wish_, std::nullopt);
   const Tick tick = ticks.tick() + kLockstepNotice;
   if (possible(wish, mission, ticks.newest(), tick + wish.delay_ticks, team))
-    return name(tick, std::move(wish), announcement);
+    return name(ticks.newest(), tick, std::move(wish), announcement);
   stand_by_revision_ = -1;
   announcement.change();
 }
@@ -199,7 +202,7 @@ void Amending::list_next(Tick now, Announcement& announcement) {
     planned_.pop_front();
   }
   if (zone_is_due(now)) {
-    std::erase_if(list_.zones, [now](const Zone& one) { return one.until <= now; });
+    list_.zones = not_ended(list_.zones, now);
     list_.zones.push_back(std::move(planned_zones_.front()));
     planned_zones_.pop_front();
   }
@@ -207,10 +210,10 @@ void Amending::list_next(Tick now, Announcement& announcement) {
   announcement.change();
 }
 
-void Amending::name(Tick tick, Wish wish, Announcement& announcement) {
+void Amending::name(Tick now, Tick tick, Wish wish, Announcement& announcement) {
   stand_by_revision_ = -1;
   if (wish.kind == AmendmentKind::kZone) {
-    name_zone(list_, tick, wish.delay_ticks, std::move(wish.zone));
+    name_zone(list_, now, tick, wish.delay_ticks, std::move(wish.zone));
     bytes_ = encode_amendments(list_);
     return announcement.change();
   }

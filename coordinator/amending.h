@@ -42,7 +42,7 @@ class Amending {
   /// The amendments that are known from the beginning. In lockstep there may be any number of
   /// targets and zones: the list has two targets and kMaxZones zones at a time, as if an operator
   /// had sent each once there was a place.
-  /// @pre are_amendments(list)
+  /// @pre are_amendments(), but for the number of targets and zones
   void plan(Amendments list);
   /// Takes in the list of another coordinator, if it has named more amendments than we know. Agents
   /// may have gone by them. @pre are_amendments(known)
@@ -55,7 +55,7 @@ class Amending {
   void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks, const Team& team,
             Announcement& announcement);
 
-  /// Lockstep: names a tick, or lists the next planned target, if the world stands by.
+  /// Lockstep: names a tick, or lists the next planned target or zone, if the world stands by.
   void note_world(const Mission& mission, const TickWatch& ticks, const Team& team,
                   Announcement& announcement);
 
@@ -81,7 +81,7 @@ class Amending {
   bool possible(const Wish& wish, const Mission& mission, Tick newest, Tick from, const Team& team);
   std::optional<std::vector<std::byte>> completed(const Amend& amend);
   void stand_by(Announcement& announcement);
-  void name(Tick tick, Wish wish, Announcement& announcement);
+  void name(Tick now, Tick tick, Wish wish, Announcement& announcement);
   bool target_is_due(Tick now) const;
   bool zone_is_due(Tick now) const;
   void list_next(Tick now, Announcement& announcement);

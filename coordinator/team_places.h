@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the vehicles of the present agents are, by the newest states of the world.
+// Where the vehicles of the present agents are, by the newest whole state of the world.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,17 +10,26 @@
 #include "core/base/ids.h"
 #include "core/motion/end_rules.h"
 #include "team/messages.h"
+#include "team/state_assembler.h"
 
 namespace ergocast {
 
 class TeamPlaces {
  public:
-  void note_world(const WorldState& world) {
-    if (world.header.tick < tick_) return;
-    if (world.header.tick > tick_) places_m_.clear();
-    tick_ = world.header.tick;
-    for (const Vehicle& vehicle : world.vehicles_in_part())
-      places_m_[vehicle.id] = vehicle.position_m;
+  /// A large team's state has several parts. Until all have arrived, the one before counts.
+  void note_world(const WorldState& part) {
+    if (part.header.tick < parts_.tick()) return;
+    if (parts_.same(part)) {
+      parts_.add(part);
+    } else {
+      parts_.begin(part);
+      arriving_m_.clear();
+    }
+    for (const Vehicle& vehicle : part.vehicles_in_part())
+      arriving_m_[vehicle.id] = vehicle.position_m;
+    if (!parts_.complete()) return;
+    tick_ = part.header.tick;
+    places_m_ = arriving_m_;
   }
 
   /// The tick of all places.
@@ -41,6 +50,8 @@ class TeamPlaces {
  private:
   Tick tick_ = -1;
   std::map<AgentId, Eigen::Vector3d> places_m_;
+  ArrivedParts parts_;  // of the state that arrives
+  std::map<AgentId, Eigen::Vector3d> arriving_m_;
 };
 
 }  // namespace ergocast

@@ -8,7 +8,7 @@
 namespace ergocast::lab {
 
 void TargetMemory::note(const Mission& mission, const Amendments& list) {
-  if (list.targets.empty()) return;
+  if (list.targets.empty()) return targets_.clear();
   const TargetChange& first = list.targets.front();
   std::erase_if(targets_, [&](const auto& known) {
     return known.first >= first.number ||

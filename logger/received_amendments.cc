@@ -16,20 +16,18 @@ void ReceivedAmendments::note(const Amendments& list) {
   holds_ = list.holds;
   compare(list);
   for (const Amendment& amendment : list.recent) add(amendment);
+  // Those with numbers of their own may be older than what the list names.
   for (const TargetChange& change : list.targets) {
-    const Amendment amendment{change.number, AmendmentKind::kTarget, change.from,
-                              target_hash(change)};
-    add(amendment);  // it may be older than those that the list names
-    const auto heard = std::ranges::find_if(
-        all_, [&](const ReceivedAmendment& one) { return one.amendment == amendment; });
-    if (!heard->target) heard->target = change;
+    auto& target =
+        add({change.number, AmendmentKind::kTarget, change.from, target_hash(change)}).target;
+    if (!target) target = change;
   }
+  for (const EndChange& change : list.ends)
+    add({change.number, AmendmentKind::kEnd, change.from,
+         static_cast<std::uint64_t>(change.tick_count)});
   for (const Zone& zone : list.zones) {
-    const Amendment amendment{zone.number, AmendmentKind::kZone, zone.from, zone_hash(zone)};
-    add(amendment);
-    const auto heard = std::ranges::find_if(
-        all_, [&](const ReceivedAmendment& one) { return one.amendment == amendment; });
-    if (!heard->zone) heard->zone = zone;
+    auto& known = add({zone.number, AmendmentKind::kZone, zone.from, zone_hash(zone)}).zone;
+    if (!known) known = zone;
   }
 }
 
@@ -42,8 +40,9 @@ void ReceivedAmendments::compare(const Amendments& list) {
   }
 }
 
-/// Adds an amendment that is not known. Others of its number are then void.
-void ReceivedAmendments::add(const Amendment& amendment) {
+/// The entry of an amendment, which is added if it is not known. Others of its number are then
+/// void.
+ReceivedAmendment& ReceivedAmendments::add(const Amendment& amendment) {
   const auto precedes = [](const ReceivedAmendment& one, const ReceivedAmendment& other) {
     return one.amendment.number < other.amendment.number;
   };
@@ -51,8 +50,8 @@ void ReceivedAmendments::add(const Amendment& amendment) {
       std::equal_range(all_.begin(), all_.end(), ReceivedAmendment{amendment}, precedes);
   std::for_each(begin, end,
                 [&](ReceivedAmendment& one) { one.is_void = one.amendment != amendment; });
-  const bool known = std::any_of(begin, end, [](const auto& one) { return !one.is_void; });
-  if (!known) all_.insert(end, ReceivedAmendment{amendment});
+  const auto known = std::find_if(begin, end, [](const auto& one) { return !one.is_void; });
+  return known != end ? *known : *all_.insert(end, ReceivedAmendment{amendment});
 }
 
 std::vector<EndChange> ReceivedAmendments::ends() const {

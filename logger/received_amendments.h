@@ -49,7 +49,7 @@ class ReceivedAmendments {
 
  private:
   void compare(const Amendments& list);
-  void add(const Amendment& amendment);
+  ReceivedAmendment& add(const Amendment& amendment);
 
   std::vector<ReceivedAmendment> all_;
   std::vector<Hold> holds_;

@@ -125,7 +125,8 @@ void Fleet::move(AgentId id, Slot& slot, Tick tick) const {
 
 /// Filters all commands by the positions at the beginning of the step, so that the vehicles' order
 /// does not matter. In lockstep agents know the other bodies, so only edges and the vehicles' own
-/// limits count; points need neither. A vehicle without a command stands, or brakes.
+/// limits count; points need neither, unless a zone is closed. A vehicle without a command stands,
+/// or brakes.
 void Fleet::filter_commands(Tick tick) {
   const bool guards = world_guards(*mission_);
   bodies_.clear();

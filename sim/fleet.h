@@ -124,8 +124,9 @@ class Fleet {
 
   std::optional<Mission> mission_;
   std::map<AgentId, Slot> vehicles_;
-  std::optional<SeparationFilter> filter_;  // if it guards, has walls, or a body is no point
-  std::vector<Neighbour> bodies_;           // of the tick, for the guard
+  std::optional<SeparationFilter>
+      filter_;                     // if it guards, has walls or zones, or a body is no point
+  std::vector<Neighbour> bodies_;  // of the tick, for the guard
   std::vector<Zone> zones_;
   PhysicsMaker physics_maker_;
   std::unique_ptr<Physics> physics_;  // null: core/motion/vehicle.h

@@ -176,6 +176,7 @@ ergocast_test(NAME status_tests LABELS unit
 ergocast_test(NAME logger_tests LABELS unit
   SOURCES
     logger/amendments_test.cc
+    logger/changed_target_test.cc
     logger/drivers_test.cc
     logger/farewell_test.cc
     logger/full_disk_test.cc

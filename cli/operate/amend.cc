@@ -129,8 +129,7 @@ class Amending : public TeamCommand {
     if (!loaded) return report_error(kExitBadInput, loaded.error());
     Zone zone = *std::move(loaded);
     zone.until = std::max<Tick>(1, ticks(options_.zone_lasts_s));
-    std::vector<Zone> others = team().amendments().zones;
-    std::erase_if(others, [this](const Zone& one) { return one.until <= team().tick(); });
+    const std::vector<Zone> others = not_ended(team().amendments().zones, team().tick());
     if (const auto problem = zone_problem(mission, zone, others))
       return report_error(kExitBadInput, std::vector{Problem{options_.zone.string(), problem->what,
                                                              problem->remedy}});
@@ -256,7 +255,8 @@ void add_zone_options(CLI::App& command, AmendOptions& options) {
           .add_option_function<std::string>(
               "--for",
               [&options](const std::string& text) { options.zone_lasts_s = duration_from(text); },
-              "How long the zone lasts from when nobody is inside, in mission time: 600s")
+              "How long the zone lasts from when nobody is inside: 600s; a pause does not stop "
+              "this time")
           ->type_name("TIME");
   auto* force = command.add_flag(
       "--force", options.force,

@@ -133,10 +133,9 @@ bool add_zone(Tick tick, const PlannedAmendment& planned, const Mission& mission
   Zone zone = *std::move(loaded);
   const double dt_s = mission.timing.dt_s;
   const Tick lasts = planned.lasts_s ? static_cast<Tick>(std::llround(*planned.lasts_s / dt_s))
-                                     : mission.timing.tick_count;
+                                     : tick_count_of(mission.timing, list.ends);
   zone.until = std::max<Tick>(1, lasts);
-  std::vector<Zone> others = list.zones;
-  std::erase_if(others, [tick](const Zone& other) { return other.until <= tick; });
+  const std::vector<Zone> others = not_ended(list.zones, tick);
   if (const auto problem = zone_problem(mission, zone, others)) {
     const Problem found{planned.file.string(), problem->what, problem->remedy};
     return report_error(kExitBadInput, std::vector{found}) == kExitDone;

@@ -25,7 +25,7 @@ AlignedDoubles TargetShift::in_slots(const Coefficients& shift) const {
 }
 
 void TargetShift::note(const Amendments& list) {
-  if (list.targets.empty()) return;
+  if (list.targets.empty()) return changes_.clear();  // those that were known are void
   const std::int32_t first = list.targets.front().number;
   const Tick from = counted_ticks(list.holds, list.targets.front().from);
   // A coordinator that did not know of a change names another one, possibly for an earlier tick.

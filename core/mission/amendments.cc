@@ -154,21 +154,20 @@ void name_end(Amendments& list, Tick tick, Tick tick_count) {
        {.kind = AmendmentKind::kEnd, .from = tick, .hash = static_cast<std::uint64_t>(tick_count)});
 }
 
-void name_zone(Amendments& list, Tick tick, Tick notice, Zone zone) {
-  std::erase_if(list.zones, [tick](const Zone& one) { return one.until <= tick; });
+void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone) {
+  list.zones = not_ended(list.zones, now);
   ERGOCAST_REQUIRE(list.zones.size() < kMaxZones);
   const Tick lasts = zone.until - zone.from;
   zone.number = list.named;
-  zone.closed = tick;
-  zone.from = tick + notice;
+  zone.closed = closed;
+  zone.from = closed + notice;
   zone.until = zone.from + lasts;
   name(list, {.kind = AmendmentKind::kZone, .from = zone.from, .hash = zone_hash(zone)});
   list.zones.push_back(std::move(zone));
 }
 
 std::size_t zones_at(const Amendments& list, Tick tick) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(list.zones, [tick](const Zone& one) { return one.until > tick; }));
+  return not_ended(list.zones, tick).size();
 }
 
 }  // namespace ergocast

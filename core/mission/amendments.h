@@ -133,11 +133,11 @@ void name_target(Amendments& list, Tick tick, TargetChange change);
 void replace_target(Amendments& list, TargetChange change);
 /// Names the next amendment, an end. @pre the list has room: ends.size() < kMaxEnds
 void name_end(Amendments& list, Tick tick, Tick tick_count);
-/// Names the next amendment, a zone that is closed from `tick` on and free `notice` ticks later.
-/// Zones that have ended leave the list.
+/// Names the next amendment, a zone that is closed from `closed` on and free `notice` ticks later.
+/// Zones that have ended at the present tick `now` leave the list.
 /// @param zone  with `until` − `from` alone of its ticks
-/// @pre zones_at(list, tick) < kMaxZones
-void name_zone(Amendments& list, Tick tick, Tick notice, Zone zone);
+/// @pre now <= closed, and zones_at(list, now) < kMaxZones
+void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone);
 /// How many zones have not ended at a tick.
 std::size_t zones_at(const Amendments& list, Tick tick);
 

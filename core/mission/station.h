@@ -8,8 +8,8 @@
 //
 // on, in ticks that count, so a pause takes nothing of it. From R on the agent rests: it covers and
 // broadcasts no more, and no teammate forecasts it. Its coverage still counts. R follows from the
-// plan alone, so all processes know it without a message. The agent itself decides when it goes
-// home, core/motion/way_home.h.
+// plan alone, until the mission gets another end (core/mission/end_schedule.h). The agent itself
+// decides when it goes home, core/motion/way_home.h.
 //
 // An agent that the operator sends home rests from another tick on (RosterEntry::recalled_at). It
 // then goes home whether it has a station or not.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 namespace ergocast {
 namespace {
@@ -49,6 +50,13 @@ bool are_zones(std::span<const Zone> zones, const Box& domain) {
   for (std::size_t i = 1; i < zones.size(); ++i)
     if (zones[i].number <= zones[i - 1].number) return false;
   return std::ranges::all_of(zones, [&](const Zone& zone) { return is_zone(zone, domain); });
+}
+
+std::vector<Zone> not_ended(std::span<const Zone> zones, Tick tick) {
+  std::vector<Zone> left;
+  std::ranges::copy_if(zones, std::back_inserter(left),
+                       [tick](const Zone& zone) { return zone.until > tick; });
+  return left;
 }
 
 std::uint64_t zone_hash(const Zone& zone) {

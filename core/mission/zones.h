@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/base/geometry.h"
 #include "core/base/ids.h"
@@ -41,6 +42,9 @@ bool is_zone(const Zone& zone, const Box& domain);
 
 /// Whether the numbers of zones ascend, they are zones in `domain`, and at most kMaxZones.
 bool are_zones(std::span<const Zone> zones, const Box& domain);
+
+/// Those that have not ended at a tick.
+std::vector<Zone> not_ended(std::span<const Zone> zones, Tick tick);
 
 /// A number that identifies a zone's place and how long it lasts.
 std::uint64_t zone_hash(const Zone& zone);

@@ -12,10 +12,12 @@
 
 namespace ergocast {
 
-double EndRules::needed_s(const Mission& mission, const AgentPlace& agent) {
+double EndRules::needed_s(const Mission& mission, const AgentPlace& agent,
+                          const std::vector<Zone>& zones) {
   if (!agent.x_m) return std::numeric_limits<double>::infinity();
-  const auto way = ways_.try_emplace(agent.id, mission, agent.id).first;
-  return way->second.needed_s(*agent.x_m);
+  WayHome& way = ways_.try_emplace(agent.id, mission, agent.id).first->second;
+  way.note_zones(mission, zones);
+  return way.needed_s(*agent.x_m);
 }
 
 EndProblem EndRules::problem(const Mission& mission, const Amendments& list, Tick tick, Tick from,
@@ -36,11 +38,12 @@ EndProblem EndRules::problem(const Mission& mission, const Amendments& list, Tic
   }
   const EndSchedule now(mission, list), then(mission, amended);
   // The agent may go away from its station until it knows the end.
+  const std::vector<Zone> zones = not_ended(list.zones, tick);
   const Tick away = counted_from - counted_ticks(list.holds, tick);
   for (const AgentPlace& agent : agents) {
     if (!station_of(mission, agent.id) || now.rests(mission, agent.id, counted_from)) continue;
     const Tick left = then.rest_from(mission, agent.id, counted_from) - counted_from - away;
-    if (static_cast<double>(left) * dt_s >= needed_s(mission, agent)) continue;
+    if (static_cast<double>(left) * dt_s >= needed_s(mission, agent, zones)) continue;
     too_far_ = agent.id;
     return EndProblem::kTooFar;
   }

@@ -48,7 +48,7 @@ class EndRules {
   AgentId too_far() const { return too_far_; }
 
  private:
-  double needed_s(const Mission& mission, const AgentPlace& agent);
+  double needed_s(const Mission& mission, const AgentPlace& agent, const std::vector<Zone>& zones);
 
   std::map<AgentId, WayHome> ways_;  // of the agents that were asked for
   AgentId too_far_ = kUnassigned;

@@ -93,6 +93,7 @@ WayHome::WayHome(const Mission& mission, AgentId id)
 void WayHome::note_zones(const Mission& mission, std::vector<Zone> zones) {
   if (!mission.domain.planar() || zones == zones_) return;
   zones_ = std::move(zones);
+  begun_ = false;  // a way that was closed may be open again
   cell_.reset();
   const double kept_m = kept_from_zones_m(mission, motion_);
   seen_zones_m_ = kept_m * (1 - kRounded);

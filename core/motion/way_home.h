@@ -53,8 +53,8 @@ class WayHome {
   bool begun(Tick counted, const Eigen::Vector3d& x_m);
   bool begun() const { return begun_; }
 
-  /// From now on the way leads round these zones, too, which are closed. In a box it stays
-  /// straight.
+  /// From now on the way leads round these zones, too, which are closed. The agent may turn back.
+  /// In a box the way stays straight.
   void note_zones(const Mission& mission, std::vector<Zone> zones);
 
   /// Takes the bodies that stand for good. velocity_mps() leads round them.

@@ -122,7 +122,6 @@ TEST(Amending, NamesNoTargetWhileAnotherOneWaitsForItsTick) {
   EXPECT_EQ(coordinator.amendments().named, 2);
 }
 
-// Until it holds, no other target can be named.
 TEST(Amending, NamesNoTargetAfterTheMissionsEnd) {
   for (const Tick delay : {989, 990}) {
     Coordinator coordinator = running_coordinator(wide_mission());
@@ -205,6 +204,37 @@ TEST(Amending, NamesNoEarlierEndThatAnAgentCannotBeHomeFor) {
     let_world_stand_by(coordinator, 11);
     EXPECT_EQ(coordinator.amendments().named, near ? 1 : 0);
   }
+}
+
+TEST(Amending, AnEndIsNotDelayed) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  Amend wish = wish_of_end(500, 0);
+  wish.delay_ticks = 1;
+  give(coordinator, wish, at(1s));
+  let_world_stand_by(coordinator, 11);
+  EXPECT_EQ(coordinator.amendments().named, 0);
+}
+
+// A large team's state arrives in parts.
+TEST(TeamPlaces, AreThoseOfAWholeState) {
+  const auto part = [](Tick tick, int number, AgentId id) {
+    WorldState world = world_state(tick, {{1.0 * static_cast<double>(tick), 0, 0}});
+    world.part = number;
+    world.parts = 2;
+    world.vehicles[0].id = id;
+    return world;
+  };
+  const std::vector<RosterEntry> roster = roster_of(2);
+  TeamPlaces places;
+  for (int i = 0; i < 2; ++i) places.note_world(part(10, i, i));
+  places.note_world(part(11, 0, 0));
+  EXPECT_EQ(places.tick(), 10);
+  EXPECT_EQ(places.of(roster)[0].x_m->x(), 10);
+  EXPECT_EQ(places.of(roster)[1].x_m->x(), 10);
+  places.note_world(part(11, 1, 1));
+  EXPECT_EQ(places.tick(), 11);
+  EXPECT_EQ(places.of(roster)[1].x_m->x(), 11);
 }
 
 TEST(Amending, ASuccessorKnowsTheEnd) {

@@ -102,6 +102,19 @@ TEST(Pausing, InLockstepBeginsWithTheTickAfterTheNextOnceTheWorldStands) {
   EXPECT_EQ(coordinator.holds(), (std::vector<Hold>{{11 + 2, 12 + 2}}));
 }
 
+TEST(Pausing, AWishThatWaitsDoesNotOutlastAListThatIsAdopted) {
+  const Participant me(Role::kCoordinator, {kRun, kCoordinator, kCoordinatorLife});
+  const SignsOfLife signs{me, at(1s)};
+  const TeamPlaces places;
+  const std::vector<RosterEntry> roster;
+  Amending amending;
+  Announcement announcement;
+  amending.obey(pause_after(0), small_mission(2), {}, {signs, places, roster}, announcement);
+  ASSERT_GE(amending.stand_by_revision(), 0);
+  amending.adopt(only_pauses({{5, -1}}));
+  EXPECT_LT(amending.stand_by_revision(), 0) << "it would end the other pause";
+}
+
 TEST(Pausing, EndsTheLastOfTheMostHoldsButBeginsNoOther) {
   const Participant me(Role::kCoordinator, {kRun, kCoordinator, kCoordinatorLife});
   for (const bool open : {false, true}) {

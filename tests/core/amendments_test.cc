@@ -147,7 +147,7 @@ Zone square(double x_m, Tick lasts = 100) {
 TEST(Amendments, AZoneIsClosedFreeAndOver) {
   Amendments list;
   name_pause(list, 10);
-  name_zone(list, 20, 30, square(100));
+  name_zone(list, 20, 20, 30, square(100));
   ASSERT_EQ(list.zones.size(), 1U);
   const Zone& zone = list.zones[0];
   EXPECT_EQ(std::tuple(zone.number, zone.closed, zone.from, zone.until),
@@ -161,20 +161,29 @@ TEST(Amendments, AZoneIsClosedFreeAndOver) {
 
 TEST(Amendments, ZonesThatHaveEndedLeaveAndTargetsDoNotCrowdThemOut) {
   Amendments list;
-  for (int i = 0; i < 8; ++i) name_zone(list, i, 10, square(100 + i, i == 3 ? 20 : 1000));
+  for (int i = 0; i < 8; ++i) name_zone(list, i, i, 10, square(100 + i, i == 3 ? 20 : 1000));
   EXPECT_TRUE(are_amendments(list, small_mission(1)));
   for (int i = 0; i < 100; ++i) name_target(list, 100 + i, target(0.001 * i));
   EXPECT_EQ(list.zones.size(), 8U);
   EXPECT_TRUE(are_amendments(list, small_mission(1)));
-  name_zone(list, 200, 10, square(300));
+  name_zone(list, 200, 200, 10, square(300));
   ASSERT_EQ(list.zones.size(), 8U);
   EXPECT_EQ(list.zones[3].number, 4) << "the fourth has ended";
   EXPECT_EQ(decode_amendments(encode_amendments(list), small_mission(1)), list);
 }
 
+TEST(Amendments, AZoneStaysInForceThoughTheNextOneIsNamedForALaterTick) {
+  Amendments list;
+  name_zone(list, 0, 0, 10, square(100));  // until 110
+  name_zone(list, 105, 125, 10, square(300));
+  EXPECT_EQ(list.zones.size(), 2U);
+  name_zone(list, 110, 130, 10, square(500));
+  EXPECT_EQ(list.zones.size(), 2U);
+}
+
 TEST(Amendments, RefusesZonesThatNoCoordinatorNames) {
   Amendments list;
-  name_zone(list, 20, 30, square(100));
+  name_zone(list, 20, 20, 30, square(100));
   const Mission mission = small_mission(1);
   const auto refused = [&](auto change) {
     Amendments forged = list;
@@ -189,7 +198,7 @@ TEST(Amendments, RefusesZonesThatNoCoordinatorNames) {
   EXPECT_TRUE(refused([](Zone& zone) { zone.corners_m[0].x() = std::nan(""); }));
   EXPECT_TRUE(refused([](Zone& zone) { zone.high_m = 1; })) << "a plane has no heights";
   EXPECT_FALSE(refused([](Zone&) {}));
-  for (int i = 0; i < 7; ++i) name_zone(list, 20, 30, square(100));
+  for (int i = 0; i < 7; ++i) name_zone(list, 20, 20, 30, square(100));
   list.zones.push_back(list.zones.back());
   list.zones.back().number = list.named++;
   EXPECT_FALSE(decode_amendments(encode_amendments(list), mission)) << "there are nine";

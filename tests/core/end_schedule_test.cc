@@ -7,20 +7,18 @@
 #include "core/mission/station.h"
 #include "core/motion/end_rules.h"
 #include "plan/amendment_list.h"
+#include "tests/support/team.h"
 
 namespace ergocast {
 namespace {
 
+using namespace test;
+
 /// 1000 ticks of 0.1 s. Agent 0 has to be at its station 20 s before the end; agent 1 has none.
 Mission with_station() {
-  Mission mission;
-  mission.domain.size_m = {200, 100, 0};
-  mission.basis.modes_x = mission.basis.modes_y = 4;
-  mission.law.u_max_mps = 8;
-  mission.timing.dt_s = 0.1;
+  Mission mission = small_mission(2);
   mission.timing.tick_count = 1000;
   mission.timing.broadcast_period_ticks = 10;
-  mission.starts_m = {{150, 80, 0}, {20, 80, 0}};
   mission.kinds = {{"a", 1, 8, 0, 0}, {"b", 1, 8, 0, 0}};
   mission.kinds[0].stations_m = {{30, 20, 0}};
   mission.kinds[0].reserve_s = 20;
@@ -148,6 +146,19 @@ TEST_F(EndRulesOfATeam, AnEarlierEndLeavesTimeToGoHome) {
             EndProblem::kTooFar)
       << "its place is not known";
   EXPECT_EQ(problem(850, 851, 190), EndProblem::kNone) << "it rests, wherever it is";
+}
+
+TEST_F(EndRulesOfATeam, AnEarlierEndLeavesTimeForTheWayRoundAZone) {
+  Tick earliest = 300;
+  while (earliest < 1000 && problem(100, earliest, 330) != EndProblem::kNone) ++earliest;
+  ASSERT_LT(earliest, 1000);
+  Zone zone;
+  zone.until = 500;
+  zone.corners_m = {{100, 5}, {250, 5}, {250, 300}, {100, 300}};
+  list_.zones = {zone};
+  EXPECT_EQ(problem(100, earliest, 330), EndProblem::kTooFar);
+  list_.zones[0].until = 98;  // it has ended
+  EXPECT_EQ(problem(100, earliest, 330), EndProblem::kNone);
 }
 
 }  // namespace

@@ -98,6 +98,8 @@ TEST(TargetShift, ForgetsWhatANewerListReplaces) {
   ASSERT_EQ(shift.changes().size(), 2U);
   EXPECT_EQ(shift.of_sample(14)->from, 10) << "it held in those ticks";
   EXPECT_EQ(shift.of_sample(15)->from, 15);
+  shift.note({});  // of a coordinator that knows none
+  EXPECT_FALSE(shift.any_of_samples());
 }
 
 TEST(ShiftedRow, IsTheSumOfWhatEachMomentAddedAgainstItsTarget) {

@@ -333,7 +333,11 @@ TEST(WayHome, LeadsRoundZones) {
     x_m += dt_s * filter.safe({0, tick, x_m, 20, {0, 0, 0}}, round.velocity_mps(x_m, {0, 0, 0}), {})
                       .velocity_mps;
   EXPECT_LT((x_m - Eigen::Vector3d(250, 150, 0)).norm(), 1);
+  const auto late = round.needed_s(from_m) - dt_s;
+  const auto counted = rest_from(mission, 0) - static_cast<Tick>(late / dt_s);
+  EXPECT_TRUE(round.begun(counted, from_m));
   round.note_zones(mission, {});
+  EXPECT_FALSE(round.begun(counted, from_m)) << "the way is shorter now";
   EXPECT_EQ(round.needed_s(from_m), straight.needed_s(from_m)) << "the zone has ended";
 }
 

@@ -31,11 +31,6 @@ class AmendCommand : public RunningMission {
   }
   std::filesystem::path east() const { return file("east.textproto", gaussian_at(1600)); }
 
-  int amend(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"amend", "--lcm-url", kUrl});
-    return ergocast(arguments);
-  }
-  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// The number after the first "since tick " in the output.
   Tick tick_said() const {
     const std::string printed = output();

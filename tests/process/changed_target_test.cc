@@ -89,7 +89,6 @@ TargetChange mirrored(const Mission& mission, bool along_x, bool along_y) {
 
 class ChangedTargets : public RunningMission {
  protected:
-  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// A whole mission in lockstep in which the target changes four times.
   void fly(const std::function<void(int)>& between, const std::string& law = "") {
     // The scenario's own target is its mirror image.

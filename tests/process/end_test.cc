@@ -12,11 +12,6 @@ namespace {
 class EndCommand : public RunningMission {
  protected:
   int send_command(const std::string& command) { return ergocast({command, "--lcm-url", kUrl}); }
-  int amend(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"amend", "--lcm-url", kUrl});
-    return ergocast(arguments);
-  }
-  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
   nlohmann::json status() {
     ergocast({"status", "--json", "--lcm-url", kUrl});
     return nlohmann::json::parse(output());

@@ -51,7 +51,6 @@ class TablesOfModes : public ByHand {
     mission.send(SIGTERM);
     EXPECT_EQ(wait_for(mission), 0) << printed();
   }
-  bool prints(const std::string& part) const { return output().find(part) != std::string::npos; }
 };
 
 TEST_F(TablesOfModes, ALoggerThatWasStartedByHandWritesItBesideTheRecord) {
@@ -100,8 +99,9 @@ TEST_F(TablesOfModes, AProcessThatComputesAnotherOneStaysOutAndNamesTheFile) {
   Program& bare = hand("ergocast-agent", {"--id", "1"});
   hand("ergocast-coordinator", {two_rooms(), "--modes", other});
   EXPECT_EQ(wait_for(bare.child), 4) << bare.printed();
-  EXPECT_TRUE(bare.prints("start it with --modes and that table's file, modes-")) << bare.printed();
-  EXPECT_TRUE(equipped.prints("admitted")) << equipped.printed();
+  EXPECT_TRUE(bare.answered("start it with --modes and that table's file, modes-"))
+      << bare.printed();
+  EXPECT_TRUE(equipped.answered("admitted")) << equipped.printed();
   EXPECT_TRUE(equipped.child.running()) << equipped.printed();
 }
 
@@ -112,7 +112,7 @@ TEST_F(TablesOfModes, ALoggerThatComputesAnotherOneStaysOut) {
   Program& logger = hand("ergocast-logger", {"--out", record});
   hand("ergocast-coordinator", {two_rooms(), "--modes", other});
   EXPECT_EQ(wait_for(logger.child), 4) << logger.printed();
-  EXPECT_TRUE(logger.prints("start it with --modes and that table's file, modes-"))
+  EXPECT_TRUE(logger.answered("start it with --modes and that table's file, modes-"))
       << logger.printed();
   EXPECT_TRUE(std::filesystem::is_empty(record)) << logger.printed();
 }
@@ -125,12 +125,13 @@ TEST_F(TablesOfModes, AProcessThatIsHandedAnotherOneOrNoneComputesIt) {
   Program& cut = hand("ergocast-agent", {"--id", "1", "--modes", damaged});
   Program& wrong = hand("ergocast-agent", {"--id", "2", "--modes", other});
   hand("ergocast-coordinator", {two_rooms("", 1)});
-  EXPECT_TRUE(missing.prints("missing.bin: cannot be read as a table of modes; it is computed"))
+  EXPECT_TRUE(missing.answered("missing.bin: cannot be read as a table of modes; it is computed"))
       << missing.printed();
-  EXPECT_TRUE(cut.prints("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
+  EXPECT_TRUE(
+      cut.answered("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
       << cut.printed();
   for (const Program* agent : {&missing, &cut, &wrong})
-    EXPECT_TRUE(agent->prints("admitted")) << agent->printed();
+    EXPECT_TRUE(agent->answered("admitted")) << agent->printed();
 }
 
 TEST_F(TablesOfModes, ThePrintedAndRecordedMetricsNameTheirBasis) {
@@ -138,9 +139,9 @@ TEST_F(TablesOfModes, ThePrintedAndRecordedMetricsNameTheirBasis) {
     std::filesystem::remove_all(out());
     ASSERT_EQ(ergocast({command, two_rooms("goal_ergodic_metric: 0.125"), "--out", out()}), 0)
         << output();
-    EXPECT_TRUE(prints(", in the modes of the free domain\n            ")) << output();
-    EXPECT_TRUE(prints(" in cosines\n")) << output();
-    EXPECT_TRUE(prints("  goal      0.125 in the modes of the free domain, not reached\n"))
+    EXPECT_TRUE(answered(", in the modes of the free domain\n            ")) << output();
+    EXPECT_TRUE(answered(" in cosines\n")) << output();
+    EXPECT_TRUE(answered("  goal      0.125 in the modes of the free domain, not reached\n"))
         << output();
     const auto all = summary();
     for (const char* key : {"ergodic_metric", "goal", "conventions"})
@@ -155,7 +156,7 @@ TEST_F(TablesOfModes, ThePrintedAndRecordedMetricsNameTheirBasis) {
 TEST_F(TablesOfModes, StatusNamesTheBasis) {
   Child mission = launch_endless(two_rooms());
   ergocast({"status"});
-  EXPECT_TRUE(prints(" in modes of the free domain (median)")) << output();
+  EXPECT_TRUE(answered(" in modes of the free domain (median)")) << output();
   end(mission);
 }
 
@@ -171,7 +172,7 @@ TEST_F(TablesOfModes, TrialsNameTheBasis) {
       << output();
   const auto goal = two_rooms("goal_ergodic_metric: 0.125");
   ASSERT_EQ(ergocast({"simulate", goal, "--seeds", "1"}), 4) << output();
-  EXPECT_TRUE(prints(" > 0.125" + kInFreeModes + '\n')) << output();
+  EXPECT_TRUE(answered(" > 0.125" + kInFreeModes + '\n')) << output();
 }
 
 TEST_F(TablesOfModes, ExportedMetricsNameTheBasis) {

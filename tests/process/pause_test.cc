@@ -12,7 +12,6 @@ namespace {
 class PauseCommand : public RunningMission {
  protected:
   int send_command(const std::string& command) { return ergocast({command, "--lcm-url", kUrl}); }
-  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// The text after "at tick " in the output: the tick and the time.
   std::string time_said() const {
     const std::string printed = output();

@@ -17,7 +17,6 @@ class RecallCommand : public RunningMission {
     arguments.insert(arguments.end(), {"--lcm-url", kUrl});
     return ergocast(arguments);
   }
-  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// Whether `ergocast status` shows that word.
   bool shown(const std::string& word) {
     ergocast({"status", "--lcm-url", kUrl});

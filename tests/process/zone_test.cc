@@ -8,11 +8,6 @@ namespace {
 
 class ZoneCommand : public RunningMission, public ::testing::WithParamInterface<const char*> {
  protected:
-  int amend(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"amend", "--lcm-url", kUrl});
-    return ergocast(arguments);
-  }
-  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
   /// A square round all peaks of the target, so that agents are inside.
   std::filesystem::path square() const {
     std::ofstream file(folder_ / "square.textproto");

@@ -18,7 +18,6 @@ class StopCommand : public ByHand {
     more.insert(more.begin(), {"stop", "--lcm-url", kUrl});
     return ergocast(more);
   }
-  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
 
   /// Whether the record has that reason, possibly followed by a remark on late commands.
   bool was_ended(const std::string& reason) const {

@@ -160,6 +160,12 @@ class RunningMission : public OwnHost {
     signal_to(words, SIGCONT);
   }
 
+  /// The exit code of `ergocast amend` for the mission on kUrl.
+  int amend(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"amend", "--lcm-url", kUrl});
+    return ergocast(std::move(arguments));
+  }
+
   Child start_mission(const std::filesystem::path& scenario, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"run", scenario, "--out", out()};
     arguments.insert(arguments.end(), more.begin(), more.end());

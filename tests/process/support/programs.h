@@ -94,6 +94,7 @@ class OwnHost : public ::testing::Test {
   }
   int ergocast(std::vector<std::string> arguments) { return run("ergocast", std::move(arguments)); }
   std::string output() const { return text_of(log_); }
+  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
 
   std::filesystem::path out() const { return folder_ / "run"; }
   nlohmann::json summary() const { return nlohmann::json::parse(text_of(out() / "summary.json")); }
