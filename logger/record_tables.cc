@@ -34,14 +34,15 @@ const RosterEntry* member(const MissionFollower& follower, AgentId id, Tick tick
 }
 
 /// What a row of the metrics has from the agents' reports.
-struct TeamFigures {
+struct ReportedFigures {
   double low = 0, high = 0;  // of the agents' own φ²
   double staleness_s = 0;
   std::int64_t received = 0, lost = 0;
 };
 
-TeamFigures figures_of(const AgentReports& reports, const MissionFollower& follower, Tick tick) {
-  TeamFigures team;
+ReportedFigures figures_of(const AgentReports& reports, const MissionFollower& follower,
+                           Tick tick) {
+  ReportedFigures team;
   bool first = true;
   for (const auto& [author, status] : reports.statuses()) {
     team.received += status.contributions_received;
@@ -76,6 +77,7 @@ void RecordTables::begin(const Mission& mission) {
     in_cosines_ = in_cosines(mission);
     cosines_.begin(*in_cosines_);
   }
+  measures_ = TeamMeasures(in_cosines_ ? *in_cosines_ : mission);
   trajectory_ << (mission.domain.planar() ? kTrajectoryHeader : kTrajectoryHeaderInSpace) << '\n';
 }
 
@@ -193,10 +195,12 @@ void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vect
   const Mission& mission = context.mission();
   const RosterEntry* entry = member(context.known.follower, id, context.row.tick);
   const bool covers = entry != nullptr && context.row.counts && !is_recalled(context, id);
-  if (context.ends.rests(mission, id, context.row.counted())) {
+  const Tick counted = context.row.counted();
+  const bool rests = context.ends.rests(mission, id, counted);
+  measures_.see(id, counted, x_m, covers && !rests);
+  if (rests) {
     note_home(mission, id, x_m);
   } else if (covers) {
-    const Tick counted = context.row.counted();
     observer_.see(mission, counted, entry->kind, x_m);
     if (in_cosines_) cosines_.see(*in_cosines_, counted, entry->kind, x_m);
   }
@@ -223,9 +227,11 @@ void RecordTables::begin_target(const Context& context, const ReceivedAmendment*
   const Coefficients& target =
       change != nullptr ? change->target->target : mission.target_coefficients;
   observer_.begin_target(mission, target);
-  if (in_cosines_)
-    cosines_.begin_target(*in_cosines_, change != nullptr ? change->target->in_cosines()
-                                                          : in_cosines_->target_coefficients);
+  const Mission& judged = in_cosines_ ? *in_cosines_ : mission;
+  const Coefficients& cosines =
+      change != nullptr ? change->target->in_cosines() : judged.target_coefficients;
+  if (in_cosines_) cosines_.begin_target(judged, cosines);
+  measures_.begin_target(judged, cosines, context.row.counted());
   TargetFacts& facts = facts_.targets.emplace_back();
   if (change != nullptr) facts.amendment = change->amendment;
   facts.from = facts.until = from;
@@ -242,6 +248,7 @@ void RecordTables::note_target(const Mission& mission, Tick until) {
 
 void RecordTables::end_row(const Context& context) {
   if (!facts_.targets.empty()) note_target(context.mission(), context.row.tick + 1);
+  if (context.row.counts) measures_.pass(context.row.counted());
   facts_.nearest_m = std::min(facts_.nearest_m, least_distance_m(row_places_m_));
   row_places_m_.clear();
   write_due_metrics(context);
@@ -264,12 +271,13 @@ void RecordTables::write_due_metrics(const Context& context) {
 void RecordTables::write_metrics(const Context& context, double metric) {
   const Tick tick = context.row.tick;
   const double t_s = static_cast<double>(tick) * context.mission().timing.dt_s;
-  TeamFigures team = figures_of(context.known.reports, context.known.follower, tick);
+  ReportedFigures team = figures_of(context.known.reports, context.known.follower, tick);
   // A former process's counts are better until all agents have sent a status.
   team.received = std::max(team.received, static_cast<std::int64_t>(former_metrics_.received));
   team.lost = std::max(team.lost, static_cast<std::int64_t>(former_metrics_.lost));
   std::string line = std::to_string(tick);
-  for (const double value : {t_s, metric, team.high - team.low, team.staleness_s}) {
+  for (const double value :
+       {t_s, metric, measures_.detection().probability(), team.high - team.low, team.staleness_s}) {
     line += ',';
     append_number(line, value);
   }

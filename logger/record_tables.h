@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/measure/team_measures.h"
 #include "core/mission/end_schedule.h"
 #include "logger/agent_reports.h"
 #include "logger/observer.h"
@@ -88,8 +89,8 @@ inline constexpr const char* kTrajectoryHeader = "tick,t_s,agent,x_m,y_m,vx_mps,
 inline constexpr const char* kTrajectoryHeaderInSpace =
     "tick,t_s,agent,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps";
 inline constexpr const char* kMetricsHeader =
-    "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
-    "contributions_lost,blocked_share";
+    "tick,t_s,ergodic_metric,detection_probability,metric_spread,max_staleness_s,"
+    "contributions_received,contributions_lost,blocked_share";
 
 class RecordTables {
  public:
@@ -116,6 +117,8 @@ class RecordTables {
 
   const RunFacts& facts() const { return facts_; }
   RunFacts& facts() { return facts_; }
+  /// What the team has achieved so far; takes some milliseconds. @pre begun()
+  TeamFigures team_figures() const { return measures_.figures(); }
 
  private:
   /// What a row is computed from, besides the states.
@@ -142,8 +145,9 @@ class RecordTables {
   std::ostream& trajectory_;
   std::ostream& metrics_;
   Observer observer_;
-  std::optional<Mission> in_cosines_;            // with basis.free_domain
-  Observer cosines_;                             // observes in_cosines_, if there is one
+  std::optional<Mission> in_cosines_;  // with basis.free_domain
+  Observer cosines_;                   // observes in_cosines_, if there is one
+  TeamMeasures measures_;
   std::vector<Eigen::Vector3d> row_places_m_;    // of all bodies, where a distance is kept
   std::pair<Tick, AgentId> former_end_{-1, -1};  // a former process's last row, …
   MetricsRow former_metrics_{.tick = -1};        // … also of the metrics

@@ -74,6 +74,10 @@ class Recorder {
   const char* result() const;
   const std::string& reason() const { return ending_.reason; }
   const RunFacts& facts() const { return tables_.facts(); }
+  /// What the team has achieved so far, once the mission is known; takes some milliseconds.
+  std::optional<TeamFigures> team_figures() const {
+    return tables_.begun() ? std::optional(tables_.team_figures()) : std::nullopt;
+  }
   /// All amendments of the mission that this recorder or a former one has received.
   const ReceivedAmendments& amendments() const { return amendments_; }
   /// The newest status of each incarnation that Liveness holds, with the worst loop lag of all its

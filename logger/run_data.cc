@@ -127,11 +127,12 @@ std::optional<std::string> add_point(RunData& run, const Fields& f) {
 
 std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
   if (!is_count(f[0]) || f[1] < 0) return "the tick is not a whole number ≥ 0 at a time ≥ 0";
-  if (!is_count(f[5], kMostSaid) || !is_count(f[6], kMostSaid)) {
+  if (!is_count(f[6], kMostSaid) || !is_count(f[7], kMostSaid)) {
     return "the contributions received and lost are not whole numbers ≥ 0";
   }
-  if (f[7] < 0 || f[7] > 1) return "the blocked share is not between 0 and 1";
-  const MetricsRow row{static_cast<Tick>(f[0]), f[1], f[2], f[3], f[4], f[5], f[6], f[7]};
+  if (f[3] < 0 || f[3] > 1) return "the detection probability is not between 0 and 1";
+  if (f[8] < 0 || f[8] > 1) return "the blocked share is not between 0 and 1";
+  const MetricsRow row{static_cast<Tick>(f[0]), f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8]};
   if (!run.metrics.empty() &&
       (row.tick <= run.metrics.back().tick || row.t_s <= run.metrics.back().t_s)) {
     return "the tick or its time does not follow the previous row";

@@ -34,7 +34,8 @@ struct MetricsRow {
   Tick tick = 0;
   double t_s = 0;
   double ergodic_metric = 0;
-  double spread = 0;  ///< largest minus smallest φ² among the agents' own views
+  double detection_probability = 0;  ///< core/measure/detection.h
+  double spread = 0;                 ///< largest minus smallest φ² among the agents' own views
   double max_staleness_s = 0;
   double received = 0, lost = 0;  ///< contributions, since the start
   double blocked_share = 0;       ///< of agents' ticks, since the start

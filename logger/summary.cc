@@ -241,6 +241,21 @@ void add_metric(const RunFacts& facts, const std::optional<Mission>& mission, Js
   summary["log_log_slope"] = slope ? number(*slope) : Json(nullptr);
 }
 
+/// What the team has achieved, core/measure/team_measures.h.
+void add_team(const Recorder& recorder, const Mission& mission, Json& summary) {
+  const auto team = recorder.team_figures();
+  if (!team) return;
+  const auto time = [](std::optional<double> time_s) { return time_s ? Json(*time_s) : Json(); };
+  summary["sensor"] = {{"radius_m", sensor_radius_m(mission)},
+                       {"detections_per_s", mission.sensor.detections_per_s}};
+  summary["detection"] = {{"probability", number(team->detection_probability)},
+                          {"time_to_half_s", time(team->half_time_s)},
+                          {"time_to_four_fifths_s", time(team->four_fifths_time_s)}};
+  summary["greatest_age_s"] = number(team->greatest_age_s);
+  summary["sliced_wasserstein_m"] = number(team->wasserstein_m);
+  summary["path_m"] = number(team->path_m);
+}
+
 void add_wall_time(const RunFacts& facts, const RunContext& context, Json& summary) {
   const auto ticks = static_cast<double>(facts.ticks - facts.former_ticks);
   summary["wall_time_s"] = context.wall_time_s;
@@ -296,6 +311,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
                 context, summary);
   add_ticks(recorder, summary);
   add_metric(facts, mission, summary);
+  if (mission) add_team(recorder, *mission, summary);
   if (mission) summary["conventions"] = conventions(mission->basis);
   add_wall_time(facts, context, summary);
   summary["agents"] = agents(recorder);

@@ -166,6 +166,15 @@ void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
   io.number({14, "reserve_s", limits::between(0, 1e7), unless(kind.reserve_s, 0)}, kind.reserve_s);
 }
 
+void list_fields(auto& io, MaybeConst<SearchSensor> auto& sensor) {
+  const SearchSensor usual;
+  io.number({1, "radius_m", limits::between(0, 1e7), unless(sensor.radius_m, usual.radius_m)},
+            sensor.radius_m);
+  io.number({2, "detections_per_s", limits::above(0, 1e6),
+             unless(sensor.detections_per_s, usual.detections_per_s)},
+            sensor.detections_per_s);
+}
+
 /// Number 1 of the plan is the version of the program that wrote it.
 void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   const When limited = unless(m.speed_limit_mps, 0);
@@ -192,6 +201,7 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.number({11, "goal_ergodic_metric", limits::above(0, 1e9), has_goal}, m.goal_ergodic_metric);
   io.part({18, "vehicle"}, m.vehicle);
   io.part({19, "separation"}, m.separation);
+  io.part({25, "sensor"}, m.sensor);
   io.derived({24, "cosine_target"}, m.cosine_target);
   io.derived({16, "wait_for_logger"}, m.wait_for_logger);
 }

@@ -107,6 +107,7 @@ py::dict metrics(const Record& record) {
   };
   return py::dict("tick"_a = column(tick), "t_s"_a = numbers(&MetricsRow::t_s),
                   "ergodic_metric"_a = numbers(&MetricsRow::ergodic_metric),
+                  "detection_probability"_a = numbers(&MetricsRow::detection_probability),
                   "metric_spread"_a = numbers(&MetricsRow::spread),
                   "max_staleness_s"_a = numbers(&MetricsRow::max_staleness_s),
                   "contributions_received"_a = counts(&MetricsRow::received),

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/require.h"
+#include "core/mission/station.h"
 #include "logger/slope.h"
 
 namespace ergocast::studies {
@@ -49,6 +50,7 @@ double distance_to_edge_m(const Eigen::Vector3d& x_m, const Box& domain) {
 
 StudyMeasure::StudyMeasure(const Mission& mission)
     : mission_(mission),
+      team_(mission),
       escape_distance_m_(lab::escape_distance_m(mission.domain)),
       at_edge_m_(kAtEdgeShare * mission.domain.shortest_side_m()),
       ladder_(ladder_ticks(mission.timing.dt_s, mission.timing.tick_count - 1)),
@@ -68,6 +70,8 @@ StudyMeasure::StudyMeasure(const Mission& mission)
 
 void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m) {
   ++positions_;
+  const auto id = static_cast<AgentId>(agent);
+  team_.see(id, tick, x_m, !rests(mission_, id, tick));
   const double offset2_m2 = (x_m - mission_.law.contraction_center_m).squaredNorm();
   offset2_sum_m2_ += offset2_m2;
   figures_.offset2_max_m2 = std::max(figures_.offset2_max_m2, offset2_m2);
@@ -111,6 +115,13 @@ StudyFigures StudyMeasure::figures() const {
     figures.metric_at[i] = sampled_metric(ladder_[i]);
   figures.metric = metrics_.back();
   figures.slope = slope();
+  const TeamFigures team = team_.figures();
+  figures.detection_probability = team.detection_probability;
+  figures.half_time_s = team.half_time_s.value_or(kNever);
+  figures.four_fifths_time_s = team.four_fifths_time_s.value_or(kNever);
+  figures.greatest_age_s = team.greatest_age_s;
+  figures.wasserstein_m = team.wasserstein_m;
+  figures.path_m = team.path_m;
   figures.offset2_mean_m2 = offset2_sum_m2_ / static_cast<double>(positions_);
   figures.edge_share = static_cast<double>(at_edge_) / static_cast<double>(positions_);
   figures.speed_mean_mps = commands_ > 0 ? speed_sum_mps_ / static_cast<double>(commands_) : kNone;

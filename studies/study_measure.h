@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/measure/team_measures.h"
 #include "core/mission/mission.h"
 #include "lab/manifolds.h"
 #include "studies/study_run.h"
@@ -15,8 +16,10 @@ class StudyMeasure {
  public:
   explicit StudyMeasure(const Mission& mission);
 
-  /// Agent `agent` was at `x_m` at `tick`. Ticks of one agent ascend.
+  /// Agent `agent` was at `x_m` at `tick`; all of a tick before those of the next.
   void position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m);
+  /// All positions of `tick` are known.
+  void pass(Tick tick) { team_.pass(tick); }
   /// One command of one agent, as its vehicle executes it.
   void command(const Eigen::Vector3d& v_mps);
   /// Whether φ² at `tick` is wanted. Then metric() has to be called for it.
@@ -31,6 +34,7 @@ class StudyMeasure {
   double slope() const;
 
   const Mission& mission_;
+  TeamMeasures team_;
   double escape_distance_m_, at_edge_m_;
   std::vector<std::optional<lab::Manifold>> manifolds_;
   std::vector<Tick> ladder_, decade_;  // first ticks at or after kLadder_s; ticks of the slope

@@ -85,6 +85,7 @@ std::string title_of(const Study& study) {
 
 std::string short_number(double value) {
   char text[32];
+  if (std::isinf(value)) return "never";
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
 }
@@ -101,6 +102,22 @@ std::vector<std::string> terminal_cells(const PointSummary& s) {
   return {std::to_string(s.runs), plain(s.metric), s.ratio ? plain(*s.ratio) : "-",
           s.slope ? short_number(*s.slope) : "-",
           held ? short_number(100 * s.escaped_share(60)) + " %" : "-"};
+}
+
+/// Columns as wide as their widest cell; the first one begins on the left.
+std::string aligned(const std::vector<std::vector<std::string>>& lines) {
+  std::vector<std::size_t> widths(lines[0].size());
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  }
+  std::string text;
+  for (const auto& line : lines) {
+    std::string row = line[0] + std::string(widths[0] - line[0].size(), ' ');
+    for (std::size_t i = 1; i < line.size(); ++i)
+      row += "  " + std::string(widths[i] - line[i].size(), ' ') + line[i];
+    text += row + '\n';
+  }
+  return text;
 }
 
 }  // namespace
@@ -128,18 +145,20 @@ std::string study_text(const Study& study, const Summaries& summaries) {
     lines.push_back({name_of(study.points[i], study)});
     for (std::string& cell : terminal_cells(summaries[i])) lines.back().push_back(std::move(cell));
   }
-  std::vector<std::size_t> widths(lines[0].size());
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  return aligned(lines);
+}
+
+std::string quantity_text(const Study& study, const char* name,
+                          const std::vector<QuantitySummary>& summaries) {
+  std::vector<std::vector<std::string>> lines{
+      {"", "runs", std::string(name) + " [95 %]", "against the first [95 %]"}};
+  for (std::size_t i = 0; i < study.points.size(); ++i) {
+    const QuantitySummary& summary = summaries[i];
+    lines.push_back({name_of(study.points[i], study), std::to_string(summary.runs),
+                     summary.runs > 0 ? plain(summary.value) : "-",
+                     summary.ratio ? plain(*summary.ratio) : "-"});
   }
-  std::string text;
-  for (const auto& line : lines) {
-    std::string row = line[0] + std::string(widths[0] - line[0].size(), ' ');
-    for (std::size_t i = 1; i < line.size(); ++i)
-      row += "  " + std::string(widths[i] - line[i].size(), ' ') + line[i];
-    text += row + '\n';
-  }
-  return text;
+  return aligned(lines);
 }
 
 }  // namespace ergocast::studies

@@ -21,5 +21,8 @@ std::string study_page(const StudyFacts& facts, const std::vector<PointSummary>&
 
 /// One line a point below a head.
 std::string study_text(const Study& study, const std::vector<PointSummary>& summaries);
+/// The same of one quantity.
+std::string quantity_text(const Study& study, const char* name,
+                          const std::vector<QuantitySummary>& summaries);
 
 }  // namespace ergocast::studies

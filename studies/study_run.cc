@@ -103,6 +103,7 @@ class Observer : public lab::SimulationObserver {
       measure_.position(i, tick, x_m);
       judge_.see(i, tick, x_m);
     }
+    if (!ended) measure_.pass(tick);
     if (ended || !measure_.wants_metric(tick)) return;
     measure_.metric(tick, judge_.metric());
   }
@@ -129,6 +130,7 @@ StudyFigures run_without_messages(const Mission& mission) {
       measure.position(i, tick, team.x_m(i));
       judge.see(i, tick, team.x_m(i));
     }
+    measure.pass(tick);
     team.step();
     for (std::size_t i = 0; i < team.size(); ++i) measure.command(team.v_mps(i));
     if (!measure.wants_metric(tick)) continue;

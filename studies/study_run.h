@@ -53,6 +53,9 @@ struct StudyFigures {
   std::array<double, kMaxAgents> escape_time_s;
   /// ‖x − centre of contraction‖², over all agents and ticks.
   double offset2_mean_m2 = 0, offset2_max_m2 = 0;
+  // What users ask for, core/measure/team_measures.h. A time that never came is infinite.
+  double detection_probability = 0, half_time_s = 0, four_fifths_time_s = 0;
+  double greatest_age_s = 0, wasserstein_m = 0, path_m = 0;
   double edge_share = 0;      ///< share of all agents' ticks at an edge
   double speed_mean_mps = 0;  ///< of the vehicles: their commands within the speed limit
   std::int64_t messages = 0;  ///< contributions sent, including those repeated for others

@@ -12,6 +12,12 @@ namespace {
 
 using Runs = std::map<std::uint64_t, const StudyFigures*>;  // by seed
 
+std::vector<Runs> runs_by_point(const Study& study, const std::vector<StudyRow>& rows) {
+  std::vector<Runs> runs(study.points.size());
+  for (const StudyRow& row : rows) runs[row.point][row.figures.seed] = &row.figures;
+  return runs;
+}
+
 double mean_of(const Runs& runs, double (*value)(const StudyFigures&)) {
   double sum = 0;
   for (const auto& [seed, figures] : runs) sum += value(*figures);
@@ -29,13 +35,18 @@ std::vector<double> values_of(const Runs& runs, const auto& value) {
 
 double metric_of(const StudyFigures& figures) { return figures.metric; }
 
-std::optional<Estimate> ratio_to(const Runs& first, const Runs& runs) {
+/// Whether a ratio can have this value.
+bool is_factor(double value) { return value > 0 && std::isfinite(value); }
+
+/// The ratios of the pairs whose values are both factors.
+std::optional<Estimate> ratio_to(const Runs& first, const Runs& runs, double StudyFigures::*value) {
   std::vector<double> ours, theirs;
   for (const auto& [seed, figures] : runs) {
     const auto twin = first.find(seed);
-    if (twin == first.end() || !(figures->metric > 0 && twin->second->metric > 0)) continue;
-    ours.push_back(figures->metric);
-    theirs.push_back(twin->second->metric);
+    if (twin == first.end()) continue;
+    if (!is_factor(figures->*value) || !is_factor(twin->second->*value)) continue;
+    ours.push_back(figures->*value);
+    theirs.push_back(twin->second->*value);
   }
   if (ours.empty()) return std::nullopt;
   return ratio_of(ours, theirs);
@@ -66,7 +77,7 @@ PointSummary summary_of(const Runs& runs, const Runs& first, double duration_s) 
   summary.runs = runs.size();
   if (runs.empty()) return summary;
   summary.metric = median_of(values_of(runs, metric_of));
-  summary.ratio = ratio_to(first, runs);
+  summary.ratio = ratio_to(first, runs, &StudyFigures::metric);
   summary.metric_over_time = over_time(runs, duration_s);
   const auto slopes = values_of(runs, [](const StudyFigures& f) { return f.slope; });
   if (!slopes.empty()) summary.slope = median_of(slopes).value;
@@ -90,9 +101,25 @@ double PointSummary::escaped_share(double t_s) const {
          static_cast<double>(escape_times_s.size());
 }
 
+std::vector<QuantitySummary> summarize(const Study& study, const std::vector<StudyRow>& rows,
+                                       const Quantity& quantity) {
+  const std::vector<Runs> runs = runs_by_point(study, rows);
+  const auto value_of = [&](const StudyFigures& figures) { return figures.*quantity.value; };
+  std::vector<QuantitySummary> summaries;
+  for (const Runs& point : runs) {
+    QuantitySummary& summary = summaries.emplace_back();
+    const std::vector<double> values = values_of(point, value_of);
+    summary.runs = values.size();
+    if (values.empty()) continue;
+    summary.value = median_of(values);
+    if (std::ranges::all_of(values, is_factor))
+      summary.ratio = ratio_to(runs[0], point, quantity.value);
+  }
+  return summaries;
+}
+
 std::vector<PointSummary> summarize(const Study& study, const std::vector<StudyRow>& rows) {
-  std::vector<Runs> runs(study.points.size());
-  for (const StudyRow& row : rows) runs[row.point][row.figures.seed] = &row.figures;
+  const std::vector<Runs> runs = runs_by_point(study, rows);
   std::vector<PointSummary> summaries;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     summaries.push_back(summary_of(runs[i], runs[0], study.points[i].duration_s));

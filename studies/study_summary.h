@@ -31,6 +31,19 @@ struct PointSummary {
   double escaped_share(double t_s) const;
 };
 
+/// One quantity of a point's runs.
+struct QuantitySummary {
+  std::size_t runs = 0;
+  Estimate value;  ///< the median of the runs that have it
+  /// Against the study's first point, as PointSummary::ratio. Nothing if one of the point's values
+  /// is 0 or infinite.
+  std::optional<Estimate> ratio;
+};
+
+/// One a point.
+std::vector<QuantitySummary> summarize(const Study& study, const std::vector<StudyRow>& rows,
+                                       const Quantity& quantity);
+
 /// One a point; a point without runs has runs == 0 and nothing else.
 std::vector<PointSummary> summarize(const Study& study, const std::vector<StudyRow>& rows);
 

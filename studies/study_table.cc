@@ -43,13 +43,14 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   }
 }
 
-/// A number that every run has.
-struct Quantity {
-  const char* column;
-  double StudyFigures::*value;
-};
 constexpr Quantity kQuantities[] = {
     {"ergodic_metric", &StudyFigures::metric},
+    {"detection_probability", &StudyFigures::detection_probability},
+    {"time_to_half_s", &StudyFigures::half_time_s},
+    {"time_to_four_fifths_s", &StudyFigures::four_fifths_time_s},
+    {"greatest_age_s", &StudyFigures::greatest_age_s},
+    {"sliced_wasserstein_m", &StudyFigures::wasserstein_m},
+    {"path_m", &StudyFigures::path_m},
     {"slope", &StudyFigures::slope},
     {"offset2_mean_m2", &StudyFigures::offset2_mean_m2},
     {"offset2_max_m2", &StudyFigures::offset2_max_m2},
@@ -58,6 +59,8 @@ constexpr Quantity kQuantities[] = {
 };
 
 }  // namespace
+
+std::span<const Quantity> quantities() { return kQuantities; }
 
 std::string name_of(const StudyPoint& point, const Study& study) {
   const bool one_scenario =

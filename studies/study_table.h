@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,13 @@ struct StudyRow {
   std::size_t point = 0;
   StudyFigures figures;
 };
+
+/// A number that every run has, by its column's name. Times are infinite if they never came.
+struct Quantity {
+  const char* column;
+  double StudyFigures::*value;
+};
+std::span<const Quantity> quantities();
 
 /// The columns that a study needs; docs/studies.md explains them. Numbers are written so that they
 /// read back exactly; nan is an empty cell.

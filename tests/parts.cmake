@@ -26,6 +26,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/hold_test.cc
     core/kinds_test.cc
     core/look_ahead_test.cc
+    core/measure_test.cc
     core/merge_property_test.cc
     core/noise_test.cc
     core/perturbation_test.cc

@@ -200,7 +200,7 @@ std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Missi
 }
 
 FileComparison compare_metrics(const fs::path& run_dir, const Expectation& expectation) {
-  constexpr int kOfTheTrajectory = 3;  // columns
+  constexpr int kOfTheTrajectory = 4;  // columns
   const auto cells = [&](const std::string& row) {
     std::size_t end = 0;
     for (int i = 0; i < kOfTheTrajectory; ++i) end = row.find(',', end + (i > 0 ? 1 : 0));
@@ -231,7 +231,7 @@ FileComparison compare_metrics(const fs::path& run_dir, const Expectation& expec
   }
   metrics.compared = std::to_string(rows) + " rows";
   if (!expectation.whole) {
-    metrics.compared += ": tick, t_s, ergodic_metric";
+    metrics.compared += ": tick, t_s, ergodic_metric, detection_probability";
     metrics.left_out = "the other columns are the agents' reports of the network";
   }
   return metrics;

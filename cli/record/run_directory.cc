@@ -65,6 +65,27 @@ void print_stations(const Json& stations) {
   std::printf("\n");
 }
 
+/// What the team would have found, how long it left places alone, and how far it moved.
+void print_achievement(const Json& summary) {
+  const auto number = [&](const char* pointer, const char* format, double factor = 1) {
+    return number_at(summary, pointer, format, factor);
+  };
+  const auto after = [&](const char* pointer) {
+    const bool came = !summary.at(Json::json_pointer(pointer)).is_null();
+    return came ? "after " + number(pointer, "%.0f") + " s" : std::string("never");
+  };
+  std::printf("  found     %s %% of objects drawn from the target, by sensors of %s m, %s per s\n",
+              number("/detection/probability", "%.1f", 100).c_str(),
+              number("/sensor/radius_m", "%.3g").c_str(),
+              number("/sensor/detections_per_s", "%g").c_str());
+  std::printf("            50 %% %s, 80 %% %s\n", after("/detection/time_to_half_s").c_str(),
+              after("/detection/time_to_four_fifths_s").c_str());
+  std::printf("  watched   95 %% of the target left alone for at most %s s\n",
+              number("/greatest_age_s", "%.0f").c_str());
+  std::printf("  moved     %s m in all; the time spent is %s m from the target\n",
+              number("/path_m", "%.0f").c_str(), number("/sliced_wasserstein_m", "%.3g").c_str());
+}
+
 void print_summary(const Json& summary) {
   const auto text = [&](const char* pointer) { return text_at(summary, pointer); };
   const auto number = [&](const char* pointer, const char* format, double factor = 1) {
@@ -90,6 +111,7 @@ void print_summary(const Json& summary) {
                 free_domain ? " in the modes of the free domain" : "",
                 reached ? "reached" : "not reached");
   }
+  if (summary.contains("detection")) print_achievement(summary);
   std::printf("  messages  %s sent, %s received, %s lost, %s dropped by the kernel\n",
               text("/messages/sent").c_str(), text("/messages/received").c_str(),
               text("/messages/lost").c_str(), text("/messages/kernel_drops").c_str());

@@ -176,7 +176,7 @@ int study(const StudyOptions& options) {
   std::optional<std::string> problem = runner.problem();
   if (!problem) {
     problem = conclude(directory, {points.identity.study, command, points.missions,
-                                   options.seeds.first, options.out});
+                                   options.seeds.first, options.out, options.measures});
   }
   if (problem) {
     print_message(*problem + "; the same command goes on");

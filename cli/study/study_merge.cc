@@ -129,8 +129,8 @@ int merge_studies(const MergeOptions& options) {
   }
   const StudyShard& shard = parts.front().shard();
   if (!problem) {
-    problem = conclude(directory,
-                       {whole.study, shard.command, shard.missions, shard.first_seed, options.out});
+    problem = conclude(directory, {whole.study, shard.command, shard.missions, shard.first_seed,
+                                   options.out, options.measures});
   }
   if (problem) return report_error(kExitFailed, *problem);
   std::printf("\n%zu runs of %zu shards in %s\nreport: %s\n", directory.rows().size(), parts.size(),

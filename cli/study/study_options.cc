@@ -7,6 +7,7 @@
 
 #include "runtime/process/shipped_scenarios.h"
 #include "scenario/parse/override_options.h"
+#include "studies/study_table.h"
 #include "text/read_number.h"
 
 namespace ergocast::cli {
@@ -48,6 +49,20 @@ StudyShard parse_shard(const std::string& text) {
   return shard;
 }
 
+/// `--measure NAME`, of which each adds a table.
+void add_measure_option(CLI::App& command, std::vector<std::string>& measures) {
+  std::vector<std::string> names;
+  for (const studies::Quantity& quantity : studies::quantities()) names.push_back(quantity.column);
+  command
+      .add_option(
+          "--measure", measures,
+          "Also print this column of study.csv: its median, and its ratio to the first row's; "
+          "once for each")
+      ->check(CLI::IsMember(names))
+      ->allow_extra_args(false)
+      ->type_name("COLUMN");
+}
+
 }  // namespace
 
 void add_study_options(CLI::App& command, StudyOptions& options) {
@@ -77,6 +92,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
       ->type_name("DIR");
   command.add_option("--duration", options.duration_s, "Mission time [s]");
   add_jobs_option(command, options.jobs);
+  add_measure_option(command, options.measures);
 }
 
 CLI::App* add_merge(CLI::App& study, MergeOptions& options) {
@@ -87,6 +103,7 @@ CLI::App* add_merge(CLI::App& study, MergeOptions& options) {
   command->add_option("--out", options.out, "The study's folder: new or empty")
       ->required()
       ->type_name("DIR");
+  add_measure_option(*command, options.measures);
   command->preparse_callback([&study](std::size_t) {
     for (CLI::Option* option : study.get_options()) {
       if (option->count() > 0) throw CLI::ValidationError("merge", "stands before all options");

@@ -30,6 +30,7 @@ struct StudyOptions {
   std::optional<StudyShard> shard;  ///< index and number only
   int jobs = 1;
   std::filesystem::path out;
+  std::vector<std::string> measures;  ///< columns of study.csv
 };
 
 void add_study_options(CLI::App& command, StudyOptions& options);
@@ -38,6 +39,7 @@ void add_study_options(CLI::App& command, StudyOptions& options);
 struct MergeOptions {
   std::vector<std::filesystem::path> shards;  ///< their folders
   std::filesystem::path out;
+  std::vector<std::string> measures;  ///< as of StudyOptions
 };
 
 /// The subcommand `merge` of `study`, whose options are not those of `study`.

@@ -2,6 +2,7 @@
 // The page and the terminal show the same summaries.
 #include "cli/study/study_results.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "logger/run_record.h"
@@ -16,6 +17,11 @@ std::optional<std::string> conclude(StudyDirectory& directory, const StudyResult
   if (auto problem = directory.sort()) return problem;
   const auto summaries = studies::summarize(results.study, directory.rows());
   std::printf("%s", studies::study_text(results.study, summaries).c_str());
+  for (const studies::Quantity& quantity : studies::quantities()) {
+    if (std::ranges::find(results.measures, quantity.column) == results.measures.end()) continue;
+    const auto measured = studies::summarize(results.study, directory.rows(), quantity);
+    std::printf("\n%s", quantity_text(results.study, quantity.column, measured).c_str());
+  }
   std::printf("\none mission of each row, here with the first seed:\n");
   std::vector<std::string> missions = results.missions;
   for (std::string& mission : missions) {

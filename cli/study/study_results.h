@@ -18,6 +18,7 @@ struct StudyResults {
   const std::vector<std::string>& missions;  ///< the command of one mission of each point
   std::uint64_t first_seed;
   std::filesystem::path out;
+  const std::vector<std::string>& measures;  ///< columns of study.csv to print besides
 };
 
 /// Sorts the table, prints the points and their commands, and writes the page. An error if one of

@@ -119,6 +119,12 @@ struct AgentKind {
   double reserve_s = 0;  ///< time before the end at which they are there
 };
 
+/// What finds objects, for the measures of core/measure/. It does not steer.
+struct SearchSensor {
+  double radius_m = 0;            ///< 0: core/measure/detection.h has a default
+  double detections_per_s = 0.5;  ///< of an object within the radius
+};
+
 struct Mission {
   std::string name;
   std::uint64_t seed = 0;
@@ -141,6 +147,7 @@ struct Mission {
   double wall_clearance_m = 0;       ///< how far bodies keep from them
   VehicleLimits vehicle;             ///< of those whose kind has none of its own
   Separation separation;
+  SearchSensor sensor;          ///< of every agent
   bool dead_reckoning = false;  ///< whether forecasts use teammates' places, core/law/forecast.h
   bool wait_for_logger =
       true;  ///< lockstep: the world runs a bounded number of ticks ahead of the record

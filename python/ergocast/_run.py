@@ -69,8 +69,8 @@ class Run:
     def metrics(self) -> pd.DataFrame:
         """metrics.csv with all its segments: a row for each mission second.
 
-        Columns: tick, t_s [s], ergodic_metric (φ²), metric_spread, max_staleness_s [s],
-        contributions_received, contributions_lost, blocked_share. φ² is in the modes that agents
+        Columns: tick, t_s [s], ergodic_metric (φ²), detection_probability, metric_spread,
+        max_staleness_s [s], contributions_received, contributions_lost, blocked_share. φ² is in the modes that agents
         steer by: those of the free domain if mission.basis.free_domain, else cosines.
         """
         return pd.DataFrame(self._record.metrics())

@@ -62,19 +62,19 @@ class Tables {
   }
 
   void metrics() {
-    table(
-        "metrics.csv",
-        "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
-        "contributions_lost,blocked_share,basis",
-        [&](std::ostream& file) {
-          for (const MetricsRow& row : record_.run.metrics) {
-            file << row.tick;
-            for (const double value : {row.t_s, row.ergodic_metric, row.spread, row.max_staleness_s,
-                                       row.received, row.lost, row.blocked_share})
-              file << ',' << shortest(value);
-            file << ',' << record_.metric_basis << '\n';
-          }
-        });
+    table("metrics.csv",
+          "tick,t_s,ergodic_metric,detection_probability,metric_spread,max_staleness_s,"
+          "contributions_received,contributions_lost,blocked_share,basis",
+          [&](std::ostream& file) {
+            for (const MetricsRow& row : record_.run.metrics) {
+              file << row.tick;
+              for (const double value :
+                   {row.t_s, row.ergodic_metric, row.detection_probability, row.spread,
+                    row.max_staleness_s, row.received, row.lost, row.blocked_share})
+                file << ',' << shortest(value);
+              file << ',' << record_.metric_basis << '\n';
+            }
+          });
   }
 
   /// The target that held at the end.

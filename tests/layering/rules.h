@@ -47,13 +47,14 @@ struct Rule {
 // From the bottom up: a folder may include those above it in this list, and only those that it
 // names.
 inline const std::set<std::string_view> kCore = {"core/base", "core/basis", "core/mission",
-                                                 "core/law", "core/motion"};
+                                                 "core/law", "core/measure", "core/motion"};
 inline const std::vector<Rule> kRules = {
     // The method. Law and motion do not see each other.
     {"core/base", {}, {kGenerator, kExpected}},
     {"core/basis", {"core/base"}, {}},
     {"core/mission", {"core/base", "core/basis"}, {}},
     {"core/law", {"core/base", "core/basis", "core/mission"}, {}},
+    {"core/measure", {"core/base", "core/basis", "core/mission"}, {}},
     {"core/motion", {"core/base", "core/mission"}, {}},
     {"text", {"core/base"}, {kFiles}},
     {"text/input_file.cc", {"text"}, {kFiles, kSystem}},

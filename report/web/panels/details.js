@@ -51,6 +51,14 @@ export function showFacts(live) {
         ['φ² first', readable(phi[0])],
         ['φ² last', readable(phi[phi.length - 1])],
         ['slope, last decade', slopeText(run)],
+        ...present([
+          ['objects found', said(summary, 'detection.probability')],
+          ['half of them after [s]', said(summary, 'detection.time_to_half_s')],
+          ['80 % after [s]', said(summary, 'detection.time_to_four_fifths_s')],
+          ['left alone at most [s]', said(summary, 'greatest_age_s')],
+          ['distance to the target [m]', said(summary, 'sliced_wasserstein_m')],
+          ['way of all agents [m]', said(summary, 'path_m')],
+        ]),
         [
           'ticks',
           grouped(run.ticks) +

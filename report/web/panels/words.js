@@ -77,6 +77,17 @@ const FIGURES = {
   'φ² first': 'At the first recorded time.',
   'φ² last': 'At the last recorded time.',
   'slope, last decade': 'The power of t that fits φ² over the last tenfold of time. −1 falls like 1/t.',
+  'objects found':
+    'How likely the team has found an object that stands still somewhere in the target. ' +
+    'The scenario’s sensor says how near an agent must be, and at which rate it then finds the object.',
+  'half of them after [s]': 'The mission time after which an object had been found with a probability of ½.',
+  '80 % after [s]': 'The mission time after which an object had been found with a probability of 0.8.',
+  'left alone at most [s]':
+    'Places with 95 % of the target were never left alone for longer: an agent’s sensor was near them.',
+  'distance to the target [m]':
+    'How far the time that the team has spent would have to move to be like the target: ' +
+    'the sliced Wasserstein distance.',
+  'way of all agents [m]': 'The lengths of all paths together.',
   ticks: 'Control steps, and the mission time that each of them takes.',
   modes: 'How many cosine waves along each axis describe coverage and target.',
   seed: 'The number from which all random numbers of the mission follow.',

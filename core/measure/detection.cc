@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Multiplies what is missed in each cell near a sensor, and adds up what is found.
+#include "core/measure/detection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/require.h"
+
+namespace ergocast {
+namespace {
+
+constexpr double kDefaultRadiusPerSide = 0.025;
+constexpr double kCellsPerRadius = 3;
+constexpr double kCellsPerLook = 0.5;
+constexpr double kLongestLook_s = 1;
+constexpr double kLeastRadiusPerCell = 1.5;
+constexpr std::array kShares{0.5, 0.8};
+
+/// The side of cells if kMaxMeasureCells of them fill the domain.
+double least_side_m(const Box& domain) {
+  return std::pow(domain.content() / static_cast<double>(kMaxMeasureCells),
+                  domain.planar() ? 1.0 / 2 : 1.0 / 3);
+}
+
+/// In how many ticks the fastest agent moves by kCellsPerLook cells.
+Tick ticks_per_look(const Mission& mission, const Cells& cells) {
+  double u_max_mps = mission.law.u_max_mps;
+  for (const AgentKind& kind : mission.kinds) u_max_mps = std::max(u_max_mps, kind.u_max_mps);
+  const double side_m =
+      mission.domain.planar() ? cells.size_m.head<2>().minCoeff() : cells.size_m.minCoeff();
+  const double look_s = std::min(kLongestLook_s, kCellsPerLook * side_m / u_max_mps);
+  return std::max<Tick>(1, static_cast<Tick>(look_s / mission.timing.dt_s));
+}
+
+}  // namespace
+
+double sensor_radius_m(const Mission& mission) {
+  const double radius_m = mission.sensor.radius_m > 0
+                              ? mission.sensor.radius_m
+                              : kDefaultRadiusPerSide * mission.domain.size_m.head<2>().minCoeff();
+  return std::max(radius_m, kLeastRadiusPerCell * least_side_m(mission.domain));
+}
+
+Cells measure_cells(const Mission& mission) {
+  return {mission.domain, sensor_radius_m(mission) / kCellsPerRadius};
+}
+
+Detection::Detection(const Mission& mission)
+    : cells_(measure_cells(mission)),
+      dt_s_(mission.timing.dt_s),
+      radius_m_(sensor_radius_m(mission)),
+      ticks_per_look_(ticks_per_look(mission, cells_)),
+      missed_in_look_(std::exp(-mission.sensor.detections_per_s * mission.timing.dt_s *
+                               static_cast<double>(ticks_per_look_))),
+      mass_(cells_.total(), 0),
+      missed_(cells_.total(), 1),
+      seen_(cells_.total(), 0),
+      longest_(cells_.total(), 0) {}
+
+void Detection::begin_target(std::vector<double> mass, Tick counted) {
+  ERGOCAST_REQUIRE(mass.size() == cells_.total());
+  mass_ = std::move(mass);
+  std::ranges::fill(missed_, 1.0);
+  found_ = 0;
+  begun_ = counted;
+  times_s_ = {};
+}
+
+Detection::Range Detection::near(int axis, double at_m, double reach_m) const {
+  if (cells_.count[axis] == 1) return {0, 0};
+  const double middle = (at_m - cells_.domain.origin_m[axis]) / cells_.size_m[axis] - 0.5;
+  const double half = reach_m / cells_.size_m[axis], last = cells_.count[axis] - 1;
+  return {static_cast<int>(std::clamp(std::ceil(middle - half), 0.0, last + 1)),
+          static_cast<int>(std::clamp(std::floor(middle + half), -1.0, last))};
+}
+
+void Detection::look(std::size_t cell, Tick turn) {
+  found_ += mass_[cell] * missed_[cell] * (1 - missed_in_look_);
+  missed_[cell] *= missed_in_look_;
+  longest_[cell] = std::max(longest_[cell], turn - seen_[cell]);
+  seen_[cell] = turn + 1;
+}
+
+void Detection::see(Tick counted, const Eigen::Vector3d& x_m) {
+  if (counted % ticks_per_look_ != ticks_per_look_ / 2) return;
+  const Tick turn = counted / ticks_per_look_;
+  const Range layers = near(2, x_m.z(), radius_m_), columns = near(0, x_m.x(), radius_m_);
+  const bool planar = cells_.domain.planar();
+  for (int l = layers.first; l <= layers.last; ++l) {
+    const double up_m = planar ? 0 : cells_.center_m(2, l) - x_m.z();
+    for (int i = columns.first; i <= columns.last; ++i) {
+      const double off_m = cells_.center_m(0, i) - x_m.x();
+      const double left_m2 = radius_m_ * radius_m_ - off_m * off_m - up_m * up_m;
+      if (left_m2 < 0) continue;
+      const Range cells = near(1, x_m.y(), std::sqrt(left_m2));
+      for (int j = cells.first; j <= cells.last; ++j)
+        look(cells_.column(i, l) + static_cast<std::size_t>(j), turn);
+    }
+  }
+}
+
+void Detection::pass(Tick counted) {
+  for (std::size_t i = 0; i < kShares.size(); ++i) {
+    if (!times_s_[i] && found_ >= kShares[i])
+      times_s_[i] = static_cast<double>(counted + 1 - begun_) * dt_s_;
+  }
+}
+
+double Detection::greatest_age_s(Tick counted, double share) const {
+  const Tick now = counted / ticks_per_look_;
+  const auto age = [&](std::size_t cell) { return std::max(longest_[cell], now - seen_[cell]); };
+  const double look_s = static_cast<double>(ticks_per_look_) * dt_s_;
+  std::vector<std::size_t> order(cells_.total());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::erase_if(order, [&](std::size_t cell) { return mass_[cell] <= 0; });
+  std::ranges::sort(order, {}, age);
+  double mass = 0;
+  for (const std::size_t cell : order) {
+    mass += mass_[cell];
+    if (mass >= share) return static_cast<double>(age(cell)) * look_s;
+  }
+  return order.empty() ? 0 : static_cast<double>(age(order.back())) * look_s;
+}
+
+}  // namespace ergocast
