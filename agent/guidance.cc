@@ -11,6 +11,7 @@ namespace ergocast {
 
 Guidance::Guidance(const Mission& mission, const RosterEntry& self)
     : id_(self.author.agent),
+      kind_(self.kind),
       active_from_(self.active_from),
       dead_reckons_(looks_ahead(mission) && mission.dead_reckoning),
       controller_(mission, self.kind),
@@ -39,6 +40,10 @@ void Guidance::on(const WorldState& world, const RadioRange& radio, const Partic
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
     forecast_->see(vehicle.id, me.counted(tick), vehicle.position_m);
   }
+}
+
+void Guidance::note_law(const Mission& mission, std::span<const LawChange> laws, Tick tick) {
+  controller_.set_law(law_numbers(mission, kind_, law_at(laws, tick)));
 }
 
 bool Guidance::has_state_of(Tick tick) const {

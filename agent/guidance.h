@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "agent/agent_step.h"
@@ -14,6 +15,7 @@
 #include "core/law/forecast.h"
 #include "core/law/target_shift.h"
 #include "core/mission/end_schedule.h"
+#include "core/mission/law_change.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 #include "team/messages.h"
@@ -38,6 +40,9 @@ class Guidance {
     if (forecast_) forecast_->note_ends(mission, ends, counted);
   }
 
+  /// Takes in the law that holds at a tick of the world.
+  void note_law(const Mission& mission, std::span<const LawChange> laws, Tick tick);
+
   /// Whether a tick that counts can be computed: in lockstep, a command must not depend on the
   /// order in which the parts of the state arrive.
   bool has_state_of(Tick tick) const;
@@ -55,6 +60,7 @@ class Guidance {
 
  private:
   AgentId id_;
+  int kind_;
   Tick active_from_;
   bool dead_reckons_;
   Controller controller_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 
 #include "core/motion/zones.h"
 #include "plan/amendment_list.h"
@@ -31,6 +32,23 @@ std::optional<Tick> tick_with_notice(const Timing& timing, const TickWatch& tick
   return ticks.newest() + 1 + since + notice_ticks(timing);
 }
 
+/// Whether a target or law can be named from a tick on. Only two of each travel, the one that holds
+/// and the next. One that waits can be replaced by the one that holds.
+/// @param plans  that of the plan
+template <class Change>
+bool may_follow(const std::vector<Change>& changes, const Change& change, const Change& plans,
+                Tick newest, Tick from, auto hash_of) {
+  if (changes.empty() || changes.back().from <= newest) return true;
+  if (changes.back().from < from) return false;
+  const Change& holds = changes.size() > 1 ? changes[changes.size() - 2] : plans;
+  return hash_of(change) == hash_of(holds);
+}
+
+/// Whether the newest change does not hold yet at a tick.
+bool waits(const auto& changes, Tick tick) {
+  return !changes.empty() && changes.back().from >= tick;
+}
+
 }  // namespace
 
 void Amending::replace(Amendments list) {
@@ -49,6 +67,10 @@ void Amending::plan(Amendments list) {
     planned_zones_.assign(list.zones.begin() + kMaxZones, list.zones.end());
     list.zones.resize(kMaxZones);
   }
+  if (list.laws.size() > kMaxLaws) {
+    planned_laws_.assign(list.laws.begin() + kMaxLaws, list.laws.end());
+    list.laws.resize(kMaxLaws);
+  }
   replace(std::move(list));
 }
 
@@ -63,7 +85,8 @@ void Amending::adopt(const Amendments& known) {
 /// Whether the next amendment may be of this kind and number.
 bool Amending::may_name(const Amend& amend, const TickWatch& ticks) const {
   if (stand_by_revision_ >= 0 || amend.number != list_.named) return false;
-  if (list_.named >= kMaxAmendments || !planned_.empty() || !planned_zones_.empty()) return false;
+  const bool all_listed = planned_.empty() && planned_zones_.empty() && planned_laws_.empty();
+  if (list_.named >= kMaxAmendments || !all_listed) return false;
   if (amend.kind == AmendmentKind::kZone) return zones_at(list_, ticks.newest()) < kMaxZones;
   if (amend.kind == AmendmentKind::kPause)
     return !is_open(list_.holds) && list_.holds.size() < kMaxHolds;
@@ -95,22 +118,15 @@ std::optional<std::vector<std::byte>> Amending::completed(const Amend& amend) {
   return content;
 }
 
-/// Whether a target can be named from a tick on. Only two targets travel, the one that holds and
-/// the next. A target that waits can be replaced by the one that holds.
-bool Amending::may_follow(const TargetChange& target, const Mission& mission, Tick newest,
-                          Tick from) const {
-  const auto& targets = list_.targets;
-  if (targets.empty() || targets.back().from <= newest) return true;
-  if (targets.back().from < from) return false;
-  const TargetChange plans{.target = mission.target_coefficients, .cosine = mission.cosine_target};
-  const TargetChange& holds = targets.size() > 1 ? targets[targets.size() - 2] : plans;
-  return target_hash(target) == target_hash(holds);
-}
-
 /// Whether the mission can get this amendment from a tick on.
 bool Amending::possible(const Wish& wish, const Mission& mission, Tick newest, Tick from,
                         const Team& team) {
-  if (wish.kind == AmendmentKind::kTarget) return may_follow(wish.target, mission, newest, from);
+  if (wish.kind == AmendmentKind::kTarget)
+    return may_follow(list_.targets, wish.target,
+                      {.target = mission.target_coefficients, .cosine = mission.cosine_target},
+                      newest, from, target_hash);
+  if (wish.kind == AmendmentKind::kLaw)
+    return may_follow(list_.laws, wish.law, plans_law(mission), newest, from, law_hash);
   if (wish.kind != AmendmentKind::kEnd) return true;
   const auto agents = team.places.of(team.roster);
   return end_rules_.problem(mission, list_, team.places.tick(), from, wish.tick_count, agents) ==
@@ -135,7 +151,7 @@ void Amending::obey(const Amend& amend, const Mission& mission, const TickWatch&
 /// What an AMEND wants, once its content is whole; nothing if that is not possible.
 std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Mission& mission,
                                                 Tick now) {
-  Wish wish{.kind = amend.kind, .delay_ticks = amend.delay_ticks};
+  Wish wish{.kind = amend.kind, .delay_ticks = amend.delay_ticks, .by = amend.by};
   const bool has_content = wish.kind >= AmendmentKind::kTarget;
   const auto content = has_content ? completed(amend) : std::nullopt;
   if (has_content && !content) return std::nullopt;
@@ -148,6 +164,11 @@ std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Missio
     const auto tick_count = decode_end(*content, mission);
     if (!tick_count) return std::nullopt;
     wish.tick_count = *tick_count;
+  }
+  if (wish.kind == AmendmentKind::kLaw) {
+    auto law = decode_law(*content, mission);
+    if (!law) return std::nullopt;
+    wish.law = *std::move(law);
   }
   if (wish.kind == AmendmentKind::kZone) {
     const auto& [refused, since] = refused_zone_;
@@ -170,7 +191,8 @@ void Amending::stand_by(Announcement& announcement) {
 void Amending::note_world(const Mission& mission, const TickWatch& ticks, const Team& team,
                           Announcement& announcement) {
   if (stand_by_revision_ < 0) {
-    if (target_is_due(ticks.newest()) || zone_is_due(ticks.newest())) stand_by(announcement);
+    const Tick now = ticks.newest();
+    if (target_is_due(now) || zone_is_due(now) || law_is_due(now)) stand_by(announcement);
     return;
   }
   if (ticks.world_revision() < stand_by_revision_) return;
@@ -194,6 +216,11 @@ bool Amending::zone_is_due(Tick now) const {
   return !planned_zones_.empty() && zones_at(list_, now) < kMaxZones;
 }
 
+/// Whether a planned law can have the place of one that holds no longer.
+bool Amending::law_is_due(Tick now) const {
+  return !planned_laws_.empty() && list_.laws.back().from <= now;
+}
+
 void Amending::list_next(Tick now, Announcement& announcement) {
   stand_by_revision_ = -1;
   if (target_is_due(now)) {
@@ -206,29 +233,41 @@ void Amending::list_next(Tick now, Announcement& announcement) {
     list_.zones.push_back(std::move(planned_zones_.front()));
     planned_zones_.pop_front();
   }
+  if (law_is_due(now)) {
+    list_.laws.erase(list_.laws.begin());
+    list_.laws.push_back(std::move(planned_laws_.front()));
+    planned_laws_.pop_front();
+  }
   bytes_ = encode_amendments(list_);
   announcement.change();
 }
 
 void Amending::name(Tick now, Tick tick, Wish wish, Announcement& announcement) {
   stand_by_revision_ = -1;
-  if (wish.kind == AmendmentKind::kZone) {
-    name_zone(list_, now, tick, wish.delay_ticks, std::move(wish.zone));
-    bytes_ = encode_amendments(list_);
-    return announcement.change();
-  }
-  tick += wish.delay_ticks;
-  if (wish.kind == AmendmentKind::kTarget) {
-    const bool waits = !list_.targets.empty() && list_.targets.back().from >= tick;
-    waits ? replace_target(list_, std::move(wish.target))
-          : name_target(list_, tick, std::move(wish.target));
-  } else if (wish.kind == AmendmentKind::kEnd) {
-    name_end(list_, tick, wish.tick_count);
-  } else {
-    name_pause(list_, tick);
-  }
+  std::string by = std::move(wish.by);
+  list_wish(now, tick, std::move(wish));
+  list_.recent.back().by = std::move(by);
   bytes_ = encode_amendments(list_);
   announcement.change();
+}
+
+void Amending::list_wish(Tick now, Tick tick, Wish wish) {
+  const Tick delay = wish.delay_ticks;
+  switch (wish.kind) {
+    case AmendmentKind::kTarget:
+      return waits(list_.targets, tick + delay)
+                 ? replace_target(list_, std::move(wish.target))
+                 : name_target(list_, tick + delay, std::move(wish.target));
+    case AmendmentKind::kLaw:
+      return waits(list_.laws, tick + delay) ? replace_law(list_, std::move(wish.law))
+                                             : name_law(list_, tick + delay, std::move(wish.law));
+    case AmendmentKind::kEnd:
+      return name_end(list_, tick + delay, wish.tick_count);
+    case AmendmentKind::kZone:
+      return name_zone(list_, now, tick, delay, std::move(wish.zone));
+    default:
+      return name_pause(list_, tick + delay);
+  }
 }
 
 }  // namespace ergocast

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names the amendments of the mission: pauses, new targets, other ends and zones, each with the
-// tick from which it holds (core/mission/amendments.h).
+// Names the amendments of the mission: pauses, new targets, other ends, zones and other laws, each
+// with the tick from which it holds (core/mission/amendments.h).
 //
 // All agents must change at the same tick. In lockstep the world first stands by: it stays at a
 // tick until it knows which one is named. In real time the team gets notice.
@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -40,9 +41,9 @@ class Amending {
   std::int64_t stand_by_revision() const { return stand_by_revision_; }
 
   /// The amendments that are known from the beginning. In lockstep there may be any number of
-  /// targets and zones: the list has two targets and kMaxZones zones at a time, as if an operator
-  /// had sent each once there was a place.
-  /// @pre are_amendments(), but for the number of targets and zones
+  /// targets, zones and laws: the list has two targets, kMaxZones zones and kMaxLaws laws at a
+  /// time, as if an operator had sent each once there was a place.
+  /// @pre are_amendments(), but for the number of targets, zones and laws
   void plan(Amendments list);
   /// Takes in the list of another coordinator, if it has named more amendments than we know. Agents
   /// may have gone by them. @pre are_amendments(known)
@@ -55,7 +56,7 @@ class Amending {
   void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks, const Team& team,
             Announcement& announcement);
 
-  /// Lockstep: names a tick, or lists the next planned target or zone, if the world stands by.
+  /// Lockstep: names a tick, or lists the next planned target, zone or law, if the world stands by.
   void note_world(const Mission& mission, const TickWatch& ticks, const Team& team,
                   Announcement& announcement);
 
@@ -67,6 +68,8 @@ class Amending {
     TargetChange target{};  // of kTarget
     Tick tick_count = 0;    // of kEnd
     Zone zone{};            // of kZone
+    LawChange law{};        // of kLaw
+    std::string by{};       // its operator
   };
   /// The parts of one AMEND that have arrived.
   struct Collected {
@@ -77,13 +80,14 @@ class Amending {
 
   bool may_name(const Amend& amend, const TickWatch& ticks) const;
   std::optional<Wish> wish_of(const Amend& amend, const Mission& mission, Tick now);
-  bool may_follow(const TargetChange& target, const Mission& mission, Tick newest, Tick from) const;
   bool possible(const Wish& wish, const Mission& mission, Tick newest, Tick from, const Team& team);
   std::optional<std::vector<std::byte>> completed(const Amend& amend);
   void stand_by(Announcement& announcement);
   void name(Tick now, Tick tick, Wish wish, Announcement& announcement);
+  void list_wish(Tick now, Tick tick, Wish wish);
   bool target_is_due(Tick now) const;
   bool zone_is_due(Tick now) const;
+  bool law_is_due(Tick now) const;
   void list_next(Tick now, Announcement& announcement);
   void replace(Amendments list);
 
@@ -95,6 +99,7 @@ class Amending {
   EndRules end_rules_;
   std::deque<TargetChange> planned_;  // the targets that the list does not have yet
   std::deque<Zone> planned_zones_;    // the same of zones
+  std::deque<LawChange> planned_laws_;
   // The last zone that was refused, and when, so that a repeated one costs no search.
   std::pair<std::vector<std::byte>, Tick> refused_zone_;
 };

@@ -106,16 +106,16 @@ class MissionLog {
   void look_at_amendments(const Coordinator& coordinator) {
     for (const Amendment& one : coordinator.amendments().recent) {
       if (one.number < logged_amendments_) continue;
-      spdlog::info("mission {} from tick {} on (amendment {})", effect_of(one.kind), one.from,
-                   one.number);
+      spdlog::info("mission {} from tick {} on (amendment {}{}{})", effect_of(one.kind), one.from,
+                   one.number, one.by.empty() ? "" : ", by ", one.by);
     }
     logged_amendments_ = coordinator.amendments().named;
   }
 
   MissionState state_ = MissionState::kWaiting;
   static const char* effect_of(AmendmentKind kind) {
-    constexpr const char* kEffects[] = {"is paused", "counts", "has another target",
-                                        "has another end", "is out of a zone"};
+    constexpr const char* kEffects[] = {"is paused",       "counts",           "has another target",
+                                        "has another end", "is out of a zone", "has another law"};
     return kEffects[static_cast<int>(kind)];
   }
 

@@ -41,6 +41,7 @@ constexpr FaultField kFields[] = {
     {"swarm_bus_only", &Faults::swarm_bus_only, 1},
     {"lasting_share", &Faults::lasting_share, 1},
     {"zones_per_s", &Faults::zones_per_s, 1},
+    {"laws_per_s", &Faults::laws_per_s, 1},
 };
 
 /// Random streams, so that one kind of fault does not change what another draws.
@@ -54,7 +55,8 @@ enum Stream : std::uint32_t {
   kRecalls,
   kTargets,
   kEnds,
-  kZones
+  kZones,
+  kLaws
 };
 
 }  // namespace
@@ -109,6 +111,7 @@ Faults drawn(std::uint64_t seed) {
   if (random.coin()) faults.targets_per_s = random.log_uniform(0.03, 0.3);
   if (random.coin()) faults.ends_per_s = random.log_uniform(0.02, 0.1);
   if (random.coin()) faults.zones_per_s = random.log_uniform(0.03, 0.2);
+  if (random.coin()) faults.laws_per_s = random.log_uniform(0.03, 0.3);
   return faults;
 }
 
@@ -174,6 +177,8 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
        [](RandomStream& random) { return std::pair(kEnd, random.word()); });
   draw(kZones, faults.zones_per_s, 0,
        [](RandomStream& random) { return std::pair(kZone, random.word()); });
+  draw(kLaws, faults.laws_per_s, 0,
+       [](RandomStream& random) { return std::pair(kLaw, random.word()); });
   std::stable_sort(all.begin(), all.end(),
                    [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;

@@ -71,11 +71,21 @@ bool IdealTeam::stands_for(const Mission& mission) {
 
 void IdealTeam::note(const Amendments& list) {
   shift_.note(list);
+  laws_ = list.laws;
   if (shift_.any_of_samples()) table_.allow_shifts();
+}
+
+/// Gives each controller the law that holds at this tick.
+void IdealTeam::use_laws() {
+  if (laws_.empty()) return;
+  const LawChange* const law = law_at(laws_, tick_);
+  for (std::size_t kind = 0; kind < controllers_.size(); ++kind)
+    controllers_[kind].set_law(law_numbers(mission_, static_cast<int>(kind), law));
 }
 
 void IdealTeam::step() {
   sample();
+  use_laws();
   if (look_ahead_.any()) {
     look_ahead();
   } else {

@@ -38,9 +38,9 @@ class IdealTeam {
   /// reckoning, without rounding.
   static bool stands_for(const Mission& mission);
 
-  /// Takes in the newest list of amendments, of which only the targets count: its ticks are those
-  /// that count. A change of the target is for the ticks to come. A distributed team computes the
-  /// same bits if it also broadcasts all coverage each tick, else the same up to rounding.
+  /// Takes in the newest list of amendments, of which only targets and laws count: its ticks are
+  /// those that count. A change of the target is for the ticks to come. A distributed team computes
+  /// the same bits if it also broadcasts all coverage each tick, else the same up to rounding.
   void note(const Amendments& list);
 
   /// One tick: samples, commands from the common c_k, motion. Does not allocate.
@@ -92,6 +92,7 @@ class IdealTeam {
   void correct();
   void compare_with_present();
   double quality(const Agent& agent) const { return sensors_.of(agent.kind).quality; }
+  void use_laws();
   void see_bodies();
   Eigen::Vector3d kept_apart(Agent& agent, const Eigen::Vector3d& v_mps);
 
@@ -106,6 +107,7 @@ class IdealTeam {
   double weight_s_ = 0, share_ = 0, per_second_ = 0;  // of gains, share of gains, and factor of all
   double unshifted_s_ = 0;                            // of the forecast gains
   TargetShift shift_;
+  std::vector<LawChange> laws_;
   Sensors sensors_;
   std::vector<Controller> controllers_;  // by kind
   std::vector<Agent> agents_;

@@ -152,7 +152,19 @@ void Invariants::note_positions(double t_s, const WorldState& world) {
 void Invariants::check(double t_s, const Command& command, const TableView& speaker) {
   if (command.header.tick < 0) return;
   if (speaker.held) return check_paused(t_s, command);
-  const ControlLaw law = law_of(mission_, planned_kind(mission_, command.header.sender));
+  // A repeated command may be older than the law that its sender knows by now.
+  const auto [newest, first] = commanded_.try_emplace(speaker.self, command.header.tick);
+  if (!first && command.header.tick <= newest->second) return;
+  newest->second = command.header.tick;
+  const int kind = planned_kind(mission_, command.header.sender);
+  ControlLaw law = law_of(mission_, kind);
+  // On the way home and out of a zone the plan's speed holds.
+  const double plans_mps = law.u_max_mps;
+  if (const auto* numbers = law_numbers_at(speaker.amendments, kind, command.header.tick)) {
+    law.u_max_mps = numbers->u_max_mps;
+    law.noise_intensity = numbers->noise_intensity;
+    law.noise_ceiling = numbers->noise_ceiling;
+  }
   const Eigen::Vector3d contraction_mps =
       law.contraction_gain_per_s * (command.position_m - law.contraction_center_m);
   const double root_dt = std::sqrt(mission_.timing.dt_s);
@@ -183,9 +195,9 @@ void Invariants::check(double t_s, const Command& command, const TableView& spea
       speaker.roster != nullptr ? entry_of(*speaker.roster, speaker.self) : nullptr;
   const bool may_go_home =
       home_from_.contains(command.header.sender) || (own != nullptr && is_recalled(*own, speaker));
-  if (may_go_home && v_mps.norm() <= law.u_max_mps * (1 + 1e-12)) return;
+  if (may_go_home && v_mps.norm() <= plans_mps * (1 + 1e-12)) return;
   // Beside a zone the filter turns a command. It may then have its length, but no more.
-  const double longest_mps = law.u_max_mps + push_mps + contraction_mps.norm() + noise_mps.norm();
+  const double longest_mps = plans_mps + push_mps + contraction_mps.norm() + noise_mps.norm();
   if (knows_closed_zone(speaker, command.header.tick) && v_mps.norm() <= longest_mps * (1 + 1e-6))
     return;
   violate(t_s, Invariant::kInputsBounded, "agent " + std::to_string(command.header.sender),

@@ -162,12 +162,12 @@ class Invariants {
 
   /// A process has sent a message. Checked are: positions are in the domain, in no wall, and as far
   /// from each wall as the mission requires; bodies are as far apart as required, in each tick; |u|
-  /// ≤ u_max, or |v| ≤ the speed limit where a distance is kept or on the way home; in lockstep
-  /// agents with a station are there from the reserve before the end on, or where others may be in
-  /// the way, at the last tick, as near as vehicles that stand for good let them; |S| ≤ S_00 =
-  /// steps · dt, or with a half-life the time that is remembered, which is halved at its ticks;
-  /// while the mission is paused no body moves once it has braked; a digest matches what its sender
-  /// holds; each entry of a received digest gets at most one answer.
+  /// ≤ the u_max that holds, or |v| ≤ the speed limit where a distance is kept or on the way home;
+  /// in lockstep agents with a station are there from the reserve before the end on, or where
+  /// others may be in the way, at the last tick, as near as vehicles that stand for good let them;
+  /// |S| ≤ S_00 = steps · dt, or with a half-life the time that is remembered, which is halved at
+  /// its ticks; while the mission is paused no body moves once it has braked; a digest matches what
+  /// its sender holds; each entry of a received digest gets at most one answer.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has received a digest.
@@ -307,6 +307,7 @@ class Invariants {
   std::map<Author, Shadow>
       shadows_;  // of each incarnation of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
+  std::map<Author, Tick> commanded_;             // the newest tick that a command has answered
   std::map<AgentId, Tick> home_from_;            // where agents have stations
   std::map<Author, Tick> rested_;                // counted ticks since an agent was recalled
   std::map<AgentId, Eigen::Vector3d> places_m_;  // in lockstep, of the newest state

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A simulated operator: it pauses a mission and resumes it, gives the team other targets, sends it
-// out of zones, and sends agents home or out of the mission.
+// out of zones, changes its speed, and sends agents home or out of the mission.
 #pragma once
 
 #include <algorithm>
@@ -48,6 +48,11 @@ class SimulatedOperator {
     zone_notice_ = notice;
     zone_wanted_ = now;
   }
+  /// Wants the law to have other numbers. It then wants no earlier ones any more.
+  void want_law(const LawChange& law) {
+    law_hash_ = law_hash(law);
+    law_ = encode_law(law);
+  }
   /// Wants an agent to go home, or out of the mission if it `leaves`.
   void want_recall(AgentId id, bool leaves) { recalls_.push_back({{}, id, leaves, {}}); }
   /// Wants the mission to go on.
@@ -59,7 +64,7 @@ class SimulatedOperator {
   /// Whether it has wanted nothing yet, and wants nothing now.
   bool idle() const {
     return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty() && !end_ &&
-           zone_.empty();
+           zone_.empty() && law_.empty();
   }
   /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
   std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
@@ -105,6 +110,20 @@ class SimulatedOperator {
                           zone_);
     messages_ += std::ssize(parts);
     return parts;
+  }
+
+  /// The law that it sends now. It repeats it until the coordinator has named it.
+  std::vector<Amend> laws(Instant now, RunId run, const Coordinator& coordinator) {
+    const Amendments& list = coordinator.amendments();
+    const auto is_ours = [this](const Amendment& one) { return one.hash == law_hash_; };
+    if (std::ranges::any_of(list.recent, is_ours)) law_.clear();
+    if (law_.empty() || now < next_law_) return {};
+    next_law_ = now + kPeriod;
+    return in_parts({.header = {run, kOperator, 3, ++messages_, coordinator.tick()},
+                     .number = list.named,
+                     .kind = AmendmentKind::kLaw,
+                     .by = "operator@laboratory"},
+                    law_);
   }
 
   /// The message that it sends now. It repeats its wish until a tick is named.
@@ -168,6 +187,9 @@ class SimulatedOperator {
   std::uint64_t zone_hash_ = 0;
   Tick zone_notice_ = 0;
   Instant zone_wanted_, next_zone_;
+  std::vector<std::byte> law_;  // that it wants
+  std::uint64_t law_hash_ = 0;
+  Instant next_law_;
   std::vector<Recall> recalls_;  // that it wants
   std::set<AgentId> sent_out_;
 };

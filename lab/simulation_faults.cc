@@ -8,6 +8,7 @@
 #include "core/motion/zones.h"
 #include "lab/random_stream.h"
 #include "lab/simulation.h"
+#include "plan/mission_limits.h"
 
 namespace ergocast::lab {
 namespace {
@@ -85,6 +86,10 @@ void Simulation::begin(const FaultEvent& event) {
     case kZone:
       want_zone(event.who);
       return;
+    case kLaw:
+      ++counts_.laws;
+      operator_.want_law(drawn_law(event.who));
+      return;
     case kRecall:
     case kDeparture:
       ++counts_.recalls;
@@ -128,6 +133,19 @@ Tick Simulation::drawn_end(std::uint64_t word) const {
   const auto planned = static_cast<double>(mission_.timing.tick_count);
   const double share = 0.8 + 0.4 * RandomStream(word, 0).uniform();
   return std::max<Tick>(1, std::llround(share * planned));
+}
+
+/// Slower agents, each kind by itself, with more or less noise than the plan has.
+LawChange Simulation::drawn_law(std::uint64_t word) const {
+  RandomStream random(word, 0);
+  LawChange change = plans_law(mission_);
+  for (LawNumbers& numbers : change.kinds) {
+    const double noise = 1.5 * random.uniform();
+    numbers.u_max_mps *= 0.3 + 0.7 * random.uniform();
+    numbers.noise_intensity *= noise;
+    if (mission_.law.perturbation == Perturbation::kAdaptive) numbers.noise_ceiling *= noise;
+  }
+  return is_law(change, mission_) ? change : plans_law(mission_);
 }
 
 /// Asks for a polygon somewhere in the domain, if one of some is possible: of three to seven
@@ -176,6 +194,8 @@ void Simulation::send_to_coordinator() {
   for (const Amend& part : operator_.ends(now_, run_, coordinator()))
     deliver(node, part, by_operator);
   for (const Amend& part : operator_.zones(now_, run_, coordinator()))
+    deliver(node, part, by_operator);
+  for (const Amend& part : operator_.laws(now_, run_, coordinator()))
     deliver(node, part, by_operator);
   // The operator repeats it; only the first one has an effect.
   const std::vector<Recall> recalls = operator_.recalls(run_, coordinator());

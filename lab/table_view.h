@@ -81,6 +81,15 @@ inline Tick ticks_at(const Mission& mission, const Amendments* list, Tick counte
   return ticks;
 }
 
+/// The numbers of the law of a kind that hold at a tick of the world; null: the plan's.
+inline const LawNumbers* law_numbers_at(const Amendments* list, int kind, Tick tick) {
+  const LawNumbers* numbers = nullptr;
+  if (list == nullptr) return numbers;
+  for (const LawChange& law : list->laws)
+    if (law.from <= tick) numbers = &law.kinds.at(static_cast<std::size_t>(kind));
+  return numbers;
+}
+
 /// The first tick, of those that count, at which an agent with a station covers no more, by the
 /// ends that hold at a counted tick; the greatest number without a station. An agent that rests
 /// when another end begins to hold goes on resting.

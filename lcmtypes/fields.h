@@ -205,13 +205,15 @@ struct Fields<Amend> {
   static void list(auto& io, auto& m) {
     io.bytes(m.signature);
     io.within(m.number, 0, kMaxAmendments);
-    io.enumerator(m.kind, AmendmentKind::kZone);
+    io.enumerator(m.kind, AmendmentKind::kLaw);
     io.count(m.delay_ticks);
     io.within(m.part, 0, kMaxAmendParts - 1);
     io.within(m.parts, 1, kMaxAmendParts);
     io.holds(m.part < m.parts);
     io.length(m.content, kMaxPlanBytesPerMessage);
     io.bytes(m.content);
+    io.text(m.by, static_cast<int>(kMaxOperatorNameLength));
+    io.holds(is_operator_name(m.by));
   }
 };
 

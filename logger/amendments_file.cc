@@ -42,6 +42,7 @@ Json without_numbers(const ReceivedAmendment& one, double dt_s) {
     json["closed_tick"] = one.zone->closed;
     json["until_tick"] = one.zone->until;
   }
+  if (!amendment.by.empty()) json["by"] = amendment.by;
   if (one.is_void) json["void"] = true;
   return json;
 }
@@ -52,6 +53,16 @@ void write_place(const Zone& zone, Json& json) {
   for (const Eigen::Vector2d& corner_m : zone.corners_m)
     json["corners_m"].push_back({corner_m.x(), corner_m.y()});
   if (zone.high_m > zone.low_m) json["heights_m"] = {zone.low_m, zone.high_m};
+}
+
+/// The numbers of each kind.
+Json law_json(const LawChange& change) {
+  Json list = Json::array();
+  for (const LawNumbers& numbers : change.kinds)
+    list.push_back({{"u_max_mps", numbers.u_max_mps},
+                    {"noise_intensity", numbers.noise_intensity},
+                    {"noise_ceiling", numbers.noise_ceiling}});
+  return list;
 }
 
 Json list_of(const Coefficients& numbers) {
@@ -79,7 +90,7 @@ std::optional<std::int64_t> count_in(const Json& object, const char* key, std::i
 
 std::optional<AmendmentKind> kind_in(const Json& object) {
   constexpr std::array kKinds{AmendmentKind::kPause, AmendmentKind::kResume, AmendmentKind::kTarget,
-                              AmendmentKind::kEnd, AmendmentKind::kZone};
+                              AmendmentKind::kEnd,   AmendmentKind::kZone,   AmendmentKind::kLaw};
   const Json& name = value_in(object, "kind");
   const auto found =
       std::ranges::find_if(kKinds, [&](AmendmentKind kind) { return name == to_string(kind); });
@@ -150,6 +161,50 @@ Result<Zone> zone_in(const Json& entry, const Amendment& amendment, const Missio
   return zone;
 }
 
+/// The law of an entry that has its numbers.
+Result<LawChange> law_in(const Json& entry, const Amendment& amendment, const Mission& mission) {
+  const Json& list = value_in(entry, "law");
+  const auto bad = [] {
+    return failure("its law is none of the mission of " + std::string(kPlanFile));
+  };
+  if (!list.is_array()) return bad();
+  LawChange change{amendment.number, amendment.from, std::vector<LawNumbers>(list.size())};
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    LawNumbers& numbers = change.kinds[i];
+    for (const auto& [key, number] : {std::pair("u_max_mps", &numbers.u_max_mps),
+                                      std::pair("noise_intensity", &numbers.noise_intensity),
+                                      std::pair("noise_ceiling", &numbers.noise_ceiling)}) {
+      const Json& value = value_in(list[i], key);
+      if (!value.is_number()) return bad();
+      *number = value.get<double>();
+    }
+  }
+  if (!is_law(change, mission)) return bad();
+  if (law_hash(change) != amendment.hash) return failure("its law has another hash");
+  return change;
+}
+
+/// Takes in the content of an entry other than a target, if it is there.
+std::optional<std::string> read_content(const Json& entry, const Mission& mission,
+                                        ReceivedAmendment& one) {
+  if (one.amendment.kind == AmendmentKind::kZone && entry.contains("corners_m")) {
+    auto zone = zone_in(entry, one.amendment, mission);
+    if (!zone) return zone.error();
+    one.zone = *std::move(zone);
+  }
+  if (one.amendment.kind == AmendmentKind::kLaw && entry.contains("law")) {
+    auto law = law_in(entry, one.amendment, mission);
+    if (!law) return law.error();
+    one.law = *std::move(law);
+  }
+  if (one.amendment.kind == AmendmentKind::kTarget && entry.contains("target")) {
+    auto target = target_in(entry, one.amendment, mission);
+    if (!target) return target.error();
+    one.target = *std::move(target);
+  }
+  return std::nullopt;
+}
+
 Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission) {
   const std::string none = "is not an amendment";
   if (!entry.is_object()) return failure(none);
@@ -159,6 +214,12 @@ Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission
   if (!number || !from || !kind) return failure(none);
   ReceivedAmendment one{{static_cast<std::int32_t>(*number), *kind, *from, 0}};
   one.is_void = value_in(entry, "void") == true;
+  if (entry.contains("by")) {
+    const Json& by = value_in(entry, "by");
+    if (!by.is_string() || !is_operator_name(by.get_ref<const std::string&>()))
+      return failure("its operator has no possible name");
+    one.amendment.by = by.get<std::string>();
+  }
   if (*kind == AmendmentKind::kEnd) {
     const auto tick_count = count_in(entry, "tick_count", kMostTicks);
     if (!tick_count || !is_tick_count(*tick_count, mission.timing))
@@ -170,17 +231,7 @@ Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission
   const auto hash = hash_in(entry);
   if (!hash) return failure("its " + std::string(to_string(*kind)) + " has no hash");
   one.amendment.hash = *hash;
-  if (*kind == AmendmentKind::kZone) {
-    if (!entry.contains("corners_m")) return one;
-    auto zone = zone_in(entry, one.amendment, mission);
-    if (!zone) return failure(zone.error());
-    one.zone = *std::move(zone);
-    return one;
-  }
-  if (!entry.contains("target")) return one;
-  auto target = target_in(entry, one.amendment, mission);
-  if (!target) return failure(target.error());
-  one.target = *std::move(target);
+  if (const auto problem = read_content(entry, mission, one)) return failure(*problem);
   return one;
 }
 
@@ -201,12 +252,17 @@ bool follow(const std::vector<ReceivedAmendment>& all) {
   if (!std::ranges::is_sorted(all, {}, [](const auto& one) { return one.amendment.number; }))
     return false;
   std::int32_t number = -1;
-  Tick target_from = -1;
-  for (const auto& [amendment, target, zone, is_void] : all) {
-    if (is_void) continue;
+  Tick target_from = -1, law_from = -1;
+  for (const ReceivedAmendment& one : all) {
+    if (one.is_void) continue;
+    const Amendment& amendment = one.amendment;
     if (amendment.number == std::exchange(number, amendment.number)) return false;
-    if (amendment.kind != AmendmentKind::kTarget) continue;
-    if (amendment.from < std::exchange(target_from, amendment.from)) return false;
+    if (amendment.kind == AmendmentKind::kTarget &&
+        amendment.from < std::exchange(target_from, amendment.from))
+      return false;
+    if (amendment.kind == AmendmentKind::kLaw &&
+        amendment.from < std::exchange(law_from, amendment.from))
+      return false;
   }
   return true;
 }
@@ -251,6 +307,7 @@ std::string amendments_text(const ReceivedAmendments& heard, double dt_s) {
       if (one.target->cosine.size() > 0) json["cosine_target"] = list_of(one.target->cosine);
     }
     if (one.zone) write_place(*one.zone, json);
+    if (one.law) json["law"] = law_json(*one.law);
     text += std::exchange(separator, ",\n") + json.dump();
   }
   return text + "]}\n";
@@ -285,9 +342,8 @@ std::optional<std::string> missing_target(const std::filesystem::path& run_dir, 
   if (!names_targets || std::filesystem::exists(run_dir / kAmendmentsFile, ignored))
     return std::nullopt;
   return std::string(kAmendmentsFile) +
-         " is missing, which has the targets and zones that its summary names; copy it from where "
-         "the run "
-         "was recorded";
+         " is missing, which has the targets, zones and laws that its summary names; copy it from "
+         "where the run was recorded";
 }
 
 }  // namespace ergocast

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The amendments of a mission as JSON: in amendments.json with the numbers of their targets and the
-// corners of zones, in summary.json without. docs/run_directory.md documents the keys.
+// corners of zones and the numbers of laws, in summary.json without. docs/run_directory.md
+// documents the keys.
 #pragma once
 
 #include <filesystem>

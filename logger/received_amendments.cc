@@ -6,6 +6,22 @@
 #include <utility>
 
 namespace ergocast {
+namespace {
+
+/// Whether they are one amendment. The contents of a list do not name the operator.
+bool same(const Amendment& one, const Amendment& other) {
+  return one.number == other.number && one.kind == other.kind && one.from == other.from &&
+         one.hash == other.hash;
+}
+
+/// Appends a target or law. One that was replaced before its tick never holds.
+template <class Change>
+void push_over(std::vector<Change>& changes, const Change& change) {
+  if (!changes.empty() && changes.back().from == change.from) changes.pop_back();
+  changes.push_back(change);
+}
+
+}  // namespace
 
 ReceivedAmendments::ReceivedAmendments(std::vector<ReceivedAmendment> all, std::vector<Hold> holds)
     : all_(std::move(all)), holds_(std::move(holds)) {}
@@ -29,6 +45,10 @@ void ReceivedAmendments::note(const Amendments& list) {
     auto& known = add({zone.number, AmendmentKind::kZone, zone.from, zone_hash(zone)}).zone;
     if (!known) known = zone;
   }
+  for (const LawChange& change : list.laws) {
+    auto& known = add({change.number, AmendmentKind::kLaw, change.from, law_hash(change)}).law;
+    if (!known) known = change;
+  }
 }
 
 /// Marks what the list lacks. It names its newest amendments; older ones are as they were.
@@ -36,7 +56,8 @@ void ReceivedAmendments::compare(const Amendments& list) {
   const std::int32_t first = list.recent.empty() ? list.named : list.recent.front().number;
   for (ReceivedAmendment& one : all_) {
     if (one.amendment.number < first) continue;
-    one.is_void = std::ranges::find(list.recent, one.amendment) == list.recent.end();
+    one.is_void = std::ranges::none_of(
+        list.recent, [&one](const Amendment& listed) { return same(listed, one.amendment); });
   }
 }
 
@@ -49,7 +70,7 @@ ReceivedAmendment& ReceivedAmendments::add(const Amendment& amendment) {
   const auto [begin, end] =
       std::equal_range(all_.begin(), all_.end(), ReceivedAmendment{amendment}, precedes);
   std::for_each(begin, end,
-                [&](ReceivedAmendment& one) { one.is_void = one.amendment != amendment; });
+                [&](ReceivedAmendment& one) { one.is_void = !same(one.amendment, amendment); });
   const auto known = std::find_if(begin, end, [](const auto& one) { return !one.is_void; });
   return known != end ? *known : *all_.insert(end, ReceivedAmendment{amendment});
 }
@@ -76,7 +97,8 @@ const ReceivedAmendment* ReceivedAmendments::unknown_content() const {
   const auto found = std::ranges::find_if(all_, [](const ReceivedAmendment& one) {
     const bool lacks_target = one.amendment.kind == AmendmentKind::kTarget && !one.target;
     const bool lacks_zone = one.amendment.kind == AmendmentKind::kZone && !one.zone;
-    return (lacks_target || lacks_zone) && !one.is_void;
+    const bool lacks_law = one.amendment.kind == AmendmentKind::kLaw && !one.law;
+    return (lacks_target || lacks_zone || lacks_law) && !one.is_void;
   });
   return found == all_.end() ? nullptr : &*found;
 }
@@ -90,11 +112,8 @@ Amendments ReceivedAmendments::list() const {
     list.named = one.amendment.number + 1;
     list.recent.push_back(one.amendment);
     if (one.zone) list.zones.push_back(*one.zone);
-    if (!one.target) continue;
-    // A target that was replaced before its tick never holds.
-    if (!list.targets.empty() && list.targets.back().from == one.target->from)
-      list.targets.pop_back();
-    list.targets.push_back(*one.target);
+    if (one.target) push_over(list.targets, *one.target);
+    if (one.law) push_over(list.laws, *one.law);
   }
   list.named = std::max({list.named, named_changes(holds_)});
   const auto spare = std::max<std::ptrdiff_t>(

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All amendments of a mission that its recorder has received.
 //
-// The list that MISSION carries names the newest amendments, and has the numbers of two targets. A
-// record needs all: rows are written some ticks after they are known, and read years later.
+// The list that MISSION carries names the newest amendments, and has the numbers of two targets and
+// two laws. A record needs all: rows are written some ticks after they are known, and read years
+// later.
 #pragma once
 
 #include <optional>
@@ -18,6 +19,8 @@ struct ReceivedAmendment {
   std::optional<TargetChange> target{};
   /// kZone: the zone; nothing if no list that was received has it.
   std::optional<Zone> zone{};
+  /// kLaw: its numbers; nothing if no list that was received has them.
+  std::optional<LawChange> law{};
   /// Whether a later list lacks it: its coordinator stopped before another process knew of it.
   bool is_void = false;
 
@@ -42,9 +45,10 @@ class ReceivedAmendments {
   std::vector<EndChange> ends() const;
   /// The target that holds at a tick of the world; null: the plan's. Its numbers are there.
   const ReceivedAmendment* target_at(Tick tick) const;
-  /// The first that is not void and whose target or zone was not received; null: there is none.
+  /// The first that is not void and whose target, zone or law was not received; null: there is
+  /// none.
   const ReceivedAmendment* unknown_content() const;
-  /// Those that are not void as one list, with all targets and zones that were received.
+  /// Those that are not void as one list, with all targets, zones and laws that were received.
   Amendments list() const;
 
  private:

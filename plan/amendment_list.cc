@@ -81,6 +81,12 @@ void place_fields(auto& io, auto& zone) {
   });
 }
 
+constexpr auto kLawNumbers = [](auto& io, auto& numbers) {
+  io.value(numbers.u_max_mps);
+  io.value(numbers.noise_intensity);
+  io.value(numbers.noise_ceiling);
+};
+
 /// All fields of a list, for the writer and the reader.
 void list_fields(auto& io, auto& amendments) {
   io.value(amendments.named);
@@ -89,6 +95,7 @@ void list_fields(auto& io, auto& amendments) {
     wire.value(one.kind);
     wire.value(one.from);
     wire.value(one.hash);
+    wire.list(one.by, kNumber);
   });
   io.list(amendments.holds, [](auto& wire, auto& hold) {
     wire.value(hold.from);
@@ -112,10 +119,15 @@ void list_fields(auto& io, auto& amendments) {
     wire.value(zone.until);
     place_fields(wire, zone);
   });
+  io.list(amendments.laws, [](auto& wire, auto& change) {
+    wire.value(change.number);
+    wire.value(change.from);
+    wire.list(change.kinds, kLawNumbers);
+  });
 }
 
 bool is_kind(const Amendment& amendment) {
-  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kZone;
+  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kLaw;
 }
 
 }  // namespace
@@ -138,6 +150,9 @@ std::optional<Amendments> decode_amendments(std::span<const std::byte> bytes,
   if (!std::ranges::all_of(list.ends, [&mission](const EndChange& change) {
         return is_tick_count(change.tick_count, mission.timing);
       }))
+    return std::nullopt;
+  if (!std::ranges::all_of(list.laws,
+                           [&mission](const LawChange& change) { return is_law(change, mission); }))
     return std::nullopt;
   return list;
 } catch (...) {
@@ -180,6 +195,23 @@ std::optional<TargetChange> decode_target(std::span<const std::byte> bytes,
   for (Coefficients* numbers : {&change.target, &change.cosine})
     for (double& number : *numbers) reader.value(number);
   if (!is_target(change.target, change.cosine, mission)) return std::nullopt;
+  return change;
+} catch (...) {
+  return std::nullopt;  // memory is missing
+}
+
+std::vector<std::byte> encode_law(const LawChange& change) {
+  ListWriter writer;
+  for (const LawNumbers& numbers : change.kinds) kLawNumbers(writer, numbers);
+  return writer.take();
+}
+
+std::optional<LawChange> decode_law(std::span<const std::byte> bytes,
+                                    const Mission& mission) noexcept try {
+  LawChange change = plans_law(mission);
+  ListReader reader(bytes);
+  for (LawNumbers& numbers : change.kinds) kLawNumbers(reader, numbers);
+  if (!reader.complete() || !is_law(change, mission)) return std::nullopt;
   return change;
 } catch (...) {
   return std::nullopt;  // memory is missing

@@ -33,6 +33,12 @@ std::vector<std::byte> encode_target(const TargetChange& change);
 std::optional<TargetChange> decode_target(std::span<const std::byte> bytes,
                                           const Mission& mission) noexcept;
 
+/// A law as AMEND carries it: the numbers of each kind.
+std::vector<std::byte> encode_law(const LawChange& change);
+/// The law of these bytes, without number and tick; nothing if `mission` cannot have it (is_law()).
+std::optional<LawChange> decode_law(std::span<const std::byte> bytes,
+                                    const Mission& mission) noexcept;
+
 /// A zone as AMEND carries it: how long it lasts, its heights and its corners.
 std::vector<std::byte> encode_zone(const Zone& zone);
 /// The zone of these bytes, from 0 to as long as it lasts, without number; nothing if it is none in

@@ -227,6 +227,22 @@ bool is_tick_count(Tick tick_count, Timing timing) {
          std::round(duration_s(timing) / timing.dt_s) == ticks;
 }
 
+bool is_law(const LawChange& change, const Mission& mission) {
+  if (!bounded_by_plan(change, mission)) return false;
+  for (int kind = 0; kind < std::ssize(change.kinds); ++kind) {
+    const ControlLaw law = law_of(mission, kind, &change), plans = law_of(mission, kind);
+    const bool ceiling_counts = law.perturbation == Perturbation::kAdaptive;
+    const bool possible =
+        limits::kIntensity.contain(law.noise_intensity) &&
+        limits::kIntensity.contain(law.noise_ceiling) && fits(law) &&
+        (ceiling_counts || law.noise_ceiling == plans.noise_ceiling) &&
+        fit_together(law, mission.disturbance_intensity, mission.domain, mission.timing.dt_s) &&
+        fits(motion_of_kind(mission, kind), law.u_max_mps, mission.separation);
+    if (!possible) return false;
+  }
+  return true;
+}
+
 double duration_s(const Timing& timing) {
   return std::min(static_cast<double>(timing.tick_count) * timing.dt_s, limits::kDuration_s.high);
 }

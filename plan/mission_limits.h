@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/base/ids.h"
+#include "core/mission/law_change.h"
 #include "core/mission/mission.h"
 
 namespace ergocast {
@@ -70,6 +71,10 @@ bool is_kind_name(std::string_view name);
 
 /// Whether a mission with these steps can have so many ticks.
 bool is_tick_count(Tick tick_count, Timing timing);
+
+/// Whether a mission can have another law: bounded_by_plan(), and a scenario with these numbers in
+/// the place of its own would be within limits.
+bool is_law(const LawChange& change, const Mission& mission);
 
 /// How long the mission lasts: tick_count · dt_s, but no more than a scenario may set [s].
 double duration_s(const Timing& timing);

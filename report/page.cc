@@ -276,20 +276,22 @@ Json homes_from(const RunData& run, const Mission& mission) {
 }
 
 /// The amendments of the record, and the targets that it has.
-void add_amendments(const ReceivedAmendments& heard, const Box& domain, Json& record) {
+void add_amendments(const ReceivedAmendments& heard, const Mission& mission, Json& record) {
   if (heard.empty()) return;
   std::vector<Amendment> list;
   std::vector<Zone> zones;
+  std::vector<LawChange> laws;
   Json targets = Json::object();
   for (const ReceivedAmendment& one : heard.all()) {
     if (one.is_void) continue;
     list.push_back(one.amendment);
     if (one.target) targets[page_target_name(one.amendment.hash)] = page_target(*one.target);
     if (one.zone) zones.push_back(*one.zone);
+    if (one.law) laws.push_back(*one.law);
   }
-  record["amendments"] = page_amendments(list);
+  record["amendments"] = page_amendments(list, laws, mission);
   record["targets"] = std::move(targets);
-  if (!zones.empty()) record["zones"] = page_zones(zones, domain);
+  if (!zones.empty()) record["zones"] = page_zones(zones, mission.domain);
 }
 
 /// The command of a vehicle that turns is its velocity at the tick's end.
@@ -354,12 +356,16 @@ Json page_mission(const Mission& flown, const Field& density) {
   return page;
 }
 
-Json page_amendments(std::span<const Amendment> list) {
+Json page_amendments(std::span<const Amendment> list, std::span<const LawChange> laws,
+                     const Mission& mission) {
   Json json = Json::array();
   for (const Amendment& one : list) {
     Json entry = {{"number", one.number}, {"kind", to_string(one.kind)}, {"from", one.from}};
     if (one.kind == AmendmentKind::kTarget) entry["hash"] = page_target_name(one.hash);
     if (one.kind == AmendmentKind::kEnd) entry["tick_count"] = one.hash;
+    const auto law = std::ranges::find(laws, one.number, &LawChange::number);
+    if (law != laws.end()) entry["law"] = law_text(*law, mission);
+    if (!one.by.empty()) entry["by"] = one.by;
     json.push_back(std::move(entry));
   }
   return json;
@@ -404,7 +410,7 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
                  {"tracks", grid.encode(0, grid.rows())},
                  {"team", team}};
   if (team.is_null() && any_station(mission)) record["home_from"] = homes_from(run, mission);
-  add_amendments(run.amendments, mission.domain, record);
+  add_amendments(run.amendments, mission, record);
   return record;
 }
 

@@ -187,6 +187,7 @@ struct Amend {
   Tick delay_ticks = 0;  ///< how many ticks later than necessary it shall hold
   std::int32_t part = 0, parts = 1;
   std::vector<std::byte> content{};  ///< this part's share of the target, plan/amendment_list.h
+  std::string by{};                  ///< the operator, as Amendment has it
   Signature signature{};
 };
 

@@ -143,12 +143,13 @@ ergocast_test(NAME cli_tests LABELS unit
   SOURCES
     cli/amend_order_test.cc
     cli/control_desk_test.cc
+    cli/new_law_test.cc
     cli/rate_test.cc
     cli/team_monitor_test.cc
     cli/workers_test.cc
     ${CMAKE_SOURCE_DIR}/cli/progress_line.cc
     ${CMAKE_SOURCE_DIR}/cli/study/workers.cc
-  LIBS ergocast_orders ergocast::core ergocast::runtime)
+  LIBS ergocast_orders ergocast_run_directory ergocast::core ergocast::runtime)
 
 ergocast_test(NAME page_server_tests LABELS unit
   SOURCES
@@ -265,5 +266,6 @@ ergocast_test(NAME lab_tests LABELS lab
     lab/pause_test.cc
     lab/planned_targets_test.cc
     lab/planned_ends_test.cc
+    lab/planned_laws_test.cc
     lab/recall_test.cc
   LIBS ergocast_lab ergocast::scenario)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast amend`: gives a running team a new target or another end, sends it out of a zone,
-// cancels an amendment, or lists what has changed in the mission.
+// `ergocast amend`: gives a running team a new target, another end or another law, sends it out of
+// a zone, cancels an amendment, or lists what has changed in the mission.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -8,11 +8,13 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/operate/amend_order.h"
 #include "cli/operate/team_command.h"
 #include "cli/record/new_end.h"
+#include "cli/record/new_law.h"
 #include "cli/record/new_target.h"
 #include "cli/watch/find_run.h"
 #include "core/motion/zones.h"
@@ -38,6 +40,8 @@ struct AmendOptions : BusOptions {
   std::filesystem::path zone;
   double zone_lasts_s = 0;
   bool force = false;
+  std::vector<LawWish> law;
+  std::string by;  // empty: user and host of this process
 };
 
 class Amending : public TeamCommand {
@@ -52,6 +56,7 @@ class Amending : public TeamCommand {
     if (options_.end) return order_end();
     if (options_.cancel) return cancel(*options_.cancel);
     if (!options_.zone.empty()) return zone();
+    if (!options_.law.empty()) return order_law();
     const auto compiled = compile();
     if (!compiled) return kExitBadInput;
     const TargetChange change = target_change_of(*compiled);
@@ -122,6 +127,31 @@ class Amending : public TeamCommand {
     return wish ? order(*wish, delay()) : report_error(kExitFailed, "--cancel: " + wish.error());
   }
 
+  int order_law() {
+    if (!listen()) return interrupted();
+    const Mission& mission = team().mission();
+    const auto law = law_with(mission, newest_law(mission, team().amendments().laws), options_.law);
+    if (!law) return report_error(kExitBadInput, "--law: " + law.error());
+    return options_.dry_run ? describe(*law) : order(wish_of(*law), delay());
+  }
+
+  int describe(const LawChange& law) const {
+    const Amendments& list = team().amendments();
+    const LawChange* const now = law_at(list.laws, team().tick());
+    std::printf("no problems: law %s, %s\n", to_hex(law_hash(law)).c_str(),
+                law_text(law, team().mission()).c_str());
+    std::printf("now the law is %s\n",
+                now == nullptr ? "as planned" : law_text(*now, team().mission()).c_str());
+    print_when(delay());
+    return kExitDone;
+  }
+
+  void print_when(Tick delay) const {
+    std::printf("it would be amendment %d, at the earliest from %s on\n", team().amendments().named,
+                team().mission_time(earliest_tick(team(), delay)).c_str());
+    std::printf("nothing was sent\n");
+  }
+
   /// A zone from the file. Prints what is wrong with it.
   int zone() {
     const Mission& mission = team().mission();
@@ -172,7 +202,9 @@ class Amending : public TeamCommand {
 
   /// Repeats an order until it is obeyed.
   int order(AmendmentWish wish, Tick delay) {
-    AmendOrder order(std::move(wish), delay, now());
+    const std::string by =
+        options_.by.empty() ? own_operator_name() : operator_name_of(options_.by);
+    AmendOrder order(std::move(wish), delay, now(), by);
     const auto report = obeyed(order);
     if (!report) return interrupted();
     if (report->state == OrderReport::State::kFailed)
@@ -191,9 +223,7 @@ class Amending : public TeamCommand {
                 encode_target(change).size());
     std::printf("about %.0f %% of its mass is elsewhere than in the target that holds now\n",
                 100 * differs);
-    std::printf("it would be amendment %d, at the earliest from %s on\n", list.named,
-                team().mission_time(earliest_tick(team(), delay())).c_str());
-    std::printf("nothing was sent\n");
+    print_when(delay());
     return kExitDone;
   }
 
@@ -243,6 +273,32 @@ double duration_from(std::string text) {
       "--for", "\"" + written + "\" is no time: write 600s for ten minutes of mission time");
 }
 
+LawWish law_from(const std::string& text) {
+  if (const auto wish = law_wish_from(text)) return *wish;
+  throw CLI::ValidationError(
+      "--law", "\"" + text +
+                   "\" is not FIELD=VALUE: write u_max_mps=8, or scout.u_max_mps=8 for the "
+                   "agents of one kind");
+}
+
+void add_law_options(CLI::App& command, AmendOptions& options) {
+  auto* law = command
+                  .add_option_function<std::vector<std::string>>(
+                      "--law",
+                      [&options](const std::vector<std::string>& texts) {
+                        for (const std::string& text : texts) options.law.push_back(law_from(text));
+                      },
+                      "Another u_max_mps, noise_intensity or noise_ceiling of the law, for all "
+                      "agents or as KIND.FIELD for one kind; once for each field. A speed is at "
+                      "most that of the plan")
+                  ->allow_extra_args(false)
+                  ->type_name("FIELD=VALUE");
+  for (const char* other : {"--target", "--set", "--list", "--end", "--cancel", "--zone"})
+    law->excludes(command.get_option(other));
+  // The page's process names its operator.
+  command.add_option("--by", options.by)->group("");
+}
+
 void add_zone_options(CLI::App& command, AmendOptions& options) {
   auto* zone =
       command
@@ -281,7 +337,8 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option_function<std::string>(
           "--at", [&options](const std::string& text) { options.delay_s = delay_from(text); },
-          "How much later than necessary a target holds, or how long after it is closed a zone is "
+          "How much later than necessary a target or law holds, or how long after it is closed a "
+          "zone is "
           "free, in mission time: +10s")
       ->type_name("+TIME");
   command
@@ -295,7 +352,7 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
                   "Undo amendment N, as --list numbers it: what held before it holds again")
       ->type_name("N");
   command.add_flag("--dry-run", options.dry_run,
-                   "Only check the target or zone and show what would change; send nothing");
+                   "Only check the target, law or zone and show what would change; send nothing");
   auto* list = command.add_flag("--list", options.list, "List what has changed in the mission");
   for (const char* other : {"--target", "--set", "--at", "--dry-run"})
     list->excludes(command.get_option(other));
@@ -304,13 +361,14 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
       command.get_option(one)->excludes(command.get_option(other));
   command.get_option("--end")->excludes(command.get_option("--cancel"));
   add_zone_options(command, options);
+  add_law_options(command, options);
 }
 
 }  // namespace
 
 void add_amend(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
-      "amend", "Give a running team a new target or another end, or send it out of a zone");
+      "amend", "Give a running team a new target, another end or speed, or send it out of a zone");
   auto options = std::make_shared<AmendOptions>();
   add_target_options(*command, *options);
   add_bus_options(*command, *options);
@@ -321,13 +379,15 @@ void add_amend(CLI::App& app, Action& action) {
       "An agent inside leaves it by the shortest way, until nobody is inside at the named tick.\n"
       "A later end must be named 10 s of mission time before the end that holds; an earlier one\n"
       "is possible if each agent can be at its station in time.\n"
-      "Exit codes: 0 it holds, or nobody is in the zone; 2 the target, the end or the zone has\n"
+      "Another law binds only agents that cover: they go home and leave zones as fast as planned.\n"
+      "Exit codes: 0 it holds, or nobody is in the zone; 2 the target, end, zone or law has\n"
       "problems, or several runs are found; 3 LCM cannot be used; 4 no team is found, it was not\n"
       "seen to obey, or agents are in the zone.");
   command->callback([&action, options, command] {
     const bool has_target = !options->target.empty() || !options->overrides.fields.empty();
-    if (!has_target && options->zone.empty() && !options->list && !options->end && !options->cancel)
-      throw CLI::RequiredError("--target, --set, --zone, --end, --cancel or --list");
+    if (!has_target && options->zone.empty() && options->law.empty() && !options->list &&
+        !options->end && !options->cancel)
+      throw CLI::RequiredError("--target, --set, --zone, --law, --end, --cancel or --list");
     action = [options, command] {
       if (const auto code = find_run(*command, *options)) return *code;
       return Amending(*options).carry_out();

@@ -32,6 +32,13 @@ std::string end_text(const MonitoredRun& team, Tick tick_count) {
   return text;
 }
 
+/// " (u_max_mps 8)", if the list still has the numbers of the law.
+std::string numbers_text(const MonitoredRun& team, std::int32_t number) {
+  const auto& laws = team.amendments().laws;
+  const auto found = std::ranges::find(laws, number, &LawChange::number);
+  return found == laws.end() ? "" : " (" + law_text(*found, team.mission()) + ")";
+}
+
 /// "target 5f0c…".
 std::string kind_text(const MonitoredRun& team, const Amendment& amendment) {
   switch (amendment.kind) {
@@ -43,21 +50,34 @@ std::string kind_text(const MonitoredRun& team, const Amendment& amendment) {
       return "the end at " + end_text(team, static_cast<Tick>(amendment.hash));
     case AmendmentKind::kZone:
       return "zone " + to_hex(amendment.hash);
+    case AmendmentKind::kLaw:
+      return "law " + to_hex(amendment.hash) + numbers_text(team, amendment.number);
     default:
       return "target " + to_hex(amendment.hash);
   }
 }
 
-/// The target that waits for its tick; null if none does.
-const TargetChange* waiting_target(const MonitoredRun& team) {
-  const auto& targets = team.amendments().targets;
-  return !targets.empty() && targets.back().from > team.tick() ? &targets.back() : nullptr;
+/// A target or law that waits for its tick.
+struct Waiting {
+  std::int32_t number;
+  Tick from;
+};
+
+/// The one that waits, of the kind of a wish; nothing if none does.
+std::optional<Waiting> waiting_for(AmendmentKind kind, const MonitoredRun& team) {
+  const auto newest = [&team](const auto& changes) -> std::optional<Waiting> {
+    if (changes.empty() || changes.back().from <= team.tick()) return std::nullopt;
+    return Waiting{changes.back().number, changes.back().from};
+  };
+  if (kind == AmendmentKind::kTarget) return newest(team.amendments().targets);
+  if (kind == AmendmentKind::kLaw) return newest(team.amendments().laws);
+  return std::nullopt;
 }
 
-std::string waiting_text(const MonitoredRun& team, const TargetChange& waiting) {
-  return "another target, amendment " + std::to_string(waiting.number) + ", waits for " +
-         team.mission_time(waiting.from) + in_seconds(team.seconds_until(waiting.from)) +
-         ": repeat the order then";
+std::string waiting_text(const MonitoredRun& team, AmendmentKind kind, const Waiting& waiting) {
+  return "another " + std::string(to_string(kind)) + ", amendment " +
+         std::to_string(waiting.number) + ", waits for " + team.mission_time(waiting.from) +
+         in_seconds(team.seconds_until(waiting.from)) + ": repeat the order then";
 }
 
 /// Why no further zone can be in force; nothing if one can.
@@ -95,6 +115,10 @@ AmendmentWish wish_of(const Zone& zone) {
   return {AmendmentKind::kZone, encode_zone(zone), zone_hash(zone)};
 }
 
+AmendmentWish wish_of(const LawChange& law) {
+  return {AmendmentKind::kLaw, encode_law(law), law_hash(law)};
+}
+
 Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std::int32_t number) {
   const Amendments& list = team.amendments();
   const std::string name = "amendment " + std::to_string(number);
@@ -108,6 +132,13 @@ Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std:
         wish_of(targets.size() > 1 ? targets[targets.size() - 2]
                                    : TargetChange{.target = mission.target_coefficients,
                                                   .cosine = mission.cosine_target});
+    wish.brings_back = true;
+    return wish;
+  }
+  const auto& laws = list.laws;
+  if (!laws.empty() && laws.back().number == number) {
+    AmendmentWish wish =
+        wish_of(laws.size() > 1 ? laws[laws.size() - 2] : plans_law(team.mission()));
     wish.brings_back = true;
     return wish;
   }
@@ -125,9 +156,10 @@ Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std:
                  ": ergocast amend --list shows which can be cancelled");
 }
 
-AmendOrder::AmendOrder(AmendmentWish wish, Tick delay, Instant now)
+AmendOrder::AmendOrder(AmendmentWish wish, Tick delay, Instant now, std::string by)
     : wish_(std::move(wish)),
       delay_(delay),
+      by_(std::move(by)),
       header_{0, kOperator, random_identity(), 0, 0},
       since_(now) {}
 
@@ -158,7 +190,7 @@ void AmendOrder::send_parts(const MonitoredRun& team, Outbox& out) {
   header_.run = team.run();
   header_.tick = team.tick();
   const Amend wish{
-      .header = header_, .number = *number_, .kind = wish_.kind, .delay_ticks = delay_};
+      .header = header_, .number = *number_, .kind = wish_.kind, .delay_ticks = delay_, .by = by_};
   for (Amend& part : in_parts(wish, wish_.content)) {
     header_.sequence = part.header.sequence;
     out.push_back({Bus::kSwarm, std::move(part)});
@@ -175,12 +207,11 @@ std::optional<std::string> AmendOrder::why_impossible(const MonitoredRun& team) 
            team.mission_time(team.tick() + team.ticks_left()) + ": name an earlier time";
   if (wish_.kind == AmendmentKind::kEnd) return why_no_end(team);
   if (wish_.kind == AmendmentKind::kZone) return why_no_place(team);
-  const TargetChange* const waiting = waiting_target(team);
+  const auto waiting = waiting_for(wish_.kind, team);
   const std::chrono::duration<double> patience = kAnswerPatience;
-  if (wish_.brings_back || waiting == nullptr ||
-      team.seconds_until(waiting->from) < patience.count())
+  if (wish_.brings_back || !waiting || team.seconds_until(waiting->from) < patience.count())
     return std::nullopt;
-  return waiting_text(team, *waiting);
+  return waiting_text(team, wish_.kind, *waiting);
 }
 
 /// The coordinator decides by the same rules, with newer places.
@@ -222,9 +253,8 @@ OrderReport AmendOrder::report(const MonitoredRun& team, Instant now) const {
 OrderReport AmendOrder::unnamed(const MonitoredRun& team, Instant now) const {
   if (now - since_ < kAnswerPatience || sent_ < kLeastSent)
     return {State::kSent, "the coordinator has not answered yet"};
-  const TargetChange* const waiting = waiting_target(team);
-  if (wish_.kind == AmendmentKind::kTarget && waiting != nullptr)
-    return {State::kFailed, waiting_text(team, *waiting)};
+  if (const auto waiting = waiting_for(wish_.kind, team))
+    return {State::kFailed, waiting_text(team, wish_.kind, *waiting)};
   if (wish_.kind == AmendmentKind::kEnd)
     if (const auto problem = why_no_end(team)) return {State::kFailed, *problem};
   return {State::kFailed, why_no_tick(team)};
@@ -251,7 +281,8 @@ std::string amendment_text(const MonitoredRun& team, const Amendment& amendment)
   return "amendment " + std::to_string(amendment.number) + ", " + kind_text(team, amendment) +
          (holds ? ", holds since " : ", holds from ") + team.mission_time(amendment.from) +
          (holds ? "" : in_seconds(team.seconds_until(amendment.from))) +
-         zone_ticks_text(team, amendment.number);
+         zone_ticks_text(team, amendment.number) +
+         (amendment.by.empty() ? "" : ", by " + amendment.by);
 }
 
 std::string inside_text(const MonitoredRun& team, const Zone& zone) {

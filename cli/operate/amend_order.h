@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order to cover another target, to end at another time, or to leave a zone.
+// The order to cover another target, to end at another time, to leave a zone, or to follow another
+// law.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +21,7 @@ struct AmendmentWish {
   AmendmentKind kind;
   std::vector<std::byte> content;  ///< as AMEND carries it
   std::uint64_t hash;              ///< as Amendment has it
-  bool brings_back = false;        ///< the target that held before the newest one
+  bool brings_back = false;        ///< the target or law that held before the newest one
 };
 /// @param target  of the mission's basis: is_target(); number and tick do not count
 AmendmentWish wish_of(const TargetChange& target);
@@ -30,6 +31,9 @@ AmendmentWish wish_of_end(Tick tick_count);
 ///              before nobody is inside
 AmendmentWish wish_of(const Zone& zone);
 
+/// @param law  is_law() of the mission; number and tick do not count
+AmendmentWish wish_of(const LawChange& law);
+
 /// What undoes an amendment: what held before it. An error says why it cannot be undone, and what
 /// to do instead. @pre team.knows_mission()
 Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std::int32_t number);
@@ -37,7 +41,8 @@ Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std:
 class AmendOrder final : public Order {
  public:
   /// @param delay   how many ticks later than necessary it shall hold
-  AmendOrder(AmendmentWish wish, Tick delay, Instant now);
+  /// @param by  the operator, is_operator_name()
+  AmendOrder(AmendmentWish wish, Tick delay, Instant now, std::string by = {});
   AmendOrder(const TargetChange& target, Tick delay, Instant now)
       : AmendOrder(wish_of(target), delay, now) {}
 
@@ -54,6 +59,7 @@ class AmendOrder final : public Order {
 
   AmendmentWish wish_;
   Tick delay_;
+  std::string by_;
   Header header_;
   Instant since_, next_{};
   int sent_ = 0;                        // how often all parts were sent
@@ -69,7 +75,7 @@ Tick earliest_tick(const MonitoredRun& team, Tick delay);
 std::string inside_text(const MonitoredRun& team, const Zone& zone);
 
 /// "amendment 3, target 5f0c…, holds since tick 517, t = 51.7 s", or "… holds from tick 517,
-/// t = 51.7 s, in 2.0 s". @pre team.knows_mission()
+/// t = 51.7 s, in 2.0 s", then ", by anna@base" if its operator is known. @pre team.knows_mission()
 std::string amendment_text(const MonitoredRun& team, const Amendment& amendment);
 
 }  // namespace ergocast::cli

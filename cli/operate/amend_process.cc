@@ -55,12 +55,13 @@ std::string amend_answer(std::string printed, const std::string& target_name) {
   return answer;
 }
 
-AmendProcess::AmendProcess(const BusOptions& team, const DrawnTarget& target) {
-  start(team, target);
+AmendProcess::AmendProcess(const BusOptions& team, const DrawnTarget& target,
+                           const std::string& by) {
+  start(team, target, by);
   running_ = child_.has_value();
 }
 
-void AmendProcess::start(const BusOptions& team, const DrawnTarget& target) {
+void AmendProcess::start(const BusOptions& team, const DrawnTarget& target, const std::string& by) {
   problem_ = "the system cannot create a process: order it again";
   auto text = sealed("drawn-target", target.text());
   const int output = memfd_create("amend-output", MFD_CLOEXEC);
@@ -76,7 +77,8 @@ void AmendProcess::start(const BusOptions& team, const DrawnTarget& target) {
                      "--lcm-url",
                      team.url.base(),
                      "--run-id",
-                     to_hex(team.run)};
+                     to_hex(team.run),
+                     "--by=" + by};
   if (const MissionKey* key = team.authenticator.key()) {
     auto kept = sealed("amend-key", key_text(*key, true));
     if (!kept) return;

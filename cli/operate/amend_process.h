@@ -19,7 +19,8 @@ class AmendProcess final : public Order {
  public:
   /// Starts the process.
   /// @param team  its run is known, and its key can sign
-  AmendProcess(const BusOptions& team, const DrawnTarget& target);
+  /// @param by  the operator
+  AmendProcess(const BusOptions& team, const DrawnTarget& target, const std::string& by);
   AmendProcess(const AmendProcess&) = delete;
   AmendProcess& operator=(const AmendProcess&) = delete;
   /// Ends the process. What it has sent may still be obeyed.
@@ -29,7 +30,7 @@ class AmendProcess final : public Order {
   OrderReport report(const MonitoredRun& team, Instant now) const override;
 
  private:
-  void start(const BusOptions& team, const DrawnTarget& target);
+  void start(const BusOptions& team, const DrawnTarget& target, const std::string& by);
   std::string printed() const;
 
   std::optional<SealedFile> target_, key_;

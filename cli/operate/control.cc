@@ -49,9 +49,10 @@ Control::Control(const BusOptions& team, std::pair<ControlLink, ControlLink> lin
       print_(std::move(print)),
       token_(random_token()),
       team_(team.run, now()),
-      desk_(host_name(), team.authenticator.keyed(), [team](const DrawnTarget& target) {
-        return std::make_unique<AmendProcess>(team, target);
-      }) {}
+      desk_(host_name(), team.authenticator.keyed(),
+            [team](const DrawnTarget& target, const std::string& by) {
+              return std::make_unique<AmendProcess>(team, target, by);
+            }) {}
 
 void Control::attend(Instant now) {
   transport_->deliver_until(now, -1);

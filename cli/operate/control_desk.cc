@@ -187,11 +187,12 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
             " on the page of " + host_,
         keyed_, now);
   };
+  const std::string by = operator_name_of(called(request));
   switch (request.act) {
     case ControlAct::kPause:
-      return std::make_unique<PauseOrder>(true, now);
+      return std::make_unique<PauseOrder>(true, now, by);
     case ControlAct::kResume:
-      return std::make_unique<PauseOrder>(false, now);
+      return std::make_unique<PauseOrder>(false, now, by);
     case ControlAct::kStop:
       return stop(false);
     case ControlAct::kStopNow:
@@ -200,7 +201,7 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
     case ControlAct::kOut:
       return std::make_unique<RecallOrder>(request.agent, request.act == ControlAct::kOut, now);
     case ControlAct::kTarget:
-      return amend_with_(*request.target);
+      return amend_with_(*request.target, by);
     default:
       return nullptr;
   }

@@ -42,8 +42,9 @@ class ControlDesk {
   /// agent on its way home, is no longer shown; Home and Out wait while all are unanswered.
   static constexpr std::size_t kMostActs = 8;
 
-  /// Makes the order to cover a drawn target.
-  using AmendWith = std::function<std::unique_ptr<Order>(const DrawnTarget&)>;
+  /// Makes the order to cover a drawn target, of the operator of that name.
+  using AmendWith =
+      std::function<std::unique_ptr<Order>(const DrawnTarget&, const std::string& by)>;
 
   /// @param host   the operator's place in the record of a stop
   /// @param keyed  whether the team has a key

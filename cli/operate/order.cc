@@ -4,6 +4,9 @@
 
 #include <cstdio>
 
+#include "core/mission/amendments.h"
+#include "runtime/process/program_options.h"
+
 namespace ergocast::cli {
 namespace {
 
@@ -25,6 +28,8 @@ OrderReport waiting_for_mission(const MonitoredRun& team, Instant::duration wait
               ? "the mission has not begun: it waits for its quorum, and no vehicle moves"
               : "the mission was not received: is its coordinator running?"};
 }
+
+std::string own_operator_name() { return operator_name_of(user_name() + '@' + host_name()); }
 
 Outgoing mission_question(const MonitoredRun& team, Header& header) {
   header.run = team.run();

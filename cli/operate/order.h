@@ -58,6 +58,9 @@ Outgoing mission_question(const MonitoredRun& team, Header& header);
 /// Why a coordinator has not named the tick of an amendment.
 std::string why_no_tick(const MonitoredRun& team);
 
+/// "anna@base": the operator of this process, as amendments name it.
+std::string own_operator_name();
+
 /// ", in 2.0 s", or nothing if the time is not known.
 std::string in_seconds(double seconds);
 

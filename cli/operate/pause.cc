@@ -19,7 +19,7 @@ class Pausing : public TeamCommand {
  private:
   int act() override {
     if (const auto code = choose_run()) return *code;
-    PauseOrder order(pauses_, now());
+    PauseOrder order(pauses_, now(), own_operator_name());
     const auto report = obeyed(order);
     if (!report) return interrupted();
     if (report->state == OrderReport::State::kFailed)

@@ -4,6 +4,7 @@
 #include "cli/operate/pause_order.h"
 
 #include <chrono>
+#include <utility>
 
 #include "runtime/bus/random_identity.h"
 
@@ -14,8 +15,11 @@ using State = OrderReport::State;
 
 }  // namespace
 
-PauseOrder::PauseOrder(bool pauses, Instant now)
-    : pauses_(pauses), header_{0, kOperator, random_identity(), 0, 0}, since_(now) {}
+PauseOrder::PauseOrder(bool pauses, Instant now, std::string by)
+    : pauses_(pauses),
+      by_(std::move(by)),
+      header_{0, kOperator, random_identity(), 0, 0},
+      since_(now) {}
 
 /// Whether MISSION names the tick of the change.
 bool PauseOrder::is_named(const MonitoredRun& team) const {
@@ -43,7 +47,8 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   out.push_back(
       {Bus::kSwarm, Amend{.header = header_,
                           .number = *number_,
-                          .kind = pauses_ ? AmendmentKind::kPause : AmendmentKind::kResume}});
+                          .kind = pauses_ ? AmendmentKind::kPause : AmendmentKind::kResume,
+                          .by = by_}});
 }
 
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {

@@ -14,7 +14,8 @@ namespace ergocast::cli {
 class PauseOrder final : public Order {
  public:
   /// @param pauses  true: it pauses the mission; false: it resumes it
-  PauseOrder(bool pauses, Instant now);
+  /// @param by  the operator, is_operator_name()
+  PauseOrder(bool pauses, Instant now, std::string by = {});
 
   void send(const MonitoredRun& team, Instant now, Outbox& out) override;
   OrderReport report(const MonitoredRun& team, Instant now) const override;
@@ -27,6 +28,7 @@ class PauseOrder final : public Order {
   std::string why_not(const MonitoredRun& team) const;
 
   bool pauses_;
+  std::string by_;
   Header header_;
   Instant since_, next_{};
   std::optional<std::int32_t> number_;  // of the next amendment when the mission was first known

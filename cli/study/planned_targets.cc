@@ -63,8 +63,19 @@ PlannedAmendment planned_end_from(const std::string& text) {
   return {.t_s = *t_s, .end = wish, .flag = "--end " + text};
 }
 
+PlannedAmendment planned_law_from(const std::string& text) {
+  const auto [time, rest] = at_colon(text);
+  const auto t_s = seconds_in(time);
+  const auto wish = t_s ? law_wish_from(rest) : std::nullopt;
+  if (!wish)
+    throw CLI::ValidationError("--law", "\"" + text +
+                                            "\" is not T:FIELD=VALUE, such as 60:u_max_mps=8 for "
+                                            "that speed from t = 60 s on");
+  return {.t_s = *t_s, .law = wish, .flag = "--law " + text};
+}
+
 bool is_zone_file(const PlannedAmendment& one) {
-  return !one.end && (one.lasts_s || looks_like_zone(one.file));
+  return !one.end && !one.law && (one.lasts_s || looks_like_zone(one.file));
 }
 
 using Planned = std::vector<std::pair<Tick, PlannedAmendment>>;
@@ -79,7 +90,7 @@ std::optional<std::string> why_impossible(Tick tick, const PlannedAmendment& one
   if (tick >= end)
     return one.flag + ": the mission has ended then, at t = " +
            shortest(static_cast<double>(end) * timing.dt_s) + " s: name an earlier time";
-  const bool is_target = !one.end && !is_zone_file(one);
+  const bool is_target = !one.end && !one.law && !is_zone_file(one);
   if (is_target && !list.targets.empty() && list.targets.back().from == tick)
     return one.flag + ": another target holds from the same tick on: name another time";
   return std::nullopt;
@@ -109,6 +120,25 @@ std::optional<std::string> append_end(Tick tick, const PlannedAmendment& one,
     default:
       return one.flag + ": that end is before it is named: name a later end";
   }
+}
+
+/// Why a mission cannot get this law at a tick; nothing if it got it. Several fields of one tick
+/// are one law.
+std::optional<std::string> append_law(Tick tick, const PlannedAmendment& one,
+                                      const Mission& mission, Amendments& list) {
+  auto law = law_with(mission, newest_law(mission, list.laws), {&*one.law, 1});
+  if (!law) return "--law: " + law.error();
+  law->from = tick;
+  if (!list.laws.empty() && list.laws.back().from == tick) {
+    law->number = list.laws.back().number;
+    std::ranges::find(list.recent, law->number, &Amendment::number)->hash = law_hash(*law);
+    list.laws.back() = *std::move(law);
+    return std::nullopt;
+  }
+  law->number = list.named++;
+  list.recent.push_back({law->number, AmendmentKind::kLaw, tick, law_hash(*law)});
+  list.laws.push_back(*std::move(law));
+  return std::nullopt;
 }
 
 /// Appends the target of a file; an error was printed if that is not possible.
@@ -189,6 +219,19 @@ CLI::Option* add_end_option(CLI::App& command, std::vector<PlannedAmendment>& pl
       ->type_name("T:TIME");
 }
 
+CLI::Option* add_law_option(CLI::App& command, std::vector<PlannedAmendment>& planned) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          "--law",
+          [&planned](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) planned.push_back(planned_law_from(text));
+          },
+          "Another number of the law from mission time T [s] on, as `ergocast amend --law "
+          "FIELD=VALUE` gives it; once for each field")
+      ->allow_extra_args(false)
+      ->type_name("T:FIELD=VALUE");
+}
+
 std::optional<Amendments> amendments_with(const std::vector<PlannedAmendment>& planned,
                                           const Scenario& scenario,
                                           const std::filesystem::path& file) {
@@ -203,15 +246,17 @@ std::optional<Amendments> amendments_with(const std::vector<PlannedAmendment>& p
   for (const auto& [tick, one] : all) {
     auto problem = why_impossible(tick, one, list, mission.timing);
     if (!problem && one.end) problem = append_end(tick, one, mission, list);
+    if (!problem && one.law) problem = append_law(tick, one, mission, list);
     if (problem) {
       print_message(*problem);
       return std::nullopt;
     }
-    if (one.end) continue;
+    if (one.end || one.law) continue;
     const bool appended = is_zone_file(one) ? add_zone(tick, one, mission, file, list)
                                             : append_target(tick, one, mission, file, list);
     if (!appended) return std::nullopt;
   }
+  for (Amendment& one : list.recent) one.by = "simulate";
   if (encode_plan(mission).size() + encode_amendments(list).size() <= kMaxPlanBytes) return list;
   print_message("--amend: the targets have more coefficients than a mission can carry: plan fewer");
   return std::nullopt;

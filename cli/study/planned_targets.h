@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// New targets and zones that a simulated coordinator knows from the beginning: `ergocast simulate
-// --amend`.
+// New targets, zones, ends and laws that a simulated coordinator knows from the beginning:
+// `ergocast simulate --amend`, `--end` and `--law`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/record/new_end.h"
+#include "cli/record/new_law.h"
 #include "core/mission/amendments.h"
 #include "scenario/scenario.h"
 
@@ -18,6 +19,7 @@ struct PlannedAmendment {
   double t_s = 0;                   ///< mission time from which it holds
   std::filesystem::path file{};     ///< a target or a zone
   std::optional<EndWish> end{};     ///< in the place of a file
+  std::optional<LawWish> law{};     ///< in the place of a file
   std::optional<double> lasts_s{};  ///< of a zone; nothing: until the end, or no zone
   std::string flag;                 ///< as written, for problems
 };
@@ -27,6 +29,9 @@ CLI::Option* add_amend_option(CLI::App& command, std::vector<PlannedAmendment>& 
 
 /// --end T:TIME.
 CLI::Option* add_end_option(CLI::App& command, std::vector<PlannedAmendment>& planned);
+
+/// --law T:FIELD=VALUE.
+CLI::Option* add_law_option(CLI::App& command, std::vector<PlannedAmendment>& planned);
 
 /// These amendments as a list. If one of them or its time has a problem, prints it and returns
 /// nothing. Whether agents reach their stations before an earlier end is not checked.

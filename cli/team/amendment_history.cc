@@ -9,6 +9,16 @@
 #include "report/page.h"
 
 namespace ergocast {
+namespace {
+
+/// Replaces those from the amendment `first` on, and forgets those before `oldest`.
+void replace_from(std::int32_t first, std::int32_t oldest, const auto& listed, auto& known) {
+  std::erase_if(known, [&](const auto& one) { return one.number >= first || one.number < oldest; });
+  for (const auto& one : listed)
+    if (one.number >= first) known.push_back(one);
+}
+
+}  // namespace
 
 void AmendmentHistory::note(const Amendments& list) {
   for (const TargetChange& change : list.targets) keep(change);
@@ -19,11 +29,9 @@ void AmendmentHistory::note(const Amendments& list) {
   if (all.size() > kMost) all.erase(all.begin(), all.end() - kMost);
   if (all == amendments_) return;
   amendments_ = std::move(all);
-  std::erase_if(zones_, [&](const Zone& zone) {
-    return zone.number >= first || zone.number < amendments_.front().number;
-  });
-  for (const Zone& zone : list.zones)
-    if (zone.number >= first) zones_.push_back(zone);
+  const std::int32_t oldest = amendments_.empty() ? first : amendments_.front().number;
+  replace_from(first, oldest, list.zones, zones_);
+  replace_from(first, oldest, list.laws, laws_);
   ++changes_;
 }
 
@@ -35,15 +43,15 @@ void AmendmentHistory::keep(const TargetChange& change) {
   if (targets_.size() > kMostTargets) targets_.pop_front();
 }
 
-void AmendmentHistory::add_new(Cursor& cursor, const Box& domain,
+void AmendmentHistory::add_new(Cursor& cursor, const Mission& mission,
                                nlohmann::ordered_json& frame) const {
   if (cursor.changes == changes_) return;
   auto& targets = frame["targets"] = nlohmann::ordered_json::object();
   const auto fresh = std::min<std::uint64_t>(targets_ever_ - cursor.targets, targets_.size());
   for (auto at = targets_.end() - static_cast<std::ptrdiff_t>(fresh); at != targets_.end(); ++at)
     targets[page_target_name(at->hash)] = at->coefficients;
-  frame["amendments"] = page_amendments(amendments_);
-  if (!zones_.empty()) frame["zones"] = page_zones(zones_, domain);
+  frame["amendments"] = page_amendments(amendments_, laws_, mission);
+  if (!zones_.empty()) frame["zones"] = page_zones(zones_, mission.domain);
   cursor = {changes_, targets_ever_};
 }
 

@@ -29,7 +29,7 @@ class AmendmentHistory {
   };
   /// Adds "amendments" and "zones", all of them, and "targets", those that this browser lacks, if
   /// anything has changed since; report/page.h has them.
-  void add_new(Cursor& cursor, const Box& domain, nlohmann::ordered_json& frame) const;
+  void add_new(Cursor& cursor, const Mission& mission, nlohmann::ordered_json& frame) const;
 
  private:
   struct Target {
@@ -40,6 +40,7 @@ class AmendmentHistory {
 
   std::vector<Amendment> amendments_;  // ascending by number
   std::vector<Zone> zones_;            // those of amendments_
+  std::vector<LawChange> laws_;        // the same
   std::deque<Target> targets_;         // in the order of their arrival
   std::uint64_t changes_ = 0, targets_ever_ = 0;
 };

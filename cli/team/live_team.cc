@@ -212,7 +212,7 @@ std::string LiveTeam::frame(Cursor& cursor, bool& more) const {
   }
   Json frame = Json::object();
   if (cursor.rosters != rosters_) frame["roster"] = roster_json();
-  if (grid_) amendments_.add_new(cursor.amendments, me_.mission().domain, frame);
+  if (grid_) amendments_.add_new(cursor.amendments, me_.mission(), frame);
   // The newest row may lack a part of the world's message.
   const std::int64_t complete = grid_ ? grid_->rows() - (over() ? 0 : 1) : 0;
   if (complete > cursor.row) {

@@ -13,6 +13,17 @@ nlohmann::ordered_json or_null(bool known, const T& value) {
   return known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
+/// The law that holds: its numbers for each kind of agents.
+nlohmann::ordered_json law_json(const TeamPicture& at) {
+  if (!at.law) return nullptr;
+  nlohmann::ordered_json json = {{"amendment", at.law->number}, {"from_tick", at.law->from}};
+  for (const LawNumbers& numbers : at.law->kinds)
+    json["kinds"].push_back({{"u_max_mps", numbers.u_max_mps},
+                             {"noise_intensity", numbers.noise_intensity},
+                             {"noise_ceiling", numbers.noise_ceiling}});
+  return json;
+}
+
 nlohmann::ordered_json json_of(const AgentRow& row) {
   nlohmann::ordered_json json = {{"id", row.author.agent},
                                  {"incarnation", to_hex(row.author.incarnation)},
@@ -84,6 +95,7 @@ std::string team_json(const TeamPicture& at) {
                              {"closed_tick", zone.closed},
                              {"from_tick", zone.from},
                              {"until_tick", zone.until}});
+  json["law"] = law_json(at);
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {

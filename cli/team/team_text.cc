@@ -175,6 +175,8 @@ std::string second_line(const TeamPicture& at) {
     text += ", end of amendment " + std::to_string(at.end->number) +
             number(" at t = %.1f s", static_cast<double>(at.tick_count) * at.dt_s);
   for (const Zone& zone : at.zones) text += ", " + zone_text(at, zone);
+  if (at.law)
+    text += ", law of amendment " + std::to_string(at.law->number) + " (" + at.law_text + ")";
   if (at.missed_deadlines > 0)
     text += ", " + std::to_string(at.missed_deadlines) + " commands late";
   if (at.skipped_ticks > 0) text += ", " + std::to_string(at.skipped_ticks) + " ticks skipped";

@@ -258,6 +258,11 @@ TeamPicture TeamView::picture(Instant now) const {
                    static_cast<std::uint64_t>(ends.back().tick_count)};
   for (const Zone& zone : follower().amendments().zones)
     if (zone.closed_at(picture.tick)) picture.zones.push_back(zone);
+  const LawChange* const law = law_at(follower().amendments().laws, picture.tick);
+  if (law != nullptr) {
+    picture.law = *law;
+    picture.law_text = law_text(*law, *follower().mission());
+  }
   picture.counted = counted_ticks(follower().holds(), picture.tick);
   picture.paused =
       !over() && (follower().mission() ? is_held(follower().holds(), picture.tick) : team_paused_);

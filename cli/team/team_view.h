@@ -67,6 +67,8 @@ struct TeamPicture {
   std::optional<Amendment> target;    ///< which target holds at `tick`; nothing: the plan's
   std::optional<Amendment> end;       ///< the newest other end; nothing: the plan's
   std::vector<Zone> zones;            ///< those that are closed at `tick`
+  std::optional<LawChange> law;       ///< which law holds at `tick`; nothing: the plan's
+  std::string law_text;               ///< of that law
   double dt_s = 0;
   std::optional<double> ergodic_metric;  ///< median of the agents' values, in cosines or …
   bool free_domain = false;              ///< … in the modes of the free domain

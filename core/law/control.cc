@@ -43,6 +43,7 @@ Controller::Controller(const Mission& mission, int kind)
       law_(law_of(mission, kind)),
       seed_(mission.seed),
       scale_(law_, mission.timing.dt_s),
+      dt_s_(mission.timing.dt_s),
       push_ticks_(push_ticks(law_, mission.timing.dt_s)),
       target_(mission.target_coefficients),
       weights_(steering_weights(mission, kind)),
@@ -50,6 +51,15 @@ Controller::Controller(const Mission& mission, int kind)
       residual_(Coefficients::Zero(mission.basis.mode_count())) {
   ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
   if (!mission.kinds.empty()) metric_weights_ = sobolev_weights(mission.basis, mission.domain);
+}
+
+void Controller::set_law(const LawNumbers& numbers) {
+  if (numbers == LawNumbers{law_.u_max_mps, law_.noise_intensity, law_.noise_ceiling}) return;
+  law_.u_max_mps = numbers.u_max_mps;
+  law_.noise_intensity = numbers.noise_intensity;
+  law_.noise_ceiling = numbers.noise_ceiling;
+  scale_ = PerturbationScale(law_, dt_s_);
+  push_ticks_ = push_ticks(law_, dt_s_);
 }
 
 void Controller::set_coverage(const Coefficients& coverage) {

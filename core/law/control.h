@@ -8,6 +8,7 @@
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
 #include "core/law/perturbation.h"
+#include "core/mission/law_change.h"
 #include "core/mission/mission.h"
 
 namespace ergocast {
@@ -27,6 +28,9 @@ class Controller {
   /// Takes in the known or forecast c_k of the team, mode_count() entries. All later commands use
   /// it.
   void set_coverage(const Coefficients& coverage);
+
+  /// From now on the law has these numbers.
+  void set_law(const LawNumbers& numbers);
 
   /// The velocity command of (10) at position `x_m`:
   ///   v = u − k (x − centre) + perturbation,  a function of (seed, agent, tick) and the field.
@@ -60,6 +64,7 @@ class Controller {
   ControlLaw law_;
   std::uint64_t seed_;
   PerturbationScale scale_;
+  double dt_s_;
   Tick push_ticks_;
   Coefficients target_, weights_, energies_, residual_;
   Coefficients metric_weights_;  // if the weights that it steers by are not those of φ²

@@ -26,7 +26,7 @@ void name(Amendments& list, Amendment amendment) {
   ERGOCAST_REQUIRE(list.named < kMaxAmendments);
   amendment.number = list.named++;
   if (list.recent.size() == kMaxRecentAmendments) list.recent.erase(list.recent.begin());
-  list.recent.push_back(amendment);
+  list.recent.push_back(std::move(amendment));
 }
 
 /// Whether numbers ascend below `named`, and ticks are possible.
@@ -39,10 +39,17 @@ bool ascend(const auto& entries, std::int32_t named) {
   return true;
 }
 
-bool targets_follow(std::span<const TargetChange> targets) {
-  for (std::size_t i = 1; i < targets.size(); ++i)
-    if (targets[i].from <= targets[i - 1].from) return false;
+/// Whether each holds later than the one before.
+bool follow(const auto& changes) {
+  for (std::size_t i = 1; i < changes.size(); ++i)
+    if (changes[i].from <= changes[i - 1].from) return false;
   return true;
+}
+
+bool are_laws(std::span<const LawChange> laws, const Mission& mission) {
+  return laws.size() <= kMaxLaws && follow(laws) &&
+         std::ranges::all_of(
+             laws, [&mission](const LawChange& one) { return bounded_by_plan(one, mission); });
 }
 
 bool are_ends(std::span<const EndChange> ends) {
@@ -56,8 +63,20 @@ bool are_ends(std::span<const EndChange> ends) {
 }  // namespace
 
 const char* to_string(AmendmentKind kind) {
-  constexpr const char* kNames[] = {"pause", "resume", "target", "end", "zone"};
+  constexpr const char* kNames[] = {"pause", "resume", "target", "end", "zone", "law"};
   return kNames[static_cast<int>(kind)];
+}
+
+bool is_operator_name(std::string_view name) {
+  return name.size() <= kMaxOperatorNameLength &&
+         std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+std::string operator_name_of(std::string_view text) {
+  std::string name(text.substr(0, kMaxOperatorNameLength));
+  std::ranges::replace_if(
+      name, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return name;
 }
 
 bool TargetChange::operator==(const TargetChange& other) const {
@@ -86,12 +105,14 @@ bool are_amendments(const Amendments& list, const Mission& mission) {
   return list.named >= 0 && list.named <= kMaxAmendments && are_holds(list.holds) &&
          named_changes(list.holds) <= list.named && list.recent.size() <= kMaxRecentAmendments &&
          ascend(list.recent, list.named) && ascend(list.targets, list.named) &&
-         targets_follow(list.targets) && ascend(list.ends, list.named) && are_ends(list.ends) &&
+         follow(list.targets) && ascend(list.ends, list.named) && are_ends(list.ends) &&
          std::ranges::all_of(list.targets,
                              [&mission](const TargetChange& change) {
                                return is_target(change.target, change.cosine, mission);
                              }) &&
-         ascend(list.zones, list.named) && are_zones(list.zones, mission.domain);
+         ascend(list.zones, list.named) && are_zones(list.zones, mission.domain) &&
+         ascend(list.laws, list.named) && are_laws(list.laws, mission) &&
+         std::ranges::all_of(list.recent, is_operator_name, &Amendment::by);
 }
 
 Amendments only_pauses(std::vector<Hold> holds) {
@@ -164,6 +185,23 @@ void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone) 
   zone.until = zone.from + lasts;
   name(list, {.kind = AmendmentKind::kZone, .from = zone.from, .hash = zone_hash(zone)});
   list.zones.push_back(std::move(zone));
+}
+
+void name_law(Amendments& list, Tick tick, LawChange change) {
+  change.from = list.laws.empty() ? tick : std::max(tick, list.laws.back().from + 1);
+  change.number = list.named;
+  name(list, {.kind = AmendmentKind::kLaw, .from = change.from, .hash = law_hash(change)});
+  // The second newest holds until the newest one does.
+  if (list.laws.size() > 1) list.laws.erase(list.laws.begin(), list.laws.end() - 1);
+  list.laws.push_back(std::move(change));
+}
+
+void replace_law(Amendments& list, LawChange change) {
+  ERGOCAST_REQUIRE(!list.laws.empty());
+  change.from = list.laws.back().from;
+  change.number = list.named;
+  name(list, {.kind = AmendmentKind::kLaw, .from = change.from, .hash = law_hash(change)});
+  list.laws.back() = std::move(change);
 }
 
 std::size_t zones_at(const Amendments& list, Tick tick) {

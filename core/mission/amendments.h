@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What has changed in a mission since its plan: pauses, new targets, other ends, and zones.
+// What has changed in a mission since its plan: pauses, new targets, other ends, zones, and other
+// speeds and noise of the law.
 //
 // The coordinator names each amendment: it gives it the next number, and the world's tick from
 // which it holds. All processes learn of an amendment before its tick, so all change at the same
@@ -9,11 +10,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
 #include "core/mission/hold.h"
+#include "core/mission/law_change.h"
 #include "core/mission/mission.h"
 #include "core/mission/zones.h"
 
@@ -25,6 +29,7 @@ enum class AmendmentKind {
   kTarget,  ///< the team covers another target
   kEnd,     ///< the mission has another number of ticks
   kZone,    ///< the team leaves a part of the domain, core/mission/zones.h
+  kLaw,     ///< the law has another speed or other noise, core/mission/law_change.h
 };
 const char* to_string(AmendmentKind kind);
 
@@ -33,11 +38,21 @@ struct Amendment {
   std::int32_t number = 0;  ///< from 0
   AmendmentKind kind = AmendmentKind::kPause;
   Tick from = 0;  ///< the world's tick from which it holds
-  /// kTarget: target_hash(); kEnd: the number of ticks; kZone: zone_hash(); else 0
+  /// kTarget: target_hash(); kEnd: the number of ticks; kZone: zone_hash(); kLaw: law_hash(); else
+  /// 0
   std::uint64_t hash = 0;
+  std::string by{};  ///< its operator, as is_operator_name() allows; empty: not known
 
   bool operator==(const Amendment&) const = default;
 };
+
+/// Limit (Team): length of the name of an amendment's operator [bytes]. Beyond it: commands cut it.
+inline constexpr std::size_t kMaxOperatorNameLength = 32;
+/// Whether this may be the name of an operator: at most kMaxOperatorNameLength printable ASCII
+/// characters, also none.
+bool is_operator_name(std::string_view name);
+/// Makes a name of any text: other characters become '?', and it is cut.
+std::string operator_name_of(std::string_view text);
 
 /// A target that replaces the plan's from a tick on.
 struct TargetChange {
@@ -78,9 +93,12 @@ struct Amendments {
   /// All zones that have not ended, ascending by number. They have places of their own, so that
   /// targets cannot crowd them out.
   std::vector<Zone> zones{};
+  /// The newest laws, ascending by number; at most kMaxLaws, as of targets.
+  std::vector<LawChange> laws{};
 
   bool empty() const {
-    return named == 0 && holds.empty() && targets.empty() && ends.empty() && zones.empty();
+    return named == 0 && holds.empty() && targets.empty() && ends.empty() && zones.empty() &&
+           laws.empty();
   }
   bool operator==(const Amendments&) const = default;
 };
@@ -95,10 +113,12 @@ inline constexpr std::int32_t kMaxAmendments = 1'000'000;
 /// Limit (Team): ends of a mission in the place of its plan's. Beyond it: `ergocast amend --end`
 /// ends with code 4.
 inline constexpr std::size_t kMaxEnds = 32;
+/// The laws of a list: the one that holds, and the next.
+inline constexpr std::size_t kMaxLaws = 2;
 
 /// Whether a coordinator can have named this list for `mission`: are_holds(), numbers and ticks
 /// ascend, each target is one of the mission's basis within limits (is_target()), ends have at
-/// least one tick, and zones are_zones().
+/// least one tick, zones are_zones(), laws are bounded_by_plan(), and operators have names.
 bool are_amendments(const Amendments& list, const Mission& mission);
 
 /// Whether the numbers are a target of `mission`: as many as its basis has modes, finite, |μ| ≤ 1
@@ -138,6 +158,11 @@ void name_end(Amendments& list, Tick tick, Tick tick_count);
 /// @param zone  with `until` − `from` alone of its ticks
 /// @pre now <= closed, and zones_at(list, now) < kMaxZones
 void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone);
+/// Names the next amendment, a law. Its number and tick are set here.
+void name_law(Amendments& list, Tick tick, LawChange change);
+/// Names the next amendment, a law that holds in the place of the newest one, from its tick on.
+/// @pre the newest law does not hold yet
+void replace_law(Amendments& list, LawChange change);
 /// How many zones have not ended at a tick.
 std::size_t zones_at(const Amendments& list, Tick tick);
 

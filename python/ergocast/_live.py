@@ -30,13 +30,13 @@ _BAD_INPUT = 2
 # Enumerations have words without quotation marks in a scenario's text.
 _ENUMERATIONS = {"first_row"}
 _NAMED = re.compile(
-    r"^amendment (?P<number>\d+), target (?P<target>[0-9a-f]+), holds since tick (?P<tick>\d+), "
-    r"t = (?P<t_s>[\d.]+) s$",
+    r"^amendment (?P<number>\d+), (?:target|law) (?P<target>[0-9a-f]+)(?: \(.*\))?, "
+    r"holds since tick (?P<tick>\d+), t = (?P<t_s>[\d.]+) s(?:, by .*)?$",
     re.MULTILINE,
 )
 _PLANNED = re.compile(
-    r"target (?P<target>[0-9a-f]+),.*\n"
-    r"about (?P<moved>\d+) % of its mass.*\n"
+    r"(?:target|law) (?P<target>[0-9a-f]+),.*\n"
+    r"(?:about (?P<moved>\d+) % of its mass|now the law is).*\n"
     r"it would be amendment (?P<number>\d+), at the earliest from tick (?P<tick>\d+), "
     r"t = (?P<t_s>[\d.]+) s"
 )
@@ -44,7 +44,7 @@ _PLANNED = re.compile(
 
 @dataclass(frozen=True)
 class Amendment:
-    """A new target of a running mission."""
+    """A new target or another law of a running mission."""
 
     number: int
     """Its number among the amendments of the mission, from 0."""
@@ -53,9 +53,9 @@ class Amendment:
     t_s: float
     """The mission time of that tick [s]."""
     target: str
-    """The hash of the target, as `ergocast amend --list` and amendments.json have it."""
+    """The hash of the target or law, as `ergocast amend --list` and amendments.json have it."""
     moved_share: float | None = None
-    """After a dry run: the share of the target's mass that is elsewhere than in the present target."""
+    """After a dry run of a target: the share of the target's mass that is elsewhere than in the present target."""
 
 
 class LiveRun:
@@ -128,15 +128,52 @@ class LiveRun:
             command = ["amend", *_target_options(target, Path(folder))]
             for path, text, _ in fields_of(set):
                 command += ["--set", f"{path}={text}"]
-            if at:
-                command += ["--at", f"+{float(at)!r}s"]
-            if dry_run:
-                command.append("--dry-run")
-            answer = self._run(*command)
+            return self._amend(command, at, dry_run)
+
+    def amend_law(
+        self,
+        *,
+        u_max_mps: float | None = None,
+        noise_intensity: float | None = None,
+        noise_ceiling: float | None = None,
+        kind: str | None = None,
+        at: float = 0,
+        dry_run: bool = False,
+    ) -> Amendment:
+        """Gives the law another speed or noise, as `ergocast amend --law` does; returns once it holds.
+
+        Numbers that are not named stay as they are. A speed is at most that of the plan.
+
+        kind: only the agents of this kind.
+        at, dry_run: as in amend().
+
+        Raises ScenarioError if the mission cannot have these numbers, or if several teams are found;
+        TeamError if no team is found, or if it was not seen to obey.
+        """
+        numbers = {
+            "u_max_mps": u_max_mps,
+            "noise_intensity": noise_intensity,
+            "noise_ceiling": noise_ceiling,
+        }
+        command = ["amend"]
+        for field, value in numbers.items():
+            if value is not None:
+                path = field if kind is None else f"{kind}.{field}"
+                command += ["--law", f"{path}={float(value)!r}"]
+        if len(command) == 1:
+            raise ScenarioError("amend_law: name u_max_mps, noise_intensity or noise_ceiling")
+        return self._amend(command, at, dry_run)
+
+    def _amend(self, command: list[str], at: float, dry_run: bool) -> Amendment:
+        if at:
+            command += ["--at", f"+{float(at)!r}s"]
+        if dry_run:
+            command.append("--dry-run")
+        answer = self._run(*command)
         if answer.returncode:
             _complain(answer.returncode, answer.stderr)
         for line in answer.stderr.splitlines():
-            warnings.warn(line.removeprefix("warning: "), stacklevel=2)
+            warnings.warn(line.removeprefix("warning: "), stacklevel=3)
         return _amendment(answer.stdout, _PLANNED if dry_run else _NAMED)
 
     def _run(self, *arguments: str) -> subprocess.CompletedProcess[str]:

@@ -4,6 +4,7 @@
 #include "runtime/process/program_options.h"
 
 #include <lcm/lcm.h>
+#include <pwd.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -239,6 +240,12 @@ std::string host_name() {
   std::array<char, 65> name{};
   gethostname(name.data(), name.size() - 1);
   return name.data();
+}
+
+std::string user_name() {
+  const uid_t account = geteuid();
+  const passwd* const entry = getpwuid(account);
+  return entry != nullptr ? entry->pw_name : std::to_string(account);
 }
 
 std::string wall_clock_text() {

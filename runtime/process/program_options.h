@@ -79,6 +79,8 @@ bool cpu_has_fma();
 std::string version();
 
 std::string host_name();
+/// "anna": the account of this process; its number if it has no name.
+std::string user_name();
 /// The current wall-clock time as "2026-01-31T12:00:00Z".
 std::string wall_clock_text();
 

@@ -35,6 +35,7 @@ const char* const kTargetsAndPauses = "targets_per_s = 0.3\npauses_per_s = 0.3\n
 const char* const kEnds = "ends_per_s = 0.3";
 const char* const kManyEnds = "ends_per_s = 1";
 const char* const kZones = "zones_per_s = 0.3";
+const char* const kLaws = "laws_per_s = 0.3";
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
@@ -126,6 +127,8 @@ const char* const kLongRests =
 const Plant kPlants[] = {
     {Invariant::kPositionsInTheDomain, "the edges push outwards"},
     {Invariant::kInputsBounded, "the input is not cut"},
+    {Invariant::kInputsBounded, "agents keep to the plan's law", kLaws},
+    {Invariant::kInputsBounded, "a law holds a tick late", kLaws, "", "", "--lockstep"},
     {Invariant::kDistanceKept, "bodies are no bodies", "", kCrowd},
     {Invariant::kDistanceKept, "only two bodies count", "", kCrowd},
     {Invariant::kDistanceKept, "a body takes the whole gap", "", kCrowd},

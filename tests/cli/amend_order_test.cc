@@ -241,5 +241,34 @@ TEST_F(Amended, SurvivesThatItsProcessIsStopped) {
   EXPECT_EQ(turn(order, 1s).state, State::kSent) << "it has not listened since";
 }
 
+TEST_F(Amended, ALawIsAskedForWithItsOperatorAndCancelled) {
+  LawChange slow = plans_law(mission_);
+  slow.kinds[0].u_max_mps /= 2;
+  announce_list();
+  AmendOrder order(wish_of(slow), 0, now_, "anna@base");
+  turn(order, 20ms);
+  ASSERT_EQ(sent_.size(), 1U);
+  EXPECT_EQ(sent_[0].kind, AmendmentKind::kLaw);
+  EXPECT_EQ(sent_[0].by, "anna@base");
+  EXPECT_EQ(decode_law(sent_[0].content, mission_), slow);
+  name_law(list_, 5, slow);
+  list_.recent.back().by = "anna@base";
+  announce_list();
+  move_to(10);
+  const OrderReport report = turn(order, 1s);
+  EXPECT_EQ(report.state, State::kDone);
+  EXPECT_TRUE(report.text.ends_with("holds since tick 5, t = 0.5 s, by anna@base")) << report.text;
+  EXPECT_NE(report.text.find(" (u_max_mps "), std::string::npos) << report.text;
+  EXPECT_EQ(wish_to_cancel(team_, 0)->content, encode_law(plans_law(mission_)));
+  LawChange slower = slow;
+  slower.kinds[0].u_max_mps /= 2;
+  name_law(list_, 50, slower);
+  announce_list();
+  EXPECT_EQ(wish_to_cancel(team_, 1)->content, encode_law(slow));
+  AmendOrder later(wish_of(plans_law(mission_)), 0, now_);
+  const OrderReport refused = turn(later, 1s);
+  EXPECT_EQ(refused.state, State::kSent) << "the law that waits will soon hold";
+}
+
 }  // namespace
 }  // namespace ergocast::cli

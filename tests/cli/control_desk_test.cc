@@ -74,10 +74,12 @@ class Desk : public ::testing::Test {
 
   OrderReport drawn_report_;
   std::vector<std::string> drawn_;  // the texts of drawn targets
+  std::string drawn_by_;            // the operator of the last one
   Instant now_ = at(1s);
   MonitoredRun team_{kRun, at(0s)};
-  ControlDesk desk_{"here", true, [this](const DrawnTarget& target) {
+  ControlDesk desk_{"here", true, [this](const DrawnTarget& target, const std::string& by) {
                       drawn_.push_back(target.text());
+                      drawn_by_ = by;
                       return std::make_unique<Drawn>(drawn_report_);
                     }};
   Outbox sent_;
@@ -95,7 +97,12 @@ TEST_F(Desk, OnlyTheOperatorsRequestsBecomeOrders) {
   EXPECT_EQ(refusal(), "anna has control now");
   EXPECT_EQ(sent<Amend>(), 0);
   ask(ControlAct::kPause);
-  EXPECT_EQ(sent<Amend>(), 1);
+  ASSERT_EQ(sent<Amend>(), 1);
+  const auto is_amend = [](const Outgoing& one) {
+    return std::holds_alternative<Amend>(one.message);
+  };
+  const auto found = std::ranges::find_if(sent_, is_amend);
+  EXPECT_EQ(std::get<Amend>(found->message).by, "anna");
   EXPECT_EQ(lines_.back(), "control: anna asks for: pause, at tick 100, t = 10.0 s");
 }
 
@@ -130,6 +137,7 @@ TEST_F(Desk, ASecondDrawnTargetWaitsUntilTheFirstOneHolds) {
   ask(ControlAct::kTake);
   ask(ControlAct::kTarget);
   ASSERT_EQ(drawn_.size(), 1U);
+  EXPECT_EQ(drawn_by_, "anna");
   EXPECT_EQ(drawn_[0],
             "target {\n  gaussians { mean_x_m: 300 mean_y_m: 400 sigma_m: 50 weight: 1 }\n"
             "  uniform_weight: 1\n}\n");

@@ -166,6 +166,19 @@ TEST(TeamTable, NamesTheTargetThatHoldsInMissionTime) {
             nlohmann::json::parse(R"({"amendment": 3, "from_tick": 1400})"));
 }
 
+TEST(TeamTable, NamesTheLawThatHolds) {
+  TeamPicture picture = running_team();
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["law"], nullptr);
+  picture.law = LawChange{.number = 5, .from = 1400, .kinds = {{8, 0.5, 2}}};
+  picture.law_text = "u_max_mps 8";
+  EXPECT_NE(team_table(picture, false).find(", law of amendment 5 (u_max_mps 8), "),
+            std::string::npos)
+      << team_table(picture, false);
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["law"],
+            nlohmann::json::parse(R"({"amendment": 5, "from_tick": 1400, "kinds": [
+                {"u_max_mps": 8.0, "noise_intensity": 0.5, "noise_ceiling": 2.0}]})"));
+}
+
 TEST(TeamJson, IsOneLineWithNullForWhatIsNotKnown) {
   const std::string line = team_json(running_team());
   EXPECT_EQ(line.find('\n'), std::string::npos);

@@ -324,5 +324,57 @@ TEST(Amending, NamesNoNinthZoneUntilOneHasEnded) {
   EXPECT_EQ(coordinator.amendments().named, 9);
 }
 
+// ---- laws ----
+
+Amend law_wish(double share, std::int32_t number, Tick delay = 0) {
+  LawChange law = plans_law(wide_mission());
+  law.kinds[0].u_max_mps *= share;
+  return in_parts({.header = {kRun, kOperator, 1, next_sequence(), 0},
+                   .number = number,
+                   .kind = AmendmentKind::kLaw,
+                   .delay_ticks = delay,
+                   .by = "anna@base"},
+                  encode_law(law))
+      .front();
+}
+
+TEST(Amending, NamesALawAndItsOperator) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  give(coordinator, law_wish(0.5, 0), at(1s));
+  let_world_stand_by(coordinator, 11);
+  ASSERT_EQ(coordinator.amendments().laws.size(), 1U);
+  EXPECT_EQ(coordinator.amendments().laws[0].from, 13);
+  EXPECT_EQ(coordinator.amendments().laws[0].kinds[0].u_max_mps, wide_mission().law.u_max_mps / 2);
+  EXPECT_EQ(coordinator.amendments().recent[0].by, "anna@base");
+}
+
+TEST(Amending, NamesNoLawBeyondThePlan) {
+  Amend cut = law_wish(0.5, 0);
+  cut.content.pop_back();
+  for (const Amend& wish : {law_wish(1.5, 0), law_wish(0, 0), law_wish(-1, 0), cut}) {
+    Coordinator coordinator = running_coordinator(wide_mission());
+    give(coordinator, world_where(10, {9, 9}), at(1s));
+    give(coordinator, wish, at(1s));
+    let_world_stand_by(coordinator, 11);
+    EXPECT_EQ(coordinator.amendments().named, 0);
+  }
+}
+
+TEST(Amending, ALawThatWaitsIsReplacedByTheOneThatHoldsAlone) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  give(coordinator, law_wish(0.5, 0, 100), at(1s));
+  let_world_stand_by(coordinator, 11);
+  give(coordinator, law_wish(0.75, 1), at(1s));
+  let_world_stand_by(coordinator, 12);
+  EXPECT_EQ(coordinator.amendments().named, 1) << "another one waits";
+  give(coordinator, law_wish(1, 1), at(1s));
+  let_world_stand_by(coordinator, 13);
+  ASSERT_EQ(coordinator.amendments().laws.size(), 1U);
+  EXPECT_EQ(coordinator.amendments().laws[0].from, 113);
+  EXPECT_EQ(coordinator.amendments().laws[0].kinds, plans_law(wide_mission()).kinds);
+}
+
 }  // namespace
 }  // namespace ergocast

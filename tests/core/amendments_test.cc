@@ -4,12 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <tuple>
 #include <utility>
 
 #include "plan/amendment_list.h"
+#include "plan/mission_limits.h"
+#include "team/messages.h"
 #include "tests/support/team.h"
 
 namespace ergocast {
@@ -216,6 +220,106 @@ TEST(Amendments, AZoneOfAnAmendIsWhole) {
     const auto zone = decode_zone(damaged, domain);
     EXPECT_TRUE(!zone || is_zone(*zone, domain)) << i;
   }
+}
+
+// ---- laws ----
+
+LawChange slower(double u_max_mps, double noise = 0) {
+  LawChange change = plans_law(small_mission(1));
+  change.kinds[0].u_max_mps = u_max_mps;
+  change.kinds[0].noise_intensity = noise;
+  return change;
+}
+
+TEST(Amendments, KeepTheLawThatHoldsAndTheNext) {
+  const Mission mission = small_mission(1);
+  const double most_mps = mission.law.u_max_mps;
+  Amendments list;
+  for (int i = 1; i <= 4; ++i) name_law(list, 10 * i, slower(most_mps / i));
+  ASSERT_EQ(list.laws.size(), 2U);
+  EXPECT_EQ(law_at(list.laws, 29), nullptr);
+  EXPECT_EQ(law_at(list.laws, 30), &list.laws[0]);
+  EXPECT_EQ(law_at(list.laws, 40), &list.laws[1]);
+  EXPECT_EQ(list.recent[3],
+            (Amendment{3, AmendmentKind::kLaw, 40, law_hash(slower(most_mps / 4))}));
+  name_law(list, 40, slower(most_mps / 8));
+  EXPECT_EQ(list.laws[1].from, 41);
+  replace_law(list, slower(most_mps));
+  EXPECT_EQ(list.laws[1].from, 41);
+  EXPECT_EQ(list.laws[1].number, 5);
+  list.recent.back().by = "anna@base";
+  EXPECT_TRUE(are_amendments(list, mission));
+  EXPECT_EQ(decode_amendments(encode_amendments(list), mission), list);
+}
+
+TEST(Amendments, RefusesLawsBeyondThePlanAndNamesThatAreNone) {
+  const Mission mission = small_mission(1);
+  const double most_mps = mission.law.u_max_mps;
+  const auto refused = [&](auto change) {
+    Amendments forged;
+    name_law(forged, 20, slower(most_mps / 2));
+    change(forged);
+    return !decode_amendments(encode_amendments(forged), mission);
+  };
+  EXPECT_FALSE(refused([](Amendments&) {}));
+  for (const double u_max_mps :
+       {0.0, -1.0, most_mps * 1.01, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_TRUE(refused([&](Amendments& list) { list.laws[0].kinds[0].u_max_mps = u_max_mps; }))
+        << u_max_mps;
+  for (const double noise : {-1.0, 1e7, std::nan("")})
+    EXPECT_TRUE(refused([&](Amendments& list) { list.laws[0].kinds[0].noise_intensity = noise; }))
+        << noise;
+  EXPECT_TRUE(refused([](Amendments& list) { list.laws[0].kinds[0].noise_ceiling += 1; }))
+      << "it has no effect";
+  EXPECT_TRUE(refused([](Amendments& list) { list.laws[0].kinds.emplace_back(); }));
+  EXPECT_TRUE(refused([](Amendments& list) { list.laws[0].kinds.clear(); }));
+  EXPECT_TRUE(refused([](Amendments& list) { list.laws[0].number = 1; }));
+  EXPECT_TRUE(refused([](Amendments& list) { list.laws.push_back(list.laws[0]); }));
+  EXPECT_TRUE(refused([](Amendments& list) { list.recent[0].by = "a\nb"; }));
+  EXPECT_TRUE(refused([](Amendments& list) { list.recent[0].by = "J\xc3\xb6rg"; }));
+  EXPECT_TRUE(refused([](Amendments& list) { list.recent[0].by.assign(33, 'a'); }));
+  EXPECT_FALSE(refused([](Amendments& list) { list.recent[0].by.assign(32, '~'); }));
+}
+
+TEST(Amendments, ALawOfAnAmendIsWhole) {
+  const Mission mission = small_mission(1);
+  const LawChange law = slower(mission.law.u_max_mps / 2);
+  const auto bytes = encode_law(law);
+  EXPECT_EQ(decode_law(bytes, mission), law);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(decode_law(std::span(bytes).first(size), mission)) << size;
+  EXPECT_FALSE(decode_law(encode_law(slower(2 * mission.law.u_max_mps)), mission));
+}
+
+TEST(Amendments, ALawIsNamedByWhatDiffersFromThePlan) {
+  const Mission mission = small_mission(1);
+  EXPECT_EQ(law_text(plans_law(mission), mission), "as planned");
+  LawChange law = slower(0.25 * mission.law.u_max_mps, 0.125);
+  law.kinds[0].u_max_mps = 0.25;
+  EXPECT_EQ(law_text(law, mission), "u_max_mps 0.25, noise_intensity 0.125");
+}
+
+TEST(OperatorName, IsCutAndPrintable) {
+  EXPECT_EQ(operator_name_of("anna@base"), "anna@base");
+  EXPECT_EQ(operator_name_of("J\xc3\xb6rg\n"), "J??rg?");
+  EXPECT_EQ(operator_name_of(std::string(50, 'a')), std::string(32, 'a'));
+}
+
+/// The longest list of any mission. It must fit beside the longest plan.
+TEST(AmendmentBytes, OfTheLongestListFitBesideTheLongestPlan) {
+  Amendments list;
+  list.recent.assign(kMaxRecentAmendments, Amendment{});
+  for (Amendment& one : list.recent) one.by.assign(kMaxOperatorNameLength, 'a');
+  list.holds.resize(kMaxHolds);
+  list.ends.resize(kMaxEnds);
+  // In a free domain a target has its numbers twice.
+  const auto most_numbers = std::max(kMaxModes, 2 * kMostFreeModes);
+  list.targets.assign(2, {.target = Coefficients::Zero(most_numbers), .cosine = {}});
+  list.zones.assign(kMaxZones, {.corners_m = Ring(kMaxZoneCorners)});
+  list.laws.assign(kMaxLaws, {.kinds = std::vector<LawNumbers>(kMaxKinds)});
+  constexpr std::size_t kRoom =
+      std::size_t{kMaxMissionParts - kMaxPlanParts} * std::size_t{kMaxPlanBytesPerMessage};
+  EXPECT_LE(encode_amendments(list).size(), kRoom);
 }
 
 }  // namespace

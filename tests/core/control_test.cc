@@ -393,6 +393,30 @@ TEST(Command, PushesTwoOfAPairInOppositeWays) {
   }
 }
 
+TEST(Command, OfAnotherLawIsThatOfAMissionWithItsNumbers) {
+  Mission mission = uneven_mission();
+  mission.law.regularization = Regularization::kRelative;
+  mission.law.epsilon = 0.05;
+  mission.law.perturbation = Perturbation::kAdaptive;
+  mission.law.noise_intensity = 0.5;
+  mission.law.noise_ceiling = 10;
+  Mission other = mission;
+  other.law.u_max_mps /= 4;
+  other.law.noise_intensity = 0.25;
+  other.law.noise_ceiling = 8;
+  const Coefficients coverage = coverage_of(mission, 50);
+  Controller changed(mission), plans(mission), others(other);
+  const LawNumbers before{mission.law.u_max_mps, 0.5, 10}, then{other.law.u_max_mps, 0.25, 8};
+  for (Tick tick = 0; tick < 90; tick += 10) {
+    const bool is_changed = tick >= 30 && tick < 60;
+    changed.set_law(is_changed ? then : before);
+    const auto command = [&](Controller& controller) {
+      return command_at(controller, mission, {100, 600, 0}, coverage, 1, tick);
+    };
+    EXPECT_EQ(command(changed), command(is_changed ? others : plans)) << tick;
+  }
+}
+
 TEST(Command, PullsTowardsTheCentreOfContraction) {
   Mission mission = uneven_mission();
   mission.law.contraction_gain_per_s = 0.5;

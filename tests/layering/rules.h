@@ -230,7 +230,7 @@ inline const std::vector<Kind> kKinds = {
                "sys/*",      "netinet/*", "arpa/*",       "net/*",
                "linux/*",    "dirent.h",  "fcntl.h",      "ifaddrs.h",
                "netdb.h",    "poll.h",    "pthread.h",    "signal.h",
-               "spawn.h",    "time.h",    "unistd.h"}},
+               "spawn.h",    "time.h",    "unistd.h",     "pwd.h"}},
 };
 
 // The time or a random device needs no special #include: <chrono> is allowed everywhere.

@@ -149,6 +149,7 @@ inline Amend amend() {
           .part = 1,
           .parts = 4,
           .content = {},
+          .by = "anna@base",
           .signature = a_signature()};
   for (int i = 0; i < 400; ++i) m.content.push_back(static_cast<std::byte>(i * 5));
   return m;

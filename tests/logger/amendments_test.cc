@@ -291,5 +291,41 @@ TEST_F(AmendmentsFile, AMissingTargetIsNamed) {
   EXPECT_TRUE(missing_target(own.path(), summary, late));
 }
 
+TEST_F(AmendmentsFile, KeepsLawsAndOperators) {
+  ReceivedAmendments heard;
+  Amendments list;
+  LawChange law = plans_law(small_mission(2));
+  for (int i = 1; i <= 4; ++i) {
+    law.kinds[0].u_max_mps = small_mission(2).law.u_max_mps / i;
+    name_law(list, 10 * i, law);
+    list.recent.back().by = "operator " + std::to_string(i);
+    heard.note(list);
+  }
+  EXPECT_EQ(voids_of(heard), std::vector<bool>(4, false));
+  EXPECT_EQ(heard.list().laws.size(), 4U);
+  EXPECT_EQ(heard.unknown_content(), nullptr);
+  write(amendments_text(heard, 0.1));
+  const auto read_again = read();
+  ASSERT_TRUE(read_again) << read_again.error();
+  EXPECT_EQ(read_again->all(), heard.all());
+  EXPECT_EQ(read_again->all()[1].amendment.by, "operator 2");
+  EXPECT_FALSE(amendments_json(heard, 0.1)[0].contains("law"));
+  const std::string text = amendments_text(heard, 0.1);
+  const auto damaged = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    const std::size_t at = changed.find(from);
+    EXPECT_NE(at, changed.npos) << from;
+    if (at != changed.npos) changed.replace(at, from.size(), to);
+    write(changed);
+    return !read();
+  };
+  EXPECT_TRUE(damaged("\"u_max_mps\":", "\"u_max_mps\":-")) << "it is none";
+  EXPECT_TRUE(damaged("\"noise_intensity\":0.0", "\"noise_intensity\":0.1")) << "another hash";
+  EXPECT_TRUE(damaged("\"noise_ceiling\"", "\"ceiling\""));
+  EXPECT_TRUE(damaged("operator 1", "operator\\n1"));
+  EXPECT_TRUE(damaged("\"operator 1\"", "7"));
+  EXPECT_FALSE(damaged(",\"by\":\"operator 1\"", "")) << "older records name nobody";
+}
+
 }  // namespace
 }  // namespace ergocast

@@ -187,9 +187,22 @@ TEST_F(AmendedMissionInABrowser, DrawsAZoneWhileItIsClosed) {
   EXPECT_EQ(seen[3][0], seen[0][0]) << "it has ended";
   for (const auto& one : seen) EXPECT_EQ(one[1], seen[0][1]) << "beside it";
   EXPECT_EQ(js("return [...document.querySelectorAll('#strip button')].map(mark => mark.title)"),
-            nlohmann::json::parse(R"(["amendment 0: zone at 30.0 s"])"));
+            nlohmann::json::parse(R"(["amendment 0: zone at 30.0 s, by simulate"])"));
   js("ergocast.draw(40)");
   screenshot("zone");
+  expect_no_errors();
+}
+
+TEST_F(AmendedMissionInABrowser, MarksAnotherLawAndNamesItsOperator) {
+  open_report({"--duration", "60", "--law", "30:u_max_mps=5"});
+  EXPECT_EQ(js("return [...document.querySelectorAll('#strip button')].map(mark => mark.title)"),
+            nlohmann::json::parse(
+                R"(["amendment 0: another law (u_max_mps 5) at 30.0 s, by simulate"])"));
+  browser_->press("i");
+  EXPECT_NE(js("return document.getElementById('detailsText').innerText")
+                .get<std::string>()
+                .find("0\tlaw\t300\t30\tu_max_mps 5\tsimulate"),
+            std::string::npos);
   expect_no_errors();
 }
 

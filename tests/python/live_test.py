@@ -187,6 +187,23 @@ class AMissionThatEnds(unittest.TestCase):
             amendment = ergocast.connect().amend(EAST)
         self.assertEqual(amendment, ergocast.Amendment(3, 517, 51.7, "5f0c"))
 
+    def test_a_law_is_asked_for_by_its_fields(self):
+        printed = subprocess.CompletedProcess(
+            [], 0, "amendment 4, law 5f0c (u_max_mps 8), holds since tick 517, t = 51.7 s, by anna@base\n", "")
+        with mock.patch.object(ergocast.LiveRun, "_run", return_value=printed) as run:
+            amendment = ergocast.connect().amend_law(u_max_mps=8, noise_intensity=0.5, kind="scout", at=60)
+        self.assertEqual(amendment, ergocast.Amendment(4, 517, 51.7, "5f0c"))
+        self.assertEqual(run.call_args.args, (
+            "amend", "--law", "scout.u_max_mps=8.0", "--law", "scout.noise_intensity=0.5", "--at", "+60.0s"))
+        planned = subprocess.CompletedProcess(
+            [], 0, "no problems: law 5f0c, u_max_mps 8\nnow the law is as planned\n"
+            "it would be amendment 4, at the earliest from tick 9, t = 0.9 s on\nnothing was sent\n", "")
+        with mock.patch.object(ergocast.LiveRun, "_run", return_value=planned):
+            self.assertEqual(ergocast.connect().amend_law(u_max_mps=8, dry_run=True),
+                             ergocast.Amendment(4, 9, 0.9, "5f0c"))
+        with self.assertRaisesRegex(ergocast.ScenarioError, "name u_max_mps"):
+            ergocast.connect().amend_law()
+
 
 if __name__ == "__main__":
     own_host.enter()

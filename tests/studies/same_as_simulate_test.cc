@@ -232,5 +232,22 @@ TEST(SameAsSimulate, WithATargetThatIsKnownBeforeItHolds) {
   EXPECT_EQ(distance_m(simulated_places(mission, list), simulated_places(mission, {})), 0);
 }
 
+TEST(SameAsSimulate, WithLawsThatChange) {
+  const Case one{"perturbation: ADAPTIVE", "broadcast_period_ticks: 1",
+                 "kind { name: \"wide\" count: 2 u_max_mps: 10 } kind { name: \"fine\" count: 3 }"};
+  const Mission mission = mission_of(one, 200);
+  Amendments list;
+  double share = 1;
+  for (const Tick from : kChanges) {
+    LawChange law = plans_law(mission);
+    share /= 2;
+    for (LawNumbers& numbers : law.kinds) numbers.u_max_mps *= share;
+    name_law(list, from, law);
+  }
+  const Places ideal = ideal_places(mission, list);
+  EXPECT_EQ(distance_m(simulated_places(mission, list), ideal), 0);
+  EXPECT_GT(distance_m(ideal, ideal_places(mission, {})), 1) << "the changes matter";
+}
+
 }  // namespace
 }  // namespace ergocast::test

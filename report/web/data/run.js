@@ -109,13 +109,15 @@ export class Run {
   get knowsTargets() {
     return (this.amendments[0]?.number ?? 0) === 0 && this.targets.every(target => target.known);
   }
-  // Incidents, and the new targets, ends and zones that hold by now, ascending.
+  // Incidents, and the new targets, ends, zones and laws that hold by now, ascending.
   get marks() {
     const ends = this.amendments.filter(one => one.kind === 'end'),
+      laws = this.amendments.filter(one => one.kind === 'law'),
       dt = this.mission.dt_s;
     const marks = [
       ...this.targets.slice(1).map(({ from }) => ({ from, kind: 'target', sign: '◎', text: 'new target' })),
       ...ends.map(({ from }) => ({ from, kind: 'end', sign: '⏱', text: 'another end' })),
+      ...laws.map(({ from }) => ({ from, kind: 'law', sign: '⚙', text: 'another law' })),
       ...this.zones.map(({ from, until }) => ({
         from,
         until: until * dt,

@@ -140,10 +140,12 @@ function table(columns, objects) {
 
 const AMENDMENT_COLUMNS = [
   ['amendment', 'number', 'Its number in the mission'],
-  ['kind', 'kind', 'What it changes: a pause, the target, the end, or a zone that is kept free'],
+  ['kind', 'kind', 'What it changes: a pause, the target, the end, a zone that is kept free, or the law'],
   ['from tick', 'from', 'The first tick of the world at which it holds'],
   ['t [s]', 't', 'Mission time at that tick'],
   ['ticks', 'tick_count', 'Another end: how many ticks the mission has by it'],
+  ['law', 'law', 'Another law: which of its numbers differ from the plan'],
+  ['operator', 'by', 'Who asked for it'],
 ];
 const amendmentsOf = run =>
   run.amendments.map(one => ({ ...one, t: +run.counted(one.from * run.mission.dt_s).toFixed(3) }));

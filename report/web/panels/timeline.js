@@ -11,6 +11,7 @@ const COLOUR = {
   paused: 'var(--muted)',
   target: 'var(--accent)',
   zone: 'var(--bad)',
+  law: 'var(--muted)',
 };
 let last = 0;
 
@@ -71,17 +72,24 @@ export function jump(direction) {
   if (t !== undefined) seek(t);
 }
 
-// "amendment 0: " if an amendment of that kind holds from `t` on.
-function numberAt(kind, t) {
-  const { amendments, mission } = S.run,
-    found = amendments.find(one => one.kind === kind && Math.abs(one.from * mission.dt_s - t) < 1e-6);
-  return found ? `amendment ${found.number}: ` : '';
+// The amendment of that kind that holds from `t` on.
+function amendmentAt(kind, t) {
+  const { amendments, mission } = S.run;
+  return amendments.find(one => one.kind === kind && Math.abs(one.from * mission.dt_s - t) < 1e-6);
+}
+
+// "amendment 0: new target at 20.0 s, by anna@base".
+function phrase(amendment, text, t) {
+  const law = amendment?.law ? ` (${amendment.law})` : '',
+    words = `${text}${law} at ${t.toFixed(1)} s`;
+  if (!amendment) return words;
+  return `amendment ${amendment.number}: ${words}${amendment.by ? `, by ${amendment.by}` : ''}`;
 }
 
 function inWords({ kind, text, t, until }) {
-  const words = `${numberAt(kind === 'paused' ? 'pause' : kind, t)}${text} at ${t.toFixed(1)} s`,
-    resumed = kind === 'paused' && until ? numberAt('resume', until) : '';
-  return resumed ? `${words}, ${resumed}resumed at ${until.toFixed(1)} s` : words;
+  const words = phrase(amendmentAt(kind === 'paused' ? 'pause' : kind, t), text, t),
+    resumed = kind === 'paused' && until ? amendmentAt('resume', until) : undefined;
+  return resumed ? `${words}, ${phrase(resumed, 'resumed', until)}` : words;
 }
 
 const narrow = () => innerWidth <= 820;
