@@ -14,7 +14,10 @@ Guidance::Guidance(const Mission& mission, const RosterEntry& self)
       kind_(self.kind),
       active_from_(self.active_from),
       dead_reckons_(looks_ahead(mission) && mission.dead_reckoning),
-      controller_(mission, self.kind),
+      law_(make_law(mission, self.kind)),
+      needs_(law_->needs()),
+      target_(mission.target_coefficients),
+      weights_(sobolev_weights(mission.basis, mission.domain)),
       foreseen_(Coefficients::Zero(mission.basis.mode_count())) {
   if (looks_ahead(mission)) forecast_.emplace(mission, self.author);
 }
@@ -42,8 +45,15 @@ void Guidance::on(const WorldState& world, const RadioRange& radio, const Partic
   }
 }
 
-void Guidance::note_law(const Mission& mission, std::span<const LawChange> laws, Tick tick) {
-  controller_.set_law(law_numbers(mission, kind_, law_at(laws, tick)));
+void Guidance::note_amendments(const Mission& mission, const Amendments& list, Tick tick) {
+  law_->set_law(law_numbers(mission, kind_, law_at(list.laws, tick)));
+  const TargetChange* const change = target_at(list.targets, tick);
+  const std::int32_t number = change != nullptr ? change->number : -1;
+  if (number == newest_target_) return;
+  newest_target_ = number;
+  const Coefficients& planned =
+      mission.basis.free_domain ? mission.cosine_target : mission.target_coefficients;
+  law_->set_target(change != nullptr ? change->in_cosines() : planned);
 }
 
 bool Guidance::has_state_of(Tick tick) const {
@@ -53,6 +63,23 @@ bool Guidance::has_state_of(Tick tick) const {
 Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,
                                      const std::vector<RosterEntry>& roster,
                                      const TargetShift& shift, const AgentStep& step) {
+  if (needs_.team) set_team(roster, step);
+  if (needs_.coverage) foresee(table, roster, shift, step);
+  return law_->wanted_mps({id_, step.counted, step.x_m, *step.basis_at, team_});
+}
+
+void Guidance::set_team(const std::vector<RosterEntry>& roster, const AgentStep& step) {
+  team_.clear();
+  for (const RosterEntry& entry : roster) {
+    if (entry.active_at(step.counted) && !entry.recalled_at(step.roster_revision) &&
+        !entry.forgotten_at(step.counted, step.roster_revision))
+      team_.push_back(entry.author.agent);
+  }
+  std::ranges::sort(team_);
+}
+
+void Guidance::foresee(const CoverageTable& table, const std::vector<RosterEntry>& roster,
+                       const TargetShift& shift, const AgentStep& step) {
   if (forecast_) {
     forecast_->note_shift(shift);
     forecast_->note_revision(step.roster_revision);
@@ -62,14 +89,14 @@ Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,
   }
   const TargetShift::Change* const present = shift.of_coverage(step.counted);
   if (present != nullptr) foreseen_ -= present->by_mode;
-  controller_.set_coverage(foreseen_);
-  return controller_.command(id_, step.counted, step.x_m, *step.basis_at);
+  law_->set_coverage(foreseen_);
 }
 
 double Guidance::metric(const Coefficients& coverage, const TargetShift& shift,
                         Tick counted) const {
   const TargetShift::Change* const present = shift.of_coverage(counted);
-  return controller_.metric(present != nullptr ? coverage - present->by_mode : coverage);
+  if (present == nullptr) return ergodic_metric(coverage, target_, weights_);
+  return ergodic_metric(coverage - present->by_mode, target_, weights_);
 }
 
 }  // namespace ergocast

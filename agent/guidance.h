@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law, as one agent follows it: the coverage that it answers to, and the velocity that it wants
-// there. The coverage is the forecast ĉ_k if the law looks ahead, else the known c_k.
+// there. The coverage is the forecast ĉ_k if the law looks ahead, else the known c_k. A law that
+// needs none gets none.
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "agent/agent_step.h"
 #include "core/base/ids.h"
-#include "core/law/control.h"
 #include "core/law/coverage_table.h"
 #include "core/law/forecast.h"
+#include "core/law/law.h"
 #include "core/law/target_shift.h"
 #include "core/mission/end_schedule.h"
 #include "core/mission/law_change.h"
@@ -40,8 +42,8 @@ class Guidance {
     if (forecast_) forecast_->note_ends(mission, ends, counted);
   }
 
-  /// Takes in the law that holds at a tick of the world.
-  void note_law(const Mission& mission, std::span<const LawChange> laws, Tick tick);
+  /// Takes in the law and the target that hold at a tick of the world.
+  void note_amendments(const Mission& mission, const Amendments& list, Tick tick);
 
   /// Whether a tick that counts can be computed: in lockstep, a command must not depend on the
   /// order in which the parts of the state arrive.
@@ -59,11 +61,19 @@ class Guidance {
   double metric(const Coefficients& coverage, const TargetShift& shift, Tick counted) const;
 
  private:
+  void foresee(const CoverageTable& table, const std::vector<RosterEntry>& roster,
+               const TargetShift& shift, const AgentStep& step);
+  void set_team(const std::vector<RosterEntry>& roster, const AgentStep& step);
+
   AgentId id_;
   int kind_;
   Tick active_from_;
   bool dead_reckons_;
-  Controller controller_;
+  std::unique_ptr<Law> law_;
+  LawNeeds needs_;
+  Coefficients target_, weights_;  // of φ²
+  std::int32_t newest_target_ = -1;
+  std::vector<AgentId> team_;
   std::optional<Forecast> forecast_;
   ArrivedParts parts_;  // of the newest state of the world
   Coefficients foreseen_;

@@ -233,7 +233,7 @@ void MissionRun::answer(Participant& me, Outbox& out) {
     motion_.set_rest(ends_.rest_from(me.mission(), me.id(), step_.counted));
     guidance_.note_ends(me.mission(), ends_, step_.counted);
   }
-  guidance_.note_law(me.mission(), me.follower().amendments().laws, step_.tick);
+  guidance_.note_amendments(me.mission(), me.follower().amendments(), step_.tick);
   Eigen::Vector3d wanted_mps{0, 0, 0};
   if (!step_.held)
     wanted_mps = guidance_.wanted_mps(exchange_.table(), counted_roster(me), shift_, step_);

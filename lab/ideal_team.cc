@@ -31,29 +31,35 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
       coverage_(Coefficients::Zero(mission_.basis.mode_count())),
       earlier_(static_cast<std::size_t>(mission_.basis.mode_count())),
       shift_(in_basis_order(mission_)),
-      sensors_(mission_) {
+      sensors_(mission_),
+      weights_(sobolev_weights(mission_.basis, mission_.domain)) {
   table_.set_half_life(HalfLife(mission_));
-  controllers_.emplace_back(mission_);
-  for (std::size_t kind = 1; kind < mission_.kinds.size(); ++kind)
-    controllers_.emplace_back(mission_, static_cast<int>(kind));
+  for (std::size_t kind = 0; kind < std::max<std::size_t>(1, mission_.kinds.size()); ++kind)
+    laws_.push_back(make_law(mission_, static_cast<int>(kind)));
+  needs_ = laws_.front()->needs();
   for (const Eigen::Vector3d& start_m : mission_.starts_m) {
     const Author author{static_cast<AgentId>(agents_.size()), 1};
     const int kind = planned_kind(mission_, author.agent);
     table_.add_row(author);
     table_.set_quality(author, sensors_.of(kind).quality);
     const Motion motion = motion_of(mission_, author.agent);
-    agents_.push_back({author,
-                       kind,
-                       motion,
-                       filters_commands(mission_, author.agent),
-                       start_m,
-                       first_velocity(motion, start_m),
-                       {0, 0, 0},
-                       {0, 0, 0},
-                       std::nullopt,
-                       earlier_,
-                       earlier_,
-                       earlier_});
+    // Laws that answer to coverage alone are shared.
+    if (!needs_.coverage) laws_.push_back(make_law(mission_, kind));
+    team_.push_back(author.agent);
+    agents_.push_back(
+        {author,
+         kind,
+         needs_.coverage ? laws_[static_cast<std::size_t>(kind)].get() : laws_.back().get(),
+         motion,
+         filters_commands(mission_, author.agent),
+         start_m,
+         first_velocity(motion, start_m),
+         {0, 0, 0},
+         {0, 0, 0},
+         std::nullopt,
+         earlier_,
+         earlier_,
+         earlier_});
     if (follows_walls(mission_)) agents_.back().follower.emplace(mission_, author.agent);
   }
   if (any_filtered(mission_)) separation_.emplace(mission_, 0);
@@ -63,7 +69,8 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
 bool IdealTeam::stands_for(const Mission& mission) {
   const Timing& timing = mission.timing;
   const bool all_is_sent = longest_period_ticks(timing) == 1;
-  const bool all_is_known = looks_ahead(mission) && mission.dead_reckoning;
+  const bool all_is_known =
+      !make_law(mission)->needs().coverage || (looks_ahead(mission) && mission.dead_reckoning);
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
          (all_is_sent || all_is_known) && !any_station(mission);
@@ -71,41 +78,46 @@ bool IdealTeam::stands_for(const Mission& mission) {
 
 void IdealTeam::note(const Amendments& list) {
   shift_.note(list);
-  laws_ = list.laws;
+  law_changes_ = list.laws;
+  targets_ = list.targets;
   if (shift_.any_of_samples()) table_.allow_shifts();
 }
 
-/// Gives each controller the law that holds at this tick.
-void IdealTeam::use_laws() {
-  if (laws_.empty()) return;
-  const LawChange* const law = law_at(laws_, tick_);
-  for (std::size_t kind = 0; kind < controllers_.size(); ++kind)
-    controllers_[kind].set_law(law_numbers(mission_, static_cast<int>(kind), law));
+/// Gives each law the numbers and the target that hold at this tick.
+void IdealTeam::use_amendments() {
+  if (!law_changes_.empty()) {
+    const LawChange* const change = law_at(law_changes_, tick_);
+    for (const Agent& agent : agents_)
+      agent.law->set_law(law_numbers(mission_, agent.kind, change));
+  }
+  const TargetChange* const target = target_at(targets_, tick_);
+  if (target == nullptr || target->number == newest_target_) return;
+  newest_target_ = target->number;
+  for (const Agent& agent : agents_) agent.law->set_target(target->in_cosines());
 }
 
 void IdealTeam::step() {
   sample();
-  use_laws();
+  use_amendments();
   if (look_ahead_.any()) {
     look_ahead();
-  } else {
+  } else if (needs_.coverage) {
     table_.average(coverage_);
     compare_with_present();
-    for (Controller& controller : controllers_) controller.set_coverage(coverage_);
+    for (const auto& law : laws_) law->set_coverage(coverage_);
   }
   see_bodies();
   for (Agent& agent : agents_) {
-    Controller& controller = controllers_[static_cast<std::size_t>(agent.kind)];
     if (look_ahead_.any()) {
       foresee(agent);
       correct();
       compare_with_present();
-      controller.set_coverage(coverage_);
+      agent.law->set_coverage(coverage_);
     }
     const Eigen::Vector3d wanted_mps =
-        controller.command(agent.author.agent, tick_, agent.x_m, *agent.at);
+        agent.law->wanted_mps({agent.author.agent, tick_, agent.x_m, *agent.at, team_});
     agent.next_mps = executed(agent.motion, agent.v_mps, kept_apart(agent, wanted_mps));
-    agent.b = controller.spectral_gradient();
+    agent.b = agent.law->spectral_gradient();
   }
   for (Agent& agent : agents_) {
     const Eigen::Vector3d mean_mps = mean_velocity(agent.motion, agent.v_mps, agent.next_mps);

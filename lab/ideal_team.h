@@ -7,11 +7,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "core/law/control.h"
 #include "core/law/coverage_table.h"
+#include "core/law/law.h"
 #include "core/law/look_ahead.h"
 #include "core/law/target_shift.h"
 #include "core/mission/amendments.h"
@@ -64,7 +65,9 @@ class IdealTeam {
   /// c_k of the last step, and its φ². With amendments each moment counts against the target of its
   /// own time (core/law/target_shift.h).
   Coefficients coverage() const;
-  double metric() const { return controllers_.front().metric(coverage()); }
+  double metric() const {
+    return ergodic_metric(coverage(), mission_.target_coefficients, weights_);
+  }
   /// Steps of single agents that a teammate or an edge has blocked, and the longest run of such
   /// steps of one agent.
   std::int64_t blocked_steps() const { return blocked_steps_; }
@@ -74,6 +77,7 @@ class IdealTeam {
   struct Agent {
     Author author;
     int kind = 0;
+    Law* law;  // of laws_
     Motion motion;
     bool filtered = false;  // whether its commands pass the filter
     Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
@@ -92,7 +96,7 @@ class IdealTeam {
   void correct();
   void compare_with_present();
   double quality(const Agent& agent) const { return sensors_.of(agent.kind).quality; }
-  void use_laws();
+  void use_amendments();
   void see_bodies();
   Eigen::Vector3d kept_apart(Agent& agent, const Eigen::Vector3d& v_mps);
 
@@ -107,9 +111,15 @@ class IdealTeam {
   double weight_s_ = 0, share_ = 0, per_second_ = 0;  // of gains, share of gains, and factor of all
   double unshifted_s_ = 0;                            // of the forecast gains
   TargetShift shift_;
-  std::vector<LawChange> laws_;
+  std::vector<LawChange> law_changes_;
+  std::vector<TargetChange> targets_;
+  std::int32_t newest_target_ = -1;
   Sensors sensors_;
-  std::vector<Controller> controllers_;  // by kind
+  Coefficients weights_;  // of φ²
+  /// One for each kind, or one for each agent if the law has a memory of its own.
+  std::vector<std::unique_ptr<Law>> laws_;
+  LawNeeds needs_;
+  std::vector<AgentId> team_;
   std::vector<Agent> agents_;
   std::optional<SeparationFilter> separation_;
   std::vector<Neighbour> bodies_;

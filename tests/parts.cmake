@@ -28,6 +28,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/look_ahead_test.cc
     core/measure_test.cc
     core/merge_property_test.cc
+    core/mower_test.cc
     core/noise_test.cc
     core/perturbation_test.cc
     core/potential_test.cc

@@ -7,6 +7,7 @@
 
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
+#include "core/law/law.h"
 #include "core/law/perturbation.h"
 #include "core/mission/law_change.h"
 #include "core/mission/mission.h"
@@ -20,17 +21,17 @@ Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double ep
 
 /// Computes one agent's command from the team's coverage. Holds the mission's constant tables and a
 /// K-vector of scratch space; no step allocates.
-class Controller {
+class Controller final : public Law {
  public:
   /// @param kind  of the agents that it steers, core/mission/kinds.h
   explicit Controller(const Mission& mission, int kind = 0);
 
   /// Takes in the known or forecast c_k of the team, mode_count() entries. All later commands use
   /// it.
-  void set_coverage(const Coefficients& coverage);
+  void set_coverage(const Coefficients& coverage) override;
 
   /// From now on the law has these numbers.
-  void set_law(const LawNumbers& numbers);
+  void set_law(const LawNumbers& numbers) override;
 
   /// The velocity command of (10) at position `x_m`:
   ///   v = u − k (x − centre) + perturbation,  a function of (seed, agent, tick) and the field.
@@ -38,8 +39,11 @@ class Controller {
   /// @param at  the basis at `x_m`
   Eigen::Vector3d command(AgentId agent, Tick tick, const Eigen::Vector3d& x_m, const BasisAt& at);
 
+  Eigen::Vector3d wanted_mps(const LawInput& input) override {
+    return command(input.agent, input.tick, input.x_m, input.at);
+  }
   /// B of (6) for the last command() [1/m].
-  const Eigen::Vector3d& spectral_gradient() const { return spectral_gradient_; }
+  Eigen::Vector3d spectral_gradient() const override { return spectral_gradient_; }
   /// The ε that belongs to the last coverage seen.
   double epsilon() const { return epsilon_; }
 

@@ -84,8 +84,9 @@ LookAhead::LookAhead(const Mission& mission)
 
 LookAhead::LookAhead(const Mission& mission, const Eigen::Matrix3d& covariance_m2)
     : dt_s_(mission.timing.dt_s),
-      alone_s_(mission.law.anticipation * target_spread_m(covariance_m2) *
-               std::sqrt(shared_dimensions(covariance_m2) / 2) / mission.law.u_max_mps),
+      alone_s_((looks_ahead(mission) ? mission.law.anticipation : 0) *
+               target_spread_m(covariance_m2) * std::sqrt(shared_dimensions(covariance_m2) / 2) /
+               mission.law.u_max_mps),
       cross_s_(target_spread_m(covariance_m2) / mission.law.u_max_mps),
       most_s_(std::numeric_limits<double>::infinity()),
       inverse_dimensions_(1 / shared_dimensions(covariance_m2)),

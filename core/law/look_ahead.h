@@ -11,7 +11,9 @@
 namespace ergocast {
 
 /// Whether agents of a mission forecast the team's coverage.
-inline bool looks_ahead(const Mission& mission) { return mission.law.anticipation > 0; }
+inline bool looks_ahead(const Mission& mission) {
+  return mission.law.kind == LawKind::kCover && mission.law.anticipation > 0;
+}
 
 /// The covariance of the target's mass [m²], from μ alone. With L the domain's size along an axis,
 /// μ_m the coefficients along it, and a_m = 4 / (π² m²):

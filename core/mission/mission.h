@@ -30,8 +30,14 @@ enum class TargetHistory {
   kKeep,    ///< all moments count against the present target
 };
 
+enum class LawKind {
+  kCover,  ///< the input (8), core/law/control.h
+  kMow,    ///< lanes over equal shares of the target, core/law/mower.h
+};
+
 /// The input (8) and the dynamics (10): dx = u dt − k (x − centre) dt + σ dW.
 struct ControlLaw {
+  LawKind kind = LawKind::kCover;
   double u_max_mps = 1;
   Regularization regularization = Regularization::kAbsolute;
   double epsilon = 0;  ///< 0 is the classical law (5), u = 0 where B = 0

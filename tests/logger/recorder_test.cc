@@ -293,11 +293,11 @@ TEST(Metrics, CountWhatTheNewestStatusOfEachAgentReports) {
   record.deliver(state_of(1));
   const auto rows = record.metrics_rows();
   ASSERT_EQ(rows.size(), 1u);
-  EXPECT_EQ(number(rows[0], 3), 0.25) << "max − min of φ² as the agents see it";
-  EXPECT_EQ(number(rows[0], 4), 2.5) << "the worst-informed agent's";
-  EXPECT_EQ(columns(rows[0])[5], "600");
-  EXPECT_EQ(columns(rows[0])[6], "12");
-  EXPECT_EQ(number(rows[0], 7), 0.5) << "one of two ticks";
+  EXPECT_EQ(number(rows[0], 4), 0.25) << "max − min of φ² as the agents see it";
+  EXPECT_EQ(number(rows[0], 5), 2.5) << "the worst-informed agent's";
+  EXPECT_EQ(columns(rows[0])[6], "600");
+  EXPECT_EQ(columns(rows[0])[7], "12");
+  EXPECT_EQ(number(rows[0], 8), 0.5) << "one of two ticks";
 }
 
 TEST(Metrics, AnAgentThatHasLeftCountsInTheTotalsButNotInTheSpread) {
@@ -318,9 +318,9 @@ TEST(Metrics, AnAgentThatHasLeftCountsInTheTotalsButNotInTheSpread) {
   record.deliver(state_of(1));
   const auto rows = record.metrics_rows();
   ASSERT_EQ(rows.size(), 1u);
-  EXPECT_EQ(number(rows[0], 3), 0);
   EXPECT_EQ(number(rows[0], 4), 0);
-  EXPECT_EQ(columns(rows[0])[5], "17");
+  EXPECT_EQ(number(rows[0], 5), 0);
+  EXPECT_EQ(columns(rows[0])[6], "17");
 }
 
 TEST(Metrics, ShowWhatTheWorldMissedAndSkipped) {

@@ -51,7 +51,7 @@ std::vector<std::string> observed(const std::vector<std::string>& metrics_rows) 
   std::vector<std::string> rows;
   for (const std::string& row : metrics_rows) {
     const auto fields = columns(row);
-    rows.push_back(fields[0] + ',' + fields[1] + ',' + fields[2]);
+    rows.push_back(fields[0] + ',' + fields[1] + ',' + fields[2] + ',' + fields[3]);
   }
   return rows;
 }
@@ -161,8 +161,8 @@ TEST_F(Resume, CountsOfMessagesDoNotFallBack) {
   Record resumed(small_mission(1), past(former.trajectory.str(), former.metrics.str()));
   for (Tick tick = 5; tick <= 15; ++tick) resumed.deliver(state_of(tick));
   ASSERT_EQ(resumed.metrics_rows().size(), 1u);
-  EXPECT_EQ(columns(resumed.metrics_rows()[0])[5], "700");
-  EXPECT_EQ(columns(resumed.metrics_rows()[0])[6], "7");
+  EXPECT_EQ(columns(resumed.metrics_rows()[0])[6], "700");
+  EXPECT_EQ(columns(resumed.metrics_rows()[0])[7], "7");
 }
 
 TEST_F(Resume, WhatIsAcknowledgedIsInTheFile) {

@@ -30,6 +30,7 @@ Mission hand_made() {
   mission.timing.dt_s = 1;
   mission.timing.tick_count = 11;
   mission.law.contraction_center_m = {50, 100, 0};
+  mission.target_coefficients = Coefficients::Ones(1);
   mission.starts_m = {{50, 30, 0}, {31, 17, 0}};
   return mission;
 }

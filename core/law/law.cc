@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one place that knows all laws.
+#include "core/law/law.h"
+
+#include "core/law/control.h"
+#include "core/law/mower.h"
+
+namespace ergocast {
+
+std::unique_ptr<Law> make_law(const Mission& mission, int kind) {
+  switch (mission.law.kind) {
+    case LawKind::kMow:
+      return std::make_unique<Mower>(mission, kind);
+    case LawKind::kCover:
+      break;
+  }
+  return std::make_unique<Controller>(mission, kind);
+}
+
+}  // namespace ergocast

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What every law is: it turns what an agent knows into the velocity that the agent wants.
+//
+// Limits of vehicles, distances, walls, zones, pauses, stations and recalls stay outside:
+// agent/safe_motion.h makes a safe command of that velocity. A law is the same object in an agent's
+// process, in a simulation and in a study. Equal inputs in equal order must give equal bits.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+
+#include "core/base/ids.h"
+#include "core/basis/basis.h"
+#include "core/mission/law_change.h"
+#include "core/mission/mission.h"
+
+namespace ergocast {
+
+/// What a law reads; nobody computes the rest.
+struct LawNeeds {
+  bool coverage = true;  ///< set_coverage() before each command
+  bool team = false;     ///< LawInput::team
+};
+
+/// An agent at a tick that counts.
+struct LawInput {
+  AgentId agent;
+  Tick tick;
+  const Eigen::Vector3d& x_m;     ///< its place
+  const BasisAt& at;              ///< the basis there
+  std::span<const AgentId> team;  ///< all agents whose coverage counts and that move, ascending
+};
+
+class Law {
+ public:
+  virtual ~Law() = default;
+
+  virtual LawNeeds needs() const { return {}; }
+  /// Takes in the coverage that the next commands answer to: known, or as forecast if the law looks
+  /// ahead. mode_count() entries.
+  virtual void set_coverage(const Coefficients&) {}
+  /// From now on the team covers `target`: μ in the basis (2), in any mission. A law that answers
+  /// to the coverage needs no target: c_k is shifted (core/law/target_shift.h).
+  virtual void set_target(const Coefficients& /*target*/) {}
+  /// From now on the law has these numbers.
+  virtual void set_law(const LawNumbers& numbers) = 0;
+
+  /// The velocity that the agent wants [m/s], at most u_max but for noise and contraction. In a
+  /// plane v_z is 0. Does not allocate while team and target stay the same.
+  virtual Eigen::Vector3d wanted_mps(const LawInput& input) = 0;
+  /// B of (6) for the last wanted_mps() [1/m]; 0 for a law without.
+  virtual Eigen::Vector3d spectral_gradient() const { return {0, 0, 0}; }
+};
+
+/// The law of an agent of `kind` (core/mission/kinds.h): that of ControlLaw::kind.
+std::unique_ptr<Law> make_law(const Mission& mission, int kind = 0);
+
+}  // namespace ergocast
