@@ -49,8 +49,9 @@ Control::Control(const BusOptions& team, std::pair<ControlLink, ControlLink> lin
       print_(std::move(print)),
       token_(random_token()),
       team_(team.run, now()),
-      desk_(host_name(), team.authenticator.keyed(), [team](const DrawnTarget& target) {
-        return std::make_unique<AmendProcess>(team, target);
+      desk_(host_name(), team.authenticator.keyed(), [team](const ControlRequest& request) {
+        return request.zone ? std::make_unique<AmendProcess>(team, *request.zone)
+                            : std::make_unique<AmendProcess>(team, *request.target);
       }) {}
 
 void Control::attend(Instant now) {
