@@ -46,7 +46,7 @@ TEST_F(DrawnZoneInABrowser, IsChangedSentAndLeft) {
   EXPECT_NEAR(corner_m, 1800, 1.5 * pixel_m);
   const auto right = static_cast<int>(std::lround(800 / pixel_m));
   browser_->drag("#drawn", 20, 10, right, right);  // the south-eastern corner
-  EXPECT_NEAR(drawn(".parts[0].corners[1][0]"), corner_m + 20 * pixel_m, 1e-6);
+  EXPECT_NEAR(drawn(".parts[0].corners[1][0]"), corner_m + 20 * pixel_m, 1.5 * pixel_m);
   EXPECT_EQ(drawn(".parts.length"), 1);
   EXPECT_TRUE(becomes("drawnText", "^[1-4] of 4 agents (is|are) inside now\\.$"))
       << text("drawnText");

@@ -70,11 +70,13 @@ function toNearestEdge(ring, size, [x, y]) {
 }
 
 // The agents that are inside at a row, the one with the longest way out first: {id, metres}. A vehicle goes
-// at least as far; walls, other zones and its own size make its way longer.
+// at least as far; walls, other zones and its own size make its way longer. An agent that keeps to an edge may
+// seem to be inside, because the page's places are rounded: it does not count.
 export function insideAt(run, row, corners, heights) {
   const found = [],
     { size_m: size } = run.mission,
-    whole = run.inBox ? size[2] : 0;
+    whole = run.inBox ? size[2] : 0,
+    rounding = Math.max(...run.steps);
   for (const track of run.tracks) {
     const at = track.rowAt(row);
     if (at < 0 || !track.isMember(row)) continue;
@@ -88,7 +90,7 @@ export function insideAt(run, row, corners, heights) {
       if (low > 0) metres = Math.min(metres, z - low);
       if (high < whole) metres = Math.min(metres, high - z);
     }
-    found.push({ id: track.id, metres });
+    if (metres > rounding) found.push({ id: track.id, metres });
   }
   return found.sort((a, b) => b.metres - a.metres);
 }
