@@ -5,6 +5,7 @@ import { picture, planeOf } from './cosine_sums.js';
 
 const CELLS = 96, // along the longer side
   BOX_CELLS = 40, // the same in a box
+  FINE = 4, // places along each side of such a cell
   COMPARED = 24; // layers of a box in which two targets are compared
 export const MOST_PARTS = 16; // peaks and polygons
 export const MOST_BYTES = 3500; // of a request's target
@@ -28,14 +29,27 @@ function areaOf(ring) {
   return Math.abs(sum) / 2;
 }
 
-// The density of one part, which has mass 1: as seen from above, and the factor at a height.
-function densityOf({ kind, at, z: middle, spread, corners, heights }) {
+// Which share of a cell is inside a ring, by `fine` × `fine` of its places.
+function shareInside(ring, [x, y], [dx, dy], fine) {
+  let count = 0;
+  for (let i = 0; i < fine; i++)
+    for (let j = 0; j < fine; j++)
+      if (inside([ring], x + ((i + 0.5) / fine - 0.5) * dx, y + ((j + 0.5) / fine - 0.5) * dy)) count++;
+  return count / fine ** 2;
+}
+
+// The density of one part, which has mass 1, in a cell of that size: as seen from above, and the factor at a
+// height.
+function densityOf({ kind, at, z: middle, spread, corners, heights }, cell) {
   if (kind === 'polygon') {
     const level = 1 / Math.max(areaOf(corners), 1e-9),
       [low, high] = heights ?? [0, 0];
     return {
-      above: (x, y) => (inside([corners], x, y) ? level : 0),
-      up: z => (z >= low && z <= high ? 1 / Math.max(high - low, 1e-9) : 0),
+      above: (x, y) => level * shareInside(corners, [x, y], cell, cell[2] ? FINE : 1),
+      up: z => {
+        const common = Math.min(z + cell[2] / 2, high) - Math.max(z - cell[2] / 2, low);
+        return Math.max(0, common) / cell[2] / Math.max(high - low, 1e-9);
+      },
     };
   }
   const level = 1 / (2 * Math.PI * spread ** 2);
@@ -56,8 +70,9 @@ export function isSound({ kind, z, heights }) {
 export function gridOf(parts, uniform, [lx, ly, lz], walls = []) {
   const scale = (lz ? BOX_CELLS : CELLS) / Math.max(lx, ly, lz ?? 0),
     [width, height] = [lx, ly].map(l => Math.max(8, Math.round(l * scale))),
-    depth = lz ? Math.max(8, Math.round(lz * scale)) : 1,
-    densities = parts.map(densityOf),
+    depth = lz ? Math.max(12, Math.round(lz * scale)) : 1,
+    cell = [lx / width, ly / height, lz ? lz / depth : 0],
+    densities = parts.map(part => densityOf(part, cell)),
     level = (parts.length * uniform) / (1 - uniform) / (lx * ly * (lz ?? 1)),
     factors = densities.map(({ up }) =>
       Float64Array.from({ length: depth }, (_, l) => (lz ? up(((l + 0.5) / depth) * lz) : 1)),
