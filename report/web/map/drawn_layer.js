@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paints a target or a zone that is drawn on the map, and handles to change it. A target's density covers the
-// present one.
+// Paints a target or a zone that is drawn on the map, and handles to change it.
 const HANDLE = 5; // pixels
 
 // The density as a picture in the accent's colour; what is little is transparent.
