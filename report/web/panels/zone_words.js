@@ -11,8 +11,8 @@ const capital = text => text[0].toUpperCase() + text.slice(1);
 
 function wordsOf({ number, leaving, left, count }) {
   if (leaving) return `Zone ${number} is closed: agents leave it within ${left}.`;
-  const who = count ? `Agents inside: ${count}.` : 'No agent is inside.';
-  return `Zone ${number} stays closed for ${left}. ${who}`;
+  const inside = count ? `Agents inside: ${count}.` : 'No agent is inside.';
+  return `Zone ${number} stays closed for ${left}. ${inside}`;
 }
 
 function announce(now) {
