@@ -142,6 +142,7 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     page/page_test.cc
     page/space_test.cc
     page/words_test.cc
+    page/zone_test.cc
     support/browser.cc
     support/http.cc
     support/tls.cc

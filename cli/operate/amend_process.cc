@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hands target and key as files in memory, and reads what the process prints from another one.
+// Hands drawing and key as files in memory, and reads what the process prints from another one.
 #include "cli/operate/amend_process.h"
 
 #include <poll.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <iterator>
 #include <span>
 #include <sstream>
+#include <utility>
 
 #include "runtime/process/key_file.h"
 
@@ -20,8 +23,8 @@ using State = OrderReport::State;
 
 /// The most that is read of the output.
 constexpr std::size_t kMostOutput = 2000;
-/// The target is the first descriptor that the process gets.
-constexpr const char* kTargetName = "/proc/self/fd/3";
+/// The drawing is the first descriptor that the process gets.
+constexpr const char* kDrawingName = "/proc/self/fd/3";
 
 Result<SealedFile> sealed(const std::string& name, const std::string& text) {
   return SealedFile::make(name, std::as_bytes(std::span(text)));
@@ -39,13 +42,13 @@ void drop_place(std::string& line) {
 
 }  // namespace
 
-std::string amend_answer(std::string printed, const std::string& target_name) {
+std::string amend_answer(std::string printed, const std::string& file_name) {
   std::istringstream lines(printed);
   std::string answer;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("warning: ")) continue;
-    if (line.starts_with(target_name + ':')) {
-      line.erase(0, target_name.size() + 1);
+    if (line.starts_with(file_name + ':')) {
+      line.erase(0, file_name.size() + 1);
       drop_place(line);
     }
     // The last line of an order that is obeyed says all that the earlier ones have said.
@@ -55,30 +58,34 @@ std::string amend_answer(std::string printed, const std::string& target_name) {
   return answer;
 }
 
-AmendProcess::AmendProcess(const BusOptions& team, const DrawnTarget& target,
-                           const std::string& by) {
-  start(team, target, by);
-  running_ = child_.has_value();
+AmendProcess::AmendProcess(const BusOptions& team, const DrawnTarget& target, const std::string& by)
+    : checked_("the target is checked") {
+  start(team, target.text(), {"--target", kDrawingName, "--by=" + by});
 }
 
-void AmendProcess::start(const BusOptions& team, const DrawnTarget& target, const std::string& by) {
+AmendProcess::AmendProcess(const BusOptions& team, const DrawnZone& zone, const std::string& by)
+    : checked_("the zone is checked") {
+  start(team, zone.text(), {"--zone", kDrawingName, "--for", zone.duration(), "--by=" + by});
+}
+
+void AmendProcess::start(const BusOptions& team, const std::string& text,
+                         std::vector<std::string> what) {
   problem_ = "the system cannot create a process: order it again";
-  auto text = sealed("drawn-target", target.text());
+  auto drawing = sealed("drawn", text);
   const int output = memfd_create("amend-output", MFD_CLOEXEC);
   if (output >= 0) output_.emplace(output);
-  if (!text || !output_) return;
-  target_ = *std::move(text);
+  if (!drawing || !output_) return;
+  drawing_ = *std::move(drawing);
   Child::Program program;
   program.signal_if_orphaned = SIGKILL;
+  program.hand(drawing_->descriptor());  // as kDrawingName
   program.command = {std::filesystem::read_symlink("/proc/self/exe").string(),
                      "amend",
-                     "--target",
-                     program.hand(target_->descriptor()),
                      "--lcm-url",
                      team.url.base(),
                      "--run-id",
-                     to_hex(team.run),
-                     "--by=" + by};
+                     to_hex(team.run)};
+  std::ranges::move(what, std::back_inserter(program.command));
   if (const MissionKey* key = team.authenticator.key()) {
     auto kept = sealed("amend-key", key_text(*key, true));
     if (!kept) return;
@@ -87,6 +94,7 @@ void AmendProcess::start(const BusOptions& team, const DrawnTarget& target, cons
   }
   program.log = program.hand(output_->fd());
   if (auto started = Child::start(program)) child_ = *started;
+  running_ = child_.has_value();
 }
 
 AmendProcess::~AmendProcess() {
@@ -108,10 +116,10 @@ std::string AmendProcess::printed() const {
 
 OrderReport AmendProcess::report(const MonitoredRun&, Instant) const {
   if (!child_) return {State::kFailed, problem_};
-  const std::string answer = amend_answer(printed(), kTargetName);
+  const std::string answer = amend_answer(printed(), kDrawingName);
   if (running_)
     return answer.starts_with("amendment ") ? OrderReport{State::kAnswered, answer}
-                                            : OrderReport{State::kSent, "the target is checked"};
+                                            : OrderReport{State::kSent, checked_};
   if (child_->exit_code() == 0) return {State::kDone, answer};
   return {State::kFailed, answer.empty() ? "ergocast amend " + child_->fate() : answer};
 }

@@ -50,8 +50,9 @@ Control::Control(const BusOptions& team, std::pair<ControlLink, ControlLink> lin
       token_(random_token()),
       team_(team.run, now()),
       desk_(host_name(), team.authenticator.keyed(),
-            [team](const DrawnTarget& target, const std::string& by) {
-              return std::make_unique<AmendProcess>(team, target, by);
+            [team](const ControlRequest& request, const std::string& by) {
+              return request.zone ? std::make_unique<AmendProcess>(team, *request.zone, by)
+                                  : std::make_unique<AmendProcess>(team, *request.target, by);
             }) {}
 
 void Control::attend(Instant now) {

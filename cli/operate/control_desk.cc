@@ -8,6 +8,7 @@
 #include "cli/operate/pause_order.h"
 #include "cli/operate/recall_order.h"
 #include "cli/operate/stop_order.h"
+#include "core/mission/zones.h"
 
 namespace ergocast::cli {
 namespace {
@@ -31,6 +32,8 @@ std::string what(const ControlRequest& request) {
       return "agent " + std::to_string(request.agent) + " out of the mission";
     case ControlAct::kTarget:
       return "new target";
+    case ControlAct::kZone:
+      return "new zone";
     default:
       return to_string(request.act);
   }
@@ -44,6 +47,8 @@ const char* word_of(State state) {
 bool pauses_or_resumes(ControlAct act) {
   return act == ControlAct::kPause || act == ControlAct::kResume;
 }
+
+bool amends(ControlAct act) { return act == ControlAct::kTarget || act == ControlAct::kZone; }
 
 bool recalls(ControlAct act) { return act == ControlAct::kHome || act == ControlAct::kOut; }
 
@@ -95,14 +100,28 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
     return "the page has shown nothing new for several seconds: look at the team again";
   if (request.act == ControlAct::kTake) return std::nullopt;
   if (team.unheard()) return "no message of the team arrives";
-  const bool one_waits = std::ranges::any_of(
-      acts_, [](const Act& act) { return !act.over() && act.request.act == ControlAct::kTarget; });
-  if (request.act == ControlAct::kTarget && one_waits)
-    return "the last new target does not hold yet: send this one then";
+  if (amends(request.act)) return why_not_amended(request.act);
   const auto unanswered = std::ranges::count_if(
       acts_, [](const Act& act) { return !act.over() && act.report.state < State::kObeyed; });
   if (recalls(request.act) && unanswered >= static_cast<std::ptrdiff_t>(kMostActs))
     return "too many orders wait for an answer";
+  return std::nullopt;
+}
+
+/// Two amendments at the same time would take the same number, and one of them would fail.
+std::optional<std::string> ControlDesk::why_not_amended(ControlAct wanted) const {
+  std::size_t zones = 0;
+  for (const Act& act : acts_) {
+    if (act.over() || !amends(act.request.act)) continue;
+    const bool is_zone = act.request.act == ControlAct::kZone;
+    if (!is_zone && wanted == ControlAct::kTarget)
+      return "the last new target does not hold yet: send this one then";
+    if (act.report.state < State::kAnswered)
+      return "the last " + what(act.request) + " has no answer yet: send this one then";
+    zones += is_zone ? 1 : 0;
+  }
+  if (wanted == ControlAct::kZone && zones >= kMaxZones)
+    return "agents still leave " + std::to_string(zones) + " zones: send this one then";
   return std::nullopt;
 }
 
@@ -147,7 +166,7 @@ void ControlDesk::give(const ControlRequest& request, const MonitoredRun& team, 
     return (!act.over() || stands) && act.request.act == request.act &&
            act.request.agent == request.agent;
   });
-  if (is_known) return;
+  if (is_known && !amends(request.act)) return;
   end_contradicted(request);
   make_room();
   note(called(request) + " asks for: " + what(request) + ", at " + team.mission_time(team.tick()));
@@ -201,7 +220,8 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
     case ControlAct::kOut:
       return std::make_unique<RecallOrder>(request.agent, request.act == ControlAct::kOut, now);
     case ControlAct::kTarget:
-      return amend_with_(*request.target, by);
+    case ControlAct::kZone:
+      return amend_with_(request, by);
     default:
       return nullptr;
   }

@@ -42,9 +42,10 @@ class ControlDesk {
   /// agent on its way home, is no longer shown; Home and Out wait while all are unanswered.
   static constexpr std::size_t kMostActs = 8;
 
-  /// Makes the order to cover a drawn target, of the operator of that name.
+  /// Makes the order to cover the request's target, or to leave its zone, of the operator of that
+  /// name.
   using AmendWith =
-      std::function<std::unique_ptr<Order>(const DrawnTarget&, const std::string& by)>;
+      std::function<std::unique_ptr<Order>(const ControlRequest&, const std::string& by)>;
 
   /// @param host   the operator's place in the record of a stop
   /// @param keyed  whether the team has a key
@@ -88,6 +89,7 @@ class ControlDesk {
 
   std::optional<std::string> why_refused(const ControlRequest& request, const MonitoredRun& team,
                                          Instant now);
+  std::optional<std::string> why_not_amended(ControlAct act) const;
   bool within_rate(Instant now);
   bool is_held_by(const ControlRequest& request) const;
   void change_operator(const ControlRequest& request, const MonitoredRun& team, Instant now);

@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kNames[] = {"take", "release",  "here", "pause", "resume",
-                                  "stop", "stop-now", "home", "out",   "target"};
+constexpr const char* kNames[] = {"take",     "release", "here", "pause",  "resume", "stop",
+                                  "stop-now", "home",    "out",  "target", "zone"};
 
 std::optional<std::int64_t> whole_number(const json& object, const char* key, std::int64_t least,
                                          std::int64_t most) {
@@ -79,7 +79,11 @@ std::optional<ControlRequest> ControlRequest::parse(std::string_view text) {
   if (has_target != object.contains("target")) return std::nullopt;
   if (has_target) request.target = DrawnTarget::parse(object["target"]);
   if (has_target != request.target.has_value()) return std::nullopt;
-  if (object.size() != (names_agent || has_target ? 6U : 5U)) return std::nullopt;
+  const bool has_zone = request.act == ControlAct::kZone;
+  if (has_zone != object.contains("zone")) return std::nullopt;
+  if (has_zone) request.zone = DrawnZone::parse(object["zone"]);
+  if (has_zone != request.zone.has_value()) return std::nullopt;
+  if (object.size() != (names_agent || has_target || has_zone ? 6U : 5U)) return std::nullopt;
   if (agent) request.agent = static_cast<AgentId>(*agent);
   return request;
 }

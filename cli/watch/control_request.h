@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "cli/watch/drawn_target.h"
+#include "cli/watch/drawn_zone.h"
 #include "core/base/ids.h"
 
 namespace ergocast::cli {
@@ -28,8 +29,10 @@ enum class ControlAct {
   kHome,     ///< one agent goes home
   kOut,      ///< one agent leaves the mission
   kTarget,   ///< the team covers a drawn target
+  kZone,     ///< the team leaves a drawn zone
 };
-/// "take", "release", "here", "pause", "resume", "stop", "stop-now", "home", "out" or "target".
+/// "take", "release", "here", "pause", "resume", "stop", "stop-now", "home", "out", "target" or
+/// "zone".
 const char* to_string(ControlAct act);
 
 struct ControlRequest {
@@ -48,6 +51,7 @@ struct ControlRequest {
   ControlAct act = ControlAct::kHere;
   AgentId agent = kUnassigned;          ///< for kHome and kOut only
   std::optional<DrawnTarget> target{};  ///< for kTarget only
+  std::optional<DrawnZone> zone{};      ///< for kZone only
 
   /// Nothing if a field is unknown, missing, of a wrong type or out of range.
   static std::optional<ControlRequest> parse(std::string_view text);

@@ -2,9 +2,10 @@
 // Reads lists of numbers, and writes them as fields of a scenario.
 #include "cli/watch/drawn_target.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "cli/watch/drawn_numbers.h"
 #include "text/shortest.h"
 
 namespace ergocast::cli {
@@ -12,25 +13,26 @@ namespace {
 
 using nlohmann::json;
 
-template <std::size_t N>
-std::optional<std::array<double, N>> numbers(const json& list) {
-  if (!list.is_array() || list.size() != N) return std::nullopt;
-  std::array<double, N> values{};
-  for (std::size_t i = 0; i < N; ++i) {
-    if (!list[i].is_number()) return std::nullopt;
-    values[i] = list[i].get<double>();
-    if (!std::isfinite(values[i])) return std::nullopt;
+/// A peak in a plane, [x_m, y_m, sigma_m], or in a box, [x_m, y_m, z_m, sigma_m].
+std::optional<DrawnTarget::Peak> peak_of(const json& list, bool in_box) {
+  if (in_box) {
+    const auto peak = drawn_numbers<4>(list);
+    if (!peak) return std::nullopt;
+    return DrawnTarget::Peak{(*peak)[0], (*peak)[1], (*peak)[3], (*peak)[2]};
   }
-  return values;
+  const auto peak = drawn_numbers<3>(list);
+  if (!peak) return std::nullopt;
+  return DrawnTarget::Peak{(*peak)[0], (*peak)[1], (*peak)[2], {}};
 }
 
-std::optional<DrawnTarget::Corners> corners(const json& list) {
-  if (!list.is_array() || list.size() < 3) return std::nullopt;
-  DrawnTarget::Corners read;
+/// Low and high of each polygon.
+std::optional<std::vector<std::array<double, 2>>> heights_of(const json& list) {
+  if (!list.is_array()) return std::nullopt;
+  std::vector<std::array<double, 2>> read;
   for (const json& one : list) {
-    const auto corner = numbers<2>(one);
-    if (!corner) return std::nullopt;
-    read.push_back(*corner);
+    const auto heights = drawn_numbers<2>(one);
+    if (!heights) return std::nullopt;
+    read.push_back(*heights);
   }
   return read;
 }
@@ -38,9 +40,11 @@ std::optional<DrawnTarget::Corners> corners(const json& list) {
 }  // namespace
 
 std::optional<DrawnTarget> DrawnTarget::parse(const json& object) {
-  if (!object.is_object() || object.size() != 3) return std::nullopt;
+  if (!object.is_object()) return std::nullopt;
   const auto peaks = object.find("peaks"), polygons = object.find("polygons"),
-             uniform = object.find("uniform");
+             uniform = object.find("uniform"), heights = object.find("heights_m");
+  const bool in_box = heights != object.end();
+  if (object.size() != (in_box ? 4U : 3U)) return std::nullopt;
   if (peaks == object.end() || polygons == object.end() || uniform == object.end())
     return std::nullopt;
   if (!peaks->is_array() || !polygons->is_array() || !uniform->is_number()) return std::nullopt;
@@ -50,15 +54,19 @@ std::optional<DrawnTarget> DrawnTarget::parse(const json& object) {
   if (parts == 0 || parts > kMostParts) return std::nullopt;
   if (!(target.uniform >= 0 && target.uniform <= kMostUniform)) return std::nullopt;
   for (const json& one : *peaks) {
-    const auto peak = numbers<3>(one);
+    const auto peak = peak_of(one, in_box);
     if (!peak) return std::nullopt;
-    target.peaks.push_back({(*peak)[0], (*peak)[1], (*peak)[2]});
+    target.peaks.push_back(*peak);
   }
   for (const json& one : *polygons) {
-    auto polygon = corners(one);
+    auto polygon = drawn_corners(one);
     if (!polygon) return std::nullopt;
     target.polygons.push_back(*std::move(polygon));
   }
+  if (!in_box) return target;
+  auto read = heights_of(*heights);
+  if (!read || read->size() != target.polygons.size()) return std::nullopt;
+  target.heights_m = *std::move(read);
   return target;
 }
 
@@ -66,11 +74,14 @@ std::string DrawnTarget::text() const {
   std::string text = "target {\n";
   for (const Peak& peak : peaks)
     text += "  gaussians { mean_x_m: " + shortest(peak.x_m) + " mean_y_m: " + shortest(peak.y_m) +
+            (peak.z_m ? " mean_z_m: " + shortest(*peak.z_m) : "") +
             " sigma_m: " + shortest(peak.sigma_m) + " weight: 1 }\n";
-  for (const Corners& polygon : polygons) {
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
     text += "  regions { weight: 1 polygon {";
-    for (const auto& [x_m, y_m] : polygon)
+    for (const auto& [x_m, y_m] : polygons[i])
       text += " vertices { x_m: " + shortest(x_m) + " y_m: " + shortest(y_m) + " }";
+    if (!heights_m.empty())
+      text += " low_z_m: " + shortest(heights_m[i][0]) + " high_z_m: " + shortest(heights_m[i][1]);
     text += " } }\n";
   }
   const auto parts = static_cast<double>(peaks.size() + polygons.size());

@@ -15,6 +15,7 @@ import { livePage, showRecord } from './panels/shown_run.js';
 import { connectButtons, connectChart, connectKeys } from './panels/controls.js';
 import { connectControl } from './panels/control.js';
 import { connectDrawing, followDrawing } from './panels/drawing.js';
+import { followZones } from './panels/zone_words.js';
 import { connectMap } from './panels/map_pointer.js';
 import { connectSpace, showView } from './panels/space_controls.js';
 import { svgText } from './panels/save.js';
@@ -29,6 +30,7 @@ function frame(now) {
   advance(now);
   followTarget();
   followDrawing();
+  followZones();
   drawPictures();
   drawHeadline(now);
   frames.push(performance.now() - begin);

@@ -41,7 +41,12 @@ class Desk : public ::testing::Test {
     request.number = ++numbers_;
     request.tick = tick.value_or(team_.tick());
     request.act = act;
-    if (act == ControlAct::kTarget) request.target = {{{300, 400, 50}}, {}, 0.5};
+    if (act == ControlAct::kTarget) {
+      request.target.emplace();
+      request.target->peaks = {{300, 400, 50, {}}};
+      request.target->uniform = 0.5;
+    }
+    if (act == ControlAct::kZone) request.zone = {{{0, 0}, {4, 0}, {4, 4}}, 600, {}};
     last_ = request;
     desk_.receive(request, team_, now_);
     advance();
@@ -73,15 +78,16 @@ class Desk : public ::testing::Test {
   };
 
   OrderReport drawn_report_;
-  std::vector<std::string> drawn_;  // the texts of drawn targets
+  std::vector<std::string> drawn_;  // the texts of drawn targets and zones
   std::string drawn_by_;            // the operator of the last one
   Instant now_ = at(1s);
   MonitoredRun team_{kRun, at(0s)};
-  ControlDesk desk_{"here", true, [this](const DrawnTarget& target, const std::string& by) {
-                      drawn_.push_back(target.text());
-                      drawn_by_ = by;
-                      return std::make_unique<Drawn>(drawn_report_);
-                    }};
+  ControlDesk desk_{
+      "here", true, [this](const ControlRequest& request, const std::string& by) {
+        drawn_.push_back(request.zone ? request.zone->text() : request.target->text());
+        drawn_by_ = by;
+        return std::make_unique<Drawn>(drawn_report_);
+      }};
   Outbox sent_;
   std::vector<std::string> lines_;
   ControlRequest last_;
@@ -153,6 +159,29 @@ TEST_F(Desk, ASecondDrawnTargetWaitsUntilTheFirstOneHolds) {
             "5f, holds since tick 120");
   ask(ControlAct::kTarget);
   EXPECT_EQ(drawn_.size(), 2U);
+}
+
+TEST_F(Desk, ADrawnZoneWaitsUntilTheLastOneHasANumber) {
+  ask(ControlAct::kTake);
+  ask(ControlAct::kZone);
+  ASSERT_EQ(drawn_.size(), 1U);
+  EXPECT_EQ(drawn_[0],
+            "vertices { x_m: 0 y_m: 0 }\nvertices { x_m: 4 y_m: 0 }\nvertices { x_m: 4 y_m: 4 }\n");
+  EXPECT_EQ(lines_.back(), "control: anna asks for: new zone, at tick 100, t = 10.0 s");
+  ask(ControlAct::kZone);
+  EXPECT_EQ(refusal(), "the last new zone has no answer yet: send this one then");
+  ask(ControlAct::kTarget);
+  EXPECT_EQ(refusal(), "the last new zone has no answer yet: send this one then");
+  EXPECT_EQ(drawn_.size(), 1U);
+  drawn_report_ = {OrderReport::State::kAnswered, "amendment 0, zone 5f, holds from tick 120"};
+  advance();
+  now_ += 1s;
+  for (std::size_t i = 1; i < kMaxZones; ++i) ask(ControlAct::kZone);
+  EXPECT_EQ(drawn_.size(), kMaxZones);
+  ask(ControlAct::kZone);
+  EXPECT_EQ(refusal(), "agents still leave 8 zones: send this one then");
+  ask(ControlAct::kTarget);
+  EXPECT_EQ(drawn_.size(), kMaxZones + 1);
 }
 
 TEST_F(Desk, ANumberCountsOnce) {

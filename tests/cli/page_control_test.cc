@@ -99,5 +99,58 @@ TEST(DrawnTargetRequest, IsRefusedIfItHasAnythingElse) {
       R"({"operator":1,"name":"","number":1,"tick":0,"act":"pause","target":{}})"));
 }
 
+TEST(DrawnTargetRequest, OfABoxHasHeights) {
+  const auto request = drawn(
+      R"({"peaks":[[1,2,3,4]],"polygons":[[[0,0],[4,0],[4,4]]],"uniform":0,"heights_m":[[5,6]]})");
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->target->text(),
+            "target {\n  gaussians { mean_x_m: 1 mean_y_m: 2 mean_z_m: 3 sigma_m: 4 weight: 1 }\n"
+            "  regions { weight: 1 polygon { vertices { x_m: 0 y_m: 0 } vertices { x_m: 4 y_m: 0 } "
+            "vertices { x_m: 4 y_m: 4 } low_z_m: 5 high_z_m: 6 } }\n}\n");
+  for (const char* heights : {"[]", "[[5]]", "[[5,6],[7,8]]", "5"})
+    EXPECT_FALSE(drawn(
+        std::string(R"({"peaks":[],"polygons":[[[0,0],[4,0],[4,4]]],"uniform":0,"heights_m":)") +
+        heights + "}"))
+        << heights;
+  EXPECT_FALSE(drawn(R"({"peaks":[[1,2,3]],"polygons":[],"uniform":0,"heights_m":[]})"));
+}
+
+/// A request with that zone.
+std::optional<ControlRequest> zone(const std::string& zone) {
+  return ControlRequest::parse(
+      R"({"operator":1,"name":"","number":1,"tick":0,"act":"zone","zone":)" + zone + "}");
+}
+
+TEST(DrawnZoneRequest, HasCornersHeightsAndADuration) {
+  const auto request =
+      zone(R"({"corners_m":[[0,0],[4,0],[4,4.5]],"lasts_s":90.5,"heights_m":[1,2]})");
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->zone->text(),
+            "vertices { x_m: 0 y_m: 0 }\nvertices { x_m: 4 y_m: 0 }\nvertices { x_m: 4 y_m: 4.5 }\n"
+            "low_z_m: 1\nhigh_z_m: 2\n");
+  EXPECT_EQ(request->zone->duration(), "90.5s");
+  const auto plane = zone(R"({"corners_m":[[0,0],[4,0],[4,4]],"lasts_s":600})");
+  ASSERT_TRUE(plane);
+  EXPECT_EQ(plane->zone->text(),
+            "vertices { x_m: 0 y_m: 0 }\nvertices { x_m: 4 y_m: 0 }\nvertices { x_m: 4 y_m: 4 }\n");
+}
+
+TEST(DrawnZoneRequest, IsRefusedIfItHasAnythingElse) {
+  for (const char* wrong :
+       {"null", "{}", R"({"corners_m":[[0,0],[4,0]],"lasts_s":600})",
+        R"({"corners_m":[[0,0],[4,0],[4,4,4]],"lasts_s":600})",
+        R"({"corners_m":[[0,0],[4,0],[4,1e999]],"lasts_s":600})",
+        R"({"corners_m":[[0,0],[4,0],[4,4]]})", R"({"corners_m":[[0,0],[4,0],[4,4]],"lasts_s":0})",
+        R"({"corners_m":[[0,0],[4,0],[4,4]],"lasts_s":"600"})",
+        R"({"corners_m":[[0,0],[4,0],[4,4]],"lasts_s":600,"heights_m":[1]})",
+        R"({"corners_m":[[0,0],[4,0],[4,4]],"lasts_s":600,"heights_m":null})",
+        R"({"corners_m":[[0,0],[4,0],[4,4]],"lasts_s":600,"file":"/etc/passwd"})"})
+    EXPECT_FALSE(zone(wrong)) << wrong;
+  EXPECT_FALSE(
+      ControlRequest::parse(R"({"operator":1,"name":"","number":1,"tick":0,"act":"zone"})"));
+  EXPECT_FALSE(ControlRequest::parse(
+      R"({"operator":1,"name":"","number":1,"tick":0,"act":"pause","zone":{}})"));
+}
+
 }  // namespace
 }  // namespace ergocast::cli

@@ -1,63 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A new target is drawn on the map of a real-time team's page. With control it is sent; without,
 // the page shows the command.
-#include "tests/page/page_in_a_browser.h"
+#include "tests/page/drawing_in_a_browser.h"
 
 namespace ergocast::test {
 namespace {
 
-class DrawnTargetInABrowser : public PageInABrowser {
+class DrawnTargetInABrowser : public DrawingInABrowser {
  protected:
-  /// @param secret  whether the page is opened with the token that permits orders
-  void open_page(bool secret) {
-    mission_ = launch_endless(scenario("pace: REALTIME realtime_factor: 10"),
-                              {"--watch", "--control", "--port", "8821"});
-    const std::string text = printed(), begin = "http://127.0.0.1:8821/#control=";
-    ASSERT_NE(text.find(begin), text.npos) << text;
-    browser_->resize(1300, 900);
-    browser_->open(secret ? text.substr(text.find(begin), begin.size() + 32)
-                          : "http://127.0.0.1:8821/");
-    ASSERT_TRUE(browser_->becomes("return window.ergocast?.S.facts?.state?.world_tick > 100"));
-    if (secret) {
-      browser_->click("#take");
-      ASSERT_TRUE(becomes("holder", "You have control"));
-    }
-    ASSERT_TRUE(browser_->becomes("return !document.getElementById('drawTarget').hidden"));
-    // A warning that the machine is slow would move the map between two presses.
-    js("document.getElementById('overload').style.display = 'none'");
-    browser_->click("#drawTarget");
-  }
-  bool becomes(const std::string& id, const std::string& pattern) {
-    return browser_->becomes("return /" + pattern + "/.test(document.getElementById('" + id +
-                             "').textContent)");
-  }
-  bool visible(const std::string& selector) {
-    return js("return document.querySelector('" + selector + "').checkVisibility()").get<bool>();
-  }
-  /// Clicks at corners: pixels to the right of the map's middle, and below it.
   void draw_polygon(const std::vector<std::pair<int, int>>& corners) {
     browser_->click("#tool [data-value=polygon]");
-    for (const auto& [right, down] : corners) browser_->drag("#drawn", 0, 0, right, down);
-    browser_->drag("#drawn", 0, 0, corners[0].first, corners[0].second);
+    click_corners(corners);
   }
-  /// Both presses in one script, so that no machine is too slow for the second one.
-  void send() {
-    js("const button = document.getElementById('sendTarget'); button.click(); button.click()");
-  }
-  nlohmann::json drawn(const std::string& what) { return js("return ergocast.S.drawing" + what); }
-  void end_mission() {
-    mission_->send(SIGINT);
-    ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-    mission_->send(SIGINT);
-    EXPECT_EQ(wait_for(*mission_), 0) << printed();
-  }
-
-  std::optional<Child> mission_;
 };
 
 TEST_F(DrawnTargetInABrowser, IsMovedComparedAndSent) {
-  open_page(true);
-  EXPECT_EQ(js("return document.getElementById('sendTarget').disabled"), true);
+  open_page(Control::kTaken);
+  browser_->click("#drawTarget");
+  EXPECT_EQ(js("return document.getElementById('sendDrawn').disabled"), true);
   browser_->drag("#drawn", 60, 0);  // centre and spread
   ASSERT_EQ(drawn(".parts.length"), 1);
   const double pixel_m = 1 / js("return ergocast.view.scale").get<double>();
@@ -101,7 +61,8 @@ TEST_F(DrawnTargetInABrowser, IsMovedComparedAndSent) {
 }
 
 TEST_F(DrawnTargetInABrowser, IsRefusedWithTheWordsOfTheCommand) {
-  open_page(true);
+  open_page(Control::kTaken);
+  browser_->click("#drawTarget");
   draw_polygon({{-100, -100}, {100, 100}, {100, -100}, {-100, 100}});  // two sides cross
   ASSERT_EQ(drawn(".parts.length"), 1);
   send();
@@ -118,15 +79,16 @@ TEST_F(DrawnTargetInABrowser, IsRefusedWithTheWordsOfTheCommand) {
 }
 
 TEST_F(DrawnTargetInABrowser, WithoutControlThePageShowsTheCommand) {
-  open_page(false);
+  open_page(Control::kNone);
+  browser_->click("#drawTarget");
   // The same with keys.
   js("document.getElementById('drawn').focus()");
   browser_->press("\uE007");  // Enter
   browser_->press("\uE014");  // right
   ASSERT_EQ(drawn(".parts.length"), 1);
   EXPECT_NEAR(drawn(".parts[0].at[0]"), 1020, 1e-6);
-  EXPECT_FALSE(visible("#sendTarget"));
-  ASSERT_TRUE(visible("#targetCommand"));
+  EXPECT_FALSE(visible("#sendDrawn"));
+  ASSERT_TRUE(visible("#drawnCommand"));
   screenshot("drawing_command");
   browser_->resize(400, 800);
   wait_for_frame();
@@ -134,19 +96,41 @@ TEST_F(DrawnTargetInABrowser, WithoutControlThePageShowsTheCommand) {
   browser_->resize(1300, 900);
   wait_for_frame();
   EXPECT_TRUE(text("whyCommand").starts_with("This page only shows.")) << text("whyCommand");
-  Child command = begin({"/bin/sh", "-c",
-                         "cd " + folder_.string() + " && PATH=" + program_folder().string() +
-                             ":$PATH && " + text("targetCommand") + " --dry-run"});
-  EXPECT_EQ(wait_for(command), 0) << output();
+  EXPECT_EQ(try_command(), 0) << output();
   EXPECT_NE(output().find("no problems: target "), std::string::npos) << output();
   EXPECT_NE(text_of(folder_ / "target.textproto").find("mean_x_m: 1020  mean_y_m: 1000"),
             std::string::npos)
       << text_of(folder_ / "target.textproto");
   browser_->press("\uE017");  // Delete
   EXPECT_EQ(drawn(".parts.length"), 0);
-  EXPECT_FALSE(visible("#targetCommand"));
+  EXPECT_FALSE(visible("#drawnCommand"));
   browser_->click("#closeDrawing");
   EXPECT_FALSE(visible("#drawn"));
+  expect_no_errors();
+  end_mission();
+}
+
+TEST_F(DrawnTargetInABrowser, InABoxHasHeightsAndIsCompared) {
+  open_page(Control::kTaken, scenario_file("cube_corners"));
+  browser_->click("#drawTarget");
+  browser_->press("\uE007");  // Enter
+  EXPECT_EQ(drawn(".parts[0].z"), 500);
+  type("lowZ", "700");
+  draw_polygon({{-100, 50}, {-20, 50}, {-20, 150}, {-100, 150}});
+  type("lowZ", "200");
+  type("highZ", "400");
+  EXPECT_TRUE(becomes("drawnText", "[\\d.]+\\u00a0% of its mass is elsewhere"))
+      << text("drawnText");
+  screenshot("drawing_box");
+  js("window.preview = [...ergocast.S.drawing.mu]");
+  send();
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.targets.length === 2"))
+      << text("controlText");
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.drawing === null"));
+  EXPECT_LT(js("return Math.max(...ergocast.S.run.targets[1].coefficients.map("
+               "(v, k) => Math.abs(v - preview[k])))")
+                .get<double>(),
+            0.03);
   expect_no_errors();
   end_mission();
 }

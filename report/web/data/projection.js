@@ -19,7 +19,7 @@ function projectedTrack(track, axes, factors) {
 }
 
 // The run in two dimensions: `name` is "xy", "xz" or "yz", and the view is along the third axis. It
-// changes with the run. Heights of a flat box are drawn `stretch[1]` times too large.
+// changes with the run, which is its `whole`. Heights of a flat box are drawn `stretch[1]` times too large.
 export function projected(run, name) {
   run.projections ??= new Map();
   if (run.projections.has(name)) return run.projections.get(name);
@@ -43,6 +43,7 @@ export function projected(run, name) {
           : targetOfModes(averageOf(target.coefficients, modes, hidden), modes[a], modes[b], size),
     });
   const seen = Object.assign(Object.create(run), {
+    whole: run,
     axes,
     size,
     stretch,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Paints the ground of the map: shading, the target's outline, where nobody is wanted, walls, and zones.
 // It draws on a canvas, or on anything with the same methods (svg.js).
+import { paintZones } from './zones_layer.js';
 import { clamp } from '../text.js';
 
 const CONTOUR = 64; // of 255: the target's outline over the other shadings
@@ -142,32 +143,6 @@ function paintWalls(g, run, view, colours) {
   g.fill('evenodd');
   g.stroke();
   g.restore();
-}
-
-// Closed zones, seen from above: bodies leave them, with a dashed outline, until they are free.
-function paintZones(g, run, view, row, colours) {
-  const [lx, ly] = run.size;
-  if (run.axes[0] !== 0 || run.axes[1] !== 1) return;
-  for (const { corners_m: corners, from } of run.zonesAt(row)) {
-    g.save();
-    g.beginPath();
-    g.rect(view.px(0), view.py(ly), lx * view.scale, ly * view.scale);
-    g.clip();
-    g.beginPath();
-    corners.forEach(([x, y], i) => {
-      if (i) g.lineTo(view.px(x), view.py(y));
-      else g.moveTo(view.px(x), view.py(y));
-    });
-    g.closePath();
-    g.fillStyle = g.strokeStyle = colours.bad;
-    g.globalAlpha = 0.22;
-    g.fill();
-    g.globalAlpha = 1;
-    g.lineWidth = 1.8;
-    if (row * run.stride < from) g.setLineDash?.([6, 4]);
-    g.stroke();
-    g.restore();
-  }
 }
 
 // Open squares where agents are to be at the end.

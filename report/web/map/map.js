@@ -5,6 +5,7 @@ import { clamp } from '../text.js';
 import { many, paintAgents } from './markers.js';
 import { axisName } from './box_axes.js';
 import { farthestFirst, paintSpaceMarks } from './space_marks.js';
+import { paintZoneMarks } from './zones_layer.js';
 
 export const TAILS = [0, 10, 30, 60, 120, 300, 600, Infinity]; // s
 
@@ -192,5 +193,6 @@ export function paintMarkers(g, run, view, state) {
     });
   }
   if (radio && run.mission.radio_range_m > 0) paintRadio(g, run, view, state);
+  paintZoneMarks(g, run, view, state);
   paintAgents(g, run, view, state, state.inSpace ? farthestFirst(run, view, row) : run.tracks);
 }

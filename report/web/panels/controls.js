@@ -94,6 +94,8 @@ export function connectChart() {
   };
 }
 
+// Whether keys are text there.
+const isTyped = ({ tagName, type }) => tagName === 'INPUT' && !['range', 'checkbox'].includes(type);
 const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
 const TURN = Math.PI / 24;
 const KEYS = {
@@ -142,7 +144,7 @@ export function connectKeys() {
       e.altKey ||
       document.querySelector('dialog[open]') ||
       e.target.tagName === 'SELECT' ||
-      e.target.id === 'operatorName'
+      isTyped(e.target)
     )
       return;
     const action = KEYS[e.key.length === 1 ? e.key.toLowerCase() : e.key];

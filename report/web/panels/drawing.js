@@ -1,77 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The control "New target": a target is drawn on the map, compared with the present one, and sent or copied.
+// Opens the layer on which a new target or a new zone is drawn, and sends or copies what is drawn there.
 import { S, ask } from './state.js';
 import { layout } from './screen.js';
 import { complain, hasControl, mayTakeControl, press, say, send } from './control.js';
 import { connectDrawnPointer, removeChosen } from './drawn_pointer.js';
-import { MOST_BYTES, MOST_PARTS, comparison, gridOf, modesOf, requestOf, textOf } from '../data/drawn.js';
-import { $, put, readable, share } from '../text.js';
+import { showView } from './space_controls.js';
+import { connectTarget, targetDrawing } from './target_drawing.js';
+import { connectZone, zoneDrawing } from './zone_drawing.js';
+import { MOST_BYTES } from '../data/drawn.js';
+import { $, put } from '../text.js';
 
-const COMPARE_MS = 250; // wall time between comparisons while the team moves on
+const KINDS = { target: targetDrawing, zone: zoneDrawing };
+const DESCRIBE_MS = 250; // wall time between descriptions while the team moves on
 
-let sent = null, // how many targets the page knew when one was sent
-  comparedAt = 0;
+let sent = null, // the newest that the page knew when one was sent
+  describedAt = 0,
+  viewBefore = null; // of a box
 
-const whole = () => S.drawing.parts.length > 0 && S.drawing.grid !== null;
-const request = () => requestOf(S.drawing.parts, S.drawing.uniform, S.run.mission);
+const kind = () => KINDS[S.drawing.kind];
 
-function command(target) {
-  return (
-    `cat > target.textproto <<'END'\n${textOf(target)}END\n` +
-    `ergocast amend --run-id ${S.facts.run} --target target.textproto`
-  );
-}
-
-function compare() {
-  const { run, drawing } = S;
-  comparedAt = performance.now();
-  if (!whole()) {
-    const polygon = drawing.tool === 'polygon';
-    put(
-      $('drawnText'),
-      drawing.open.length
-        ? 'Click for each corner, and on the first one to close the polygon.'
-        : drawing.parts.length
-          ? 'No part of this target is where agents can be.'
-          : polygon
-            ? 'Click where the polygon’s corners are.'
-            : 'Press where the peak is, and drag to its spread.',
-    );
-    return;
-  }
-  const { against, present, moved } = comparison(run, run.rowAt(S.t), drawing.mu);
-  put(
-    $('drawnText'),
-    `φ² of what is covered by now: ${readable(against)} against this target, ${readable(present)} against ` +
-      `the present one. ${share(Math.round(moved * 100) / 100)} of its mass is elsewhere than now.`,
-  );
-}
-
-// Call after each change of the drawing.
-function changed() {
-  const { run, drawing } = S,
-    [M, N] = run.mission.modes;
-  drawing.full = drawing.parts.length >= MOST_PARTS;
-  drawing.grid = drawing.parts.length
-    ? gridOf(drawing.parts, drawing.uniform, run.size, run.mission.walls)
-    : null;
-  if (drawing.grid) drawing.mu = modesOf(drawing.grid, M, N);
-  drawing.version++;
-  for (const button of $('tool').children)
-    button.setAttribute('aria-pressed', button.dataset.value === drawing.tool);
-  put($('uniformText'), share(drawing.uniform));
-  $('removeDrawn').disabled = !drawing.chosen && !drawing.open.length;
-  compare();
-  offer();
-  ask();
-}
-
-// With control the target can be sent; without, the command is shown.
+// With control the drawing can be sent; without, the command is shown.
 function offer() {
-  const ready = whole(),
+  const ready = kind().isReady(),
     may = hasControl();
-  $('sendTarget').hidden = !may;
-  $('sendTarget').disabled = !ready;
+  $('sendDrawn').hidden = !may;
+  $('sendDrawn').disabled = !ready;
   $('commandBox').hidden = may || !ready;
   if (may || !ready) return;
   put(
@@ -80,96 +33,155 @@ function offer() {
       ? 'Take control to send it. Or run this where the team’s key is:'
       : 'This page only shows. Run this where the team’s key is:',
   );
-  put($('targetCommand'), command(request()));
+  put($('drawnCommand'), kind().command());
+}
+
+function describe() {
+  describedAt = performance.now();
+  kind().describe();
+  offer();
+}
+
+// The heights of the chosen part, in the scenario's coordinates; an input that has the focus stays as typed.
+function showHeights() {
+  const { chosen } = S.drawing,
+    write = (input, z) => {
+      if (document.activeElement !== input) input.value = +(z + S.run.mission.origin_m[2]).toFixed(3);
+    };
+  $('heights').hidden = !S.run.inBox || !chosen;
+  if ($('heights').hidden) return;
+  const peak = chosen.kind === 'peak';
+  $('upTo').hidden = peak;
+  $('lowZ').setAttribute('aria-label', peak ? 'Height of the peak' : 'Lower height');
+  write($('lowZ'), peak ? chosen.z : chosen.heights[0]);
+  if (!peak) write($('highZ'), chosen.heights[1]);
+}
+
+// Call after each change of the drawing.
+function changed() {
+  const { drawing } = S;
+  drawing.full = drawing.parts.length >= kind().most;
+  drawing.version++;
+  put($('copyDrawn'), 'Copy');
+  kind().changed();
+  $('removeDrawn').disabled = !drawing.chosen && !drawing.open.length;
+  showHeights();
+  describe();
+  ask();
 }
 
 function order() {
-  const target = request();
-  if (JSON.stringify(target).length > MOST_BYTES) {
-    complain('New target: not sent: it has too many corners. Save it as a file and use ergocast amend.');
+  const [act, content] = kind().order();
+  if (JSON.stringify(content).length > MOST_BYTES) {
+    complain(`${kind().name}: not sent: too many corners. Save it as a file and use ergocast amend.`);
     return;
   }
-  say('New target: sent');
-  sent = S.run.targets.length;
-  send('target', { target });
+  say(`${kind().name}: sent`);
+  sent = kind().newest();
+  send(act, content);
 }
 
-function open() {
+function open(name) {
+  if (S.drawing) close();
   S.drawing = {
-    tool: 'peak',
-    uniform: 0.1,
+    kind: name,
     parts: [],
     chosen: null,
+    corner: -1,
     open: [],
     pointer: null,
     grid: null,
     version: 0,
   };
+  Object.assign(S.drawing, kind().begin());
   sent = null;
-  $('uniform').value = 100 * S.drawing.uniform;
+  if (S.run.inBox) {
+    viewBefore = S.view;
+    showView('xy');
+  }
+  put($('drawnWays'), '');
+  $('drawing').setAttribute('aria-label', kind().name);
+  $('drawn').setAttribute('aria-label', kind().label);
   show();
   changed();
   $('drawn').focus();
 }
 
+// The focus goes back to the button that opened the layer, unless it is elsewhere by now.
 function close() {
+  const { button } = kind(),
+    within = $('drawing').contains(document.activeElement) || document.activeElement === $('drawn');
   S.drawing = null;
   show();
+  if (S.run.inBox && viewBefore && S.view === 'xy') showView(viewBefore);
+  viewBefore = null;
+  if (within) $(button).focus();
 }
 
 function show() {
   const drawing = S.drawing !== null;
-  for (const id of ['drawing', 'drawn']) $(id).hidden = !drawing;
-  $('drawTarget').setAttribute('aria-pressed', drawing);
+  $('drawing').hidden = !drawing;
+  for (const [name, { button, tools }] of Object.entries(KINDS)) {
+    $(tools).hidden = S.drawing?.kind !== name;
+    $(button).setAttribute('aria-pressed', S.drawing?.kind === name);
+  }
+  showLayer();
   layout();
 }
 
-// Follows the team: whether a target can be drawn, and what it would change by now.
+// What is drawn is seen from above.
+function showLayer() {
+  const hidden = !S.drawing || (S.run.inBox && S.view !== 'xy');
+  if ($('drawn').hidden !== hidden) $('drawn').hidden = hidden;
+}
+
+// Follows the team: whether something can be drawn, and what it would change by now.
 export function followDrawing() {
-  const { run } = S,
-    possible = S.live && !run.inBox && S.facts?.replay === false;
-  if ($('drawTarget').hidden === possible) $('drawTarget').hidden = !possible;
+  const possible = S.live && S.facts?.replay === false;
+  for (const { button } of Object.values(KINDS))
+    if ($(button).hidden === possible) $(button).hidden = !possible;
   if (!S.drawing) return;
-  if (!possible || (sent !== null && run.targets.length > sent)) close();
-  else if (performance.now() - comparedAt > COMPARE_MS) {
-    compare();
-    offer();
-  }
+  showLayer();
+  if (!possible || (sent !== null && kind().newest() > sent)) close();
+  else if (performance.now() - describedAt > DESCRIBE_MS) describe();
 }
 
 async function copy() {
   try {
-    await navigator.clipboard.writeText($('targetCommand').textContent);
-    put($('copyTarget'), 'Copied');
+    await navigator.clipboard.writeText($('drawnCommand').textContent);
+    put($('copyDrawn'), 'Copied');
   } catch {
     // Without https the browser has no clipboard: the text is selected instead.
-    getSelection().selectAllChildren($('targetCommand'));
-    put($('copyTarget'), 'Selected: press Ctrl-C');
+    getSelection().selectAllChildren($('drawnCommand'));
+    put($('copyDrawn'), 'Selected: press Ctrl-C');
   }
 }
 
-export function connectDrawing() {
-  connectDrawnPointer(() => {
-    put($('copyTarget'), 'Copy');
+function connectHeights() {
+  const set = i => e => {
+    const { chosen } = S.drawing,
+      z = e.target.value === '' ? NaN : Number(e.target.value) - S.run.mission.origin_m[2];
+    if (chosen.kind === 'peak') chosen.z = z;
+    else chosen.heights[i] = z;
     changed();
-  });
-  $('drawTarget').onclick = () => (S.drawing ? close() : open());
+  };
+  $('lowZ').oninput = set(0);
+  $('highZ').oninput = set(1);
+}
+
+export function connectDrawing() {
+  connectDrawnPointer(changed);
+  connectTarget(changed);
+  connectZone(changed);
+  connectHeights();
+  for (const [name, { button }] of Object.entries(KINDS))
+    $(button).onclick = () => (S.drawing?.kind === name ? close() : open(name));
   $('closeDrawing').onclick = close;
   $('removeDrawn').onclick = () => {
     removeChosen();
     changed();
   };
-  $('tool').onclick = e => {
-    if (!e.target.dataset.value) return;
-    S.drawing.tool = e.target.dataset.value;
-    S.drawing.open = [];
-    changed();
-  };
-  $('uniform').oninput = e => {
-    S.drawing.uniform = Number(e.target.value) / 100;
-    changed();
-  };
-  $('sendTarget').dataset.label = 'Send';
-  $('sendTarget').onclick = () => press($('sendTarget'), order);
-  $('copyTarget').onclick = copy;
+  $('sendDrawn').dataset.label = 'Send';
+  $('sendDrawn').onclick = () => press($('sendDrawn'), order);
+  $('copyDrawn').onclick = copy;
 }

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Handles pointer and keys on the layer where a new target is drawn.
+// Handles pointer and keys on the layer where a new target or zone is drawn.
 import { S } from './state.js';
 import { view } from './screen.js';
 import { zoom } from './map_pointer.js';
 import { inside } from '../data/drawn.js';
 import { $, clamp } from '../text.js';
 
-const NEAR = 9; // pixels
+const NEAR = 9, // pixels
+  NEAR_FINGER = 22;
 const SMALL = 0.05; // the spread of a new peak, as a share of the shorter side
+const SQUARE = 0.1; // half the side of a new square, the same
 let grip = null; // {part, move(x, y)}: what the pointer moves
 
+const near = e => (e.pointerType === 'touch' ? NEAR_FINGER : NEAR);
 const apart = ([x, y], e) => Math.hypot(view.px(x) - e.offsetX, view.py(y) - e.offsetY);
 
 function placeOf(e) {
@@ -18,6 +21,7 @@ function placeOf(e) {
   return [clamp(x, 0, lx), clamp(y, 0, ly)];
 }
 
+const shorter = () => Math.min(S.run.size[0], S.run.size[1]);
 const within = ([x, y]) => [clamp(x, 0, S.run.size[0]), clamp(y, 0, S.run.size[1])];
 
 // Moves a part, so that a peak's centre and all corners stay in the domain.
@@ -31,7 +35,7 @@ function shift(part, dx, dy) {
   else part.corners = part.corners.map(moved);
 }
 
-const leastSpread = () => 0.005 * Math.min(...S.run.size);
+const leastSpread = () => 0.005 * shorter();
 
 const spreading = part => ({
   part,
@@ -53,37 +57,65 @@ function moving(part, from) {
 
 const cornering = (part, i) => ({ part, move: place => part.corners.splice(i, 1, within(place)) });
 
+function choose(part) {
+  S.drawing.chosen = part;
+  S.drawing.corner = -1;
+}
+
 // What is under the pointer: the handles of the chosen part come first.
 function gripAt(e) {
   const { parts, chosen } = S.drawing,
     place = placeOf(e);
   if (chosen?.kind === 'peak') {
     const off = Math.hypot(place[0] - chosen.at[0], place[1] - chosen.at[1]);
-    if (apart(chosen.at, e) <= NEAR) return moving(chosen, place);
-    if (Math.abs(off - chosen.spread) * view.scale <= NEAR) return spreading(chosen);
+    if (apart(chosen.at, e) <= near(e)) return moving(chosen, place);
+    if (Math.abs(off - chosen.spread) * view.scale <= near(e)) return spreading(chosen);
   }
-  const corner = chosen?.kind === 'polygon' ? chosen.corners.findIndex(at => apart(at, e) <= NEAR) : -1;
+  const corner = chosen?.kind === 'polygon' ? chosen.corners.findIndex(at => apart(at, e) <= near(e)) : -1;
   if (corner >= 0) return cornering(chosen, corner);
   const part = parts.findLast(one =>
     one.kind === 'peak'
-      ? apart(one.at, e) <= Math.max(NEAR, Math.min(24, one.spread * view.scale))
+      ? apart(one.at, e) <= Math.max(near(e), Math.min(24, one.spread * view.scale))
       : inside([one.corners], ...place),
   );
   return part ? moving(part, place) : null;
 }
 
-export function addPeak(at) {
-  const peak = { kind: 'peak', at, spread: SMALL * Math.min(...S.run.size) };
+// In a box a new peak is at half the height.
+function addPeak(at) {
+  const peak = { kind: 'peak', at, spread: SMALL * shorter() };
+  if (S.run.inBox) peak.z = S.run.size[2] / 2;
   S.drawing.parts.push(peak);
-  S.drawing.chosen = peak;
+  choose(peak);
   return peak;
+}
+
+// In a box a new polygon has the whole height.
+function addPolygon(corners) {
+  const polygon = { kind: 'polygon', corners };
+  if (S.run.inBox) polygon.heights = [0, S.run.size[2]];
+  S.drawing.parts.push(polygon);
+  choose(polygon);
+}
+
+// A part in the domain's middle, for those who use keys.
+function addInTheMiddle() {
+  const [x, y] = [S.run.size[0] / 2, S.run.size[1] / 2],
+    half = SQUARE * shorter();
+  if (S.drawing.tool === 'peak') addPeak([x, y]);
+  else
+    addPolygon([
+      [x - half, y - half],
+      [x + half, y - half],
+      [x + half, y + half],
+      [x - half, y + half],
+    ]);
 }
 
 function closePolygon() {
   const { drawing } = S;
   if (drawing.open.length < 3) return;
-  drawing.chosen = { kind: 'polygon', corners: drawing.open };
-  drawing.parts.push(drawing.chosen);
+  addPolygon(drawing.open);
   drawing.open = [];
 }
 
@@ -94,19 +126,19 @@ export function removeChosen() {
     return;
   }
   drawing.parts = drawing.parts.filter(part => part !== drawing.chosen);
-  drawing.chosen = drawing.parts[drawing.parts.length - 1] ?? null;
+  choose(drawing.parts[drawing.parts.length - 1] ?? null);
 }
 
 // A press begins or closes a polygon, takes hold of a part, or makes a new one.
 function press(e) {
   const { drawing } = S;
   if (drawing.open.length) {
-    if (drawing.open.length > 2 && apart(drawing.open[0], e) <= NEAR) closePolygon();
+    if (drawing.open.length > 2 && apart(drawing.open[0], e) <= near(e)) closePolygon();
     else drawing.open.push(placeOf(e));
     return;
   }
   grip = gripAt(e);
-  if (grip) drawing.chosen = grip.part;
+  if (grip) choose(grip.part);
   else if (drawing.full) return;
   else if (drawing.tool === 'polygon') drawing.open = [placeOf(e)];
   else grip = { ...spreading(addPeak(placeOf(e))), from: [e.offsetX, e.offsetY] };
@@ -124,27 +156,48 @@ function drag(e) {
 }
 
 const STEP = 0.01; // of the domain
-const by = (x, y) => () => S.drawing.chosen && shift(S.drawing.chosen, x * S.run.size[0], y * S.run.size[1]);
+const by = (x, y) => () => {
+  const { chosen, corner } = S.drawing,
+    [dx, dy] = [x * S.run.size[0], y * S.run.size[1]];
+  if (!chosen) return;
+  if (corner >= 0)
+    chosen.corners[corner] = within([chosen.corners[corner][0] + dx, chosen.corners[corner][1] + dy]);
+  else shift(chosen, dx, dy);
+};
 const widen = factor => () => {
   const { chosen } = S.drawing;
   if (chosen?.kind === 'peak') chosen.spread = Math.max(leastSpread(), chosen.spread * factor);
+  else if (chosen) {
+    const [mx, my] = [0, 1].map(
+      axis => chosen.corners.reduce((sum, corner) => sum + corner[axis], 0) / chosen.corners.length,
+    );
+    chosen.corners = chosen.corners.map(([x, y]) => within([mx + factor * (x - mx), my + factor * (y - my)]));
+  }
 };
+// The next corner of the chosen polygon; after the last one the arrows move all of it again.
+function nextCorner() {
+  const { drawing } = S,
+    count = drawing.chosen?.corners?.length ?? 0;
+  drawing.corner = drawing.corner + 1 < count ? drawing.corner + 1 : -1;
+}
 const KEYS = {
   ArrowLeft: by(-STEP, 0),
   ArrowRight: by(STEP, 0),
   ArrowUp: by(0, STEP),
   ArrowDown: by(0, -STEP),
   '+': widen(1.1),
+  '=': widen(1.1),
   '-': widen(1 / 1.1),
   Delete: removeChosen,
   Backspace: removeChosen,
   Enter: () => {
     if (S.drawing.open.length) closePolygon();
-    else if (!S.drawing.full) addPeak(S.run.size.map(l => l / 2));
+    else if (!S.drawing.full) addInTheMiddle();
   },
+  c: nextCorner,
   Escape: () => {
     S.drawing.open = [];
-    S.drawing.chosen = null;
+    choose(null);
   },
 };
 
@@ -169,7 +222,7 @@ export function connectDrawnPointer(changed) {
     changed();
   };
   layer.onkeydown = e => {
-    const action = KEYS[e.key];
+    const action = KEYS[e.key.length === 1 ? e.key.toLowerCase() : e.key];
     if (!action || e.ctrlKey || e.metaKey || e.altKey) return;
     e.preventDefault();
     e.stopPropagation();

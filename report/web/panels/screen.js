@@ -94,7 +94,7 @@ function drawMarkers() {
   paintMarkers(g, shown(), view, mapState());
 }
 
-// The new target that is being drawn.
+// The new target or zone that is being drawn.
 function drawDrawn() {
   const { drawing } = S;
   if (!drawing) return;

@@ -74,9 +74,11 @@ export const livePage = {
     $('slider').max = Math.max(0, run.rows - 1);
     const { marks } = run;
     if (run.newIncidents || marks.length !== run.marksSpoken) {
-      const last = marks[marks.length - 1];
+      const last = marks.findLast(mark => mark.kind !== 'zone'), // zone_words.js speaks of zones
+        words = last ? `${last.text} at ${last.t.toFixed(0)} s` : '';
       run.marksSpoken = marks.length;
-      if (last) put($('spoken'), `${last.text} at ${last.t.toFixed(0)} s`);
+      if (words && words !== run.wordsSpoken) put($('spoken'), words);
+      run.wordsSpoken = words;
       run.newIncidents = false;
       buildStrip();
     }

@@ -27,7 +27,7 @@ export const S = {
   hover: -1, // the agent under the pointer
   pins: new Set(), // agents that were chosen
   pointer: -1, // time under the pointer in the chart
-  drawing: null, // the new target that is being drawn (drawing.js)
+  drawing: null, // the new target or zone that is being drawn (drawing.js)
   theme: 'light',
   colours: null,
 };

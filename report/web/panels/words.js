@@ -20,6 +20,12 @@ const MAP = {
   'New target':
     'Draws peaks and polygons over the present target, and shows what they would change. ' +
     'With control you send them; without, the page shows the command.',
+  'New zone':
+    'Draws a polygon that the team leaves for a time, and shows which agents are inside. ' +
+    'With control you send it; without, the page shows the command.',
+  zone:
+    'A red area: a part of the domain that is closed for a time. Its number is that of the amendment. ' +
+    'The outline is dashed while agents may still be on their way out.',
   amendment:
     'The target at the chosen time is no longer that of the plan. ' +
     'Each moment counts against the target of its time.',
@@ -134,7 +140,9 @@ function isShown(label) {
     'no-entry sign': mission.body_radius_m > 0 || mission.walls?.length > 0,
     pin: true,
     amendment: S.run.targets.length > 1,
-    'New target': S.live && !S.run.inBox,
+    'New target': S.live,
+    'New zone': S.live,
+    zone: S.run.zones.length > 0,
     square: mission.stations?.length > 0,
     'Radio range': mission.radio_range_m > 0,
     'hatched area': S.run.targetAt(S.run.rowAt(S.t)).nowhere?.rectangles.length > 0,

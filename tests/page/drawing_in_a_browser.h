@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A page of a real-time team, on which a target or a zone is drawn.
+#pragma once
+
+#include "tests/page/page_in_a_browser.h"
+
+namespace ergocast::test {
+
+class DrawingInABrowser : public PageInABrowser {
+ protected:
+  enum class Control { kTaken, kNone };
+
+  /// Starts a real-time team and opens its page. With control the page is opened with the token
+  /// that permits orders.
+  void open_page(Control control, const std::filesystem::path& scenario_file) {
+    mission_ =
+        launch_endless(scenario_file, {"--realtime=10", "--watch", "--control", "--port", "8821"});
+    browser_->resize(1300, 900);
+    browser_->open(control == Control::kTaken ? address() : kAddress);
+    ASSERT_TRUE(browser_->becomes("return window.ergocast?.S.facts?.state?.world_tick > 100"));
+    if (control == Control::kTaken) {
+      browser_->click("#take");
+      ASSERT_TRUE(becomes("holder", "You have control"));
+    }
+    ASSERT_TRUE(browser_->becomes("return !document.getElementById('drawTarget').hidden"));
+    // A warning that the machine is slow would move the map between two presses.
+    js("document.getElementById('overload').style.display = 'none'");
+  }
+  void open_page(Control control) { open_page(control, scenario("pace: REALTIME")); }
+  /// With the token that permits orders.
+  std::string address() const {
+    const std::string text = printed(), begin = std::string(kAddress) + "#control=";
+    EXPECT_NE(text.find(begin), text.npos) << text;
+    return text.substr(text.find(begin), begin.size() + 32);
+  }
+  bool becomes(const std::string& id, const std::string& pattern) {
+    return browser_->becomes("return /" + pattern + "/.test(document.getElementById('" + id +
+                             "').textContent)");
+  }
+  bool visible(const std::string& selector) {
+    return js("return document.querySelector('" + selector + "').checkVisibility()").get<bool>();
+  }
+  /// Clicks at corners, and on the first one again: pixels to the right of the map's middle, and
+  /// below it.
+  void click_corners(const std::vector<std::pair<int, int>>& corners) {
+    for (const auto& [right, down] : corners) browser_->drag("#drawn", 0, 0, right, down);
+    browser_->drag("#drawn", 0, 0, corners[0].first, corners[0].second);
+  }
+  /// Both presses in one script, so that no machine is too slow for the second one.
+  void send() {
+    js("const button = document.getElementById('sendDrawn'); button.click(); button.click()");
+  }
+  /// Types into a field.
+  void type(const std::string& id, const std::string& value) {
+    js("const field = document.getElementById('" + id + "'); field.value = '" + value +
+       "'; field.dispatchEvent(new Event('input'))");
+  }
+  nlohmann::json drawn(const std::string& what) { return js("return ergocast.S.drawing" + what); }
+  /// Runs the command that the page shows, without sending anything.
+  int try_command() {
+    Child command = begin({"/bin/sh", "-c",
+                           "cd " + folder_.string() + " && PATH=" + program_folder().string() +
+                               ":$PATH && " + text("drawnCommand") + " --dry-run"});
+    return wait_for(command);
+  }
+  void end_mission() {
+    mission_->send(SIGINT);
+    ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+    mission_->send(SIGINT);
+    EXPECT_EQ(wait_for(*mission_), 0) << printed();
+  }
+
+  static constexpr const char* kAddress = "http://127.0.0.1:8821/";
+  std::optional<Child> mission_;
+};
+
+}  // namespace ergocast::test
