@@ -74,6 +74,12 @@ std::string difference(const StudyFigures& a, const StudyFigures& b) {
   compare("edge_share", a.edge_share, b.edge_share);
   compare("speed_mean_mps", a.speed_mean_mps, b.speed_mean_mps);
   compare("messages", a.messages, b.messages);
+  compare("detection_probability", a.detection_probability, b.detection_probability);
+  compare("half_time_s", a.half_time_s, b.half_time_s);
+  compare("four_fifths_time_s", a.four_fifths_time_s, b.four_fifths_time_s);
+  compare("greatest_age_s", a.greatest_age_s, b.greatest_age_s);
+  compare("wasserstein_m", a.wasserstein_m, b.wasserstein_m);
+  compare("path_m", a.path_m, b.path_m);
   return names;
 }
 

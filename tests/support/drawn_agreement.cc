@@ -191,6 +191,7 @@ void agree_on_vehicles(proto::Scenario& scenario) {
 void agree_on_free_domain(proto::Scenario& scenario) {
   proto::Basis& basis = *scenario.mutable_basis();
   if (scenario.domain().has_size_z_m()) basis.clear_free_domain();
+  if (scenario.domain().has_size_z_m()) scenario.mutable_law()->clear_kind();
   if (!basis.free_domain()) return;
   basis.set_modes_x(std::min(basis.has_modes_x() ? basis.modes_x() : 6, 6));
   basis.set_modes_y(std::min(basis.has_modes_y() ? basis.modes_y() : 6, 6));

@@ -123,6 +123,9 @@ const std::map<std::string, Rule>& rules() {
       {"Scenario.world", may(draw_block)},
       {"Scenario.vehicle", may(draw_block)},
       {"Scenario.separation", may(draw_block)},
+      {"Scenario.sensor", may(draw_block)},
+      {"Sensor.radius_m", may(spread(1, 50))},
+      {"Sensor.detections_per_s", may(spread(0.01, 5))},
       {"Scenario.goal_ergodic_metric", may(spread(1e-9, 1))},
       {"Scenario.origin", may(draw_block)},
       {"Origin.latitude_deg", must(number(54, 54))},  // where the GeoJSON files lie
@@ -190,6 +193,7 @@ const std::map<std::string, Rule>& rules() {
       {"Basis.free_domain", may(kRarely)},  // in a plane, of few modes: see drawn_agreement.h
 
       {"Law.u_max_mps", must(spread(1, 40))},
+      {"Law.kind", may(word(0.8))},
       {"Law.epsilon", may(spread(1e-3, 1))},
       {"Law.noise_intensity", may(spread(0.01, 2))},
       {"Law.noise_ceiling", may(spread(2, 20))},
