@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bugs of new targets, other ends and other laws.
-#include "agent/guidance.h"
 #include "core/law/coverage_table.h"
 #include "core/law/target_shift.h"
 #include "core/mission/end_schedule.h"
+#include "core/mission/law_change.h"
 #include "core/motion/end_rules.h"
 #include "tests/checks_can_fail/bugs.h"
 
@@ -15,7 +15,7 @@ WRAPPED(void, shift_sample, "_ZN8ergocast13CoverageTable12shift_sampleERKNS_6Aut
 WRAPPED(void, note_ends, "_ZN8ergocast11EndSchedule4noteESt4spanIKNS_4HoldELm18446744073709551615EES1_IKNS_9EndChangeELm18446744073709551615EE", EndSchedule*, std::span<const Hold>, std::span<const EndChange>)
 WRAPPED(EndProblem, end_problem, "_ZN8ergocast8EndRules7problemERKNS_7MissionERKNS_10AmendmentsElllSt4spanIKNS_10AgentPlaceELm18446744073709551615EE", EndRules*, const Mission&, const Amendments&, Tick, Tick, Tick, std::span<const AgentPlace>)
 WRAPPED(void, set_rest, "_ZN8ergocast7WayHome8set_restEl", WayHome*, Tick)
-WRAPPED(void, note_law, "_ZN8ergocast8Guidance8note_lawERKNS_7MissionESt4spanIKNS_9LawChangeELm18446744073709551615EEl", Guidance*, const Mission&, std::span<const LawChange>, Tick)
+WRAPPED(const LawChange*, law_at, "_ZN8ergocast6law_atESt4spanIKNS_9LawChangeELm18446744073709551615EEl", std::span<const LawChange>, Tick)
 // clang-format on
 
 void bug_note_targets(TargetShift* self, const Amendments& list) {
@@ -51,11 +51,10 @@ void bug_set_rest(WayHome* self, Tick counted) {
   real_set_rest(self, counted);
 }
 
-void bug_note_law(Guidance* self, const Mission& mission, std::span<const LawChange> laws,
-                  Tick tick) {
+const LawChange* bug_law_at(std::span<const LawChange> laws, Tick tick) {
   if (bug("agents keep to the plan's law")) laws = {};
   if (bug("a law holds a tick late")) --tick;
-  real_note_law(self, mission, laws, tick);
+  return real_law_at(laws, tick);
 }
 
 }  // namespace ergocast
