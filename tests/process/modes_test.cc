@@ -99,9 +99,9 @@ TEST_F(TablesOfModes, AProcessThatComputesAnotherOneStaysOutAndNamesTheFile) {
   Program& bare = hand("ergocast-agent", {"--id", "1"});
   hand("ergocast-coordinator", {two_rooms(), "--modes", other});
   EXPECT_EQ(wait_for(bare.child), 4) << bare.printed();
-  EXPECT_TRUE(bare.answered("start it with --modes and that table's file, modes-"))
+  EXPECT_TRUE(bare.prints("start it with --modes and that table's file, modes-"))
       << bare.printed();
-  EXPECT_TRUE(equipped.answered("admitted")) << equipped.printed();
+  EXPECT_TRUE(equipped.prints("admitted")) << equipped.printed();
   EXPECT_TRUE(equipped.child.running()) << equipped.printed();
 }
 
@@ -112,7 +112,7 @@ TEST_F(TablesOfModes, ALoggerThatComputesAnotherOneStaysOut) {
   Program& logger = hand("ergocast-logger", {"--out", record});
   hand("ergocast-coordinator", {two_rooms(), "--modes", other});
   EXPECT_EQ(wait_for(logger.child), 4) << logger.printed();
-  EXPECT_TRUE(logger.answered("start it with --modes and that table's file, modes-"))
+  EXPECT_TRUE(logger.prints("start it with --modes and that table's file, modes-"))
       << logger.printed();
   EXPECT_TRUE(std::filesystem::is_empty(record)) << logger.printed();
 }
@@ -125,13 +125,13 @@ TEST_F(TablesOfModes, AProcessThatIsHandedAnotherOneOrNoneComputesIt) {
   Program& cut = hand("ergocast-agent", {"--id", "1", "--modes", damaged});
   Program& wrong = hand("ergocast-agent", {"--id", "2", "--modes", other});
   hand("ergocast-coordinator", {two_rooms("", 1)});
-  EXPECT_TRUE(missing.answered("missing.bin: cannot be read as a table of modes; it is computed"))
+  EXPECT_TRUE(missing.prints("missing.bin: cannot be read as a table of modes; it is computed"))
       << missing.printed();
   EXPECT_TRUE(
-      cut.answered("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
+      cut.prints("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
       << cut.printed();
   for (const Program* agent : {&missing, &cut, &wrong})
-    EXPECT_TRUE(agent->answered("admitted")) << agent->printed();
+    EXPECT_TRUE(agent->prints("admitted")) << agent->printed();
 }
 
 TEST_F(TablesOfModes, ThePrintedAndRecordedMetricsNameTheirBasis) {
