@@ -2,8 +2,10 @@
 // ergocast-coordinator: runs the coordinator as a process and logs changes of the roster.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "coordinator/coordinator.h"
@@ -106,16 +108,31 @@ class MissionLog {
   void look_at_amendments(const Coordinator& coordinator) {
     for (const Amendment& one : coordinator.amendments().recent) {
       if (one.number < logged_amendments_) continue;
-      spdlog::info("mission {} from tick {} on (amendment {})", effect_of(one.kind), one.from,
-                   one.number);
+      if (one.kind == AmendmentKind::kZone) {
+        log_zone(one, coordinator.amendments().zones);
+      } else {
+        spdlog::info("mission {} from tick {} on (amendment {})", effect_of(one.kind), one.from,
+                     one.number);
+      }
     }
     logged_amendments_ = coordinator.amendments().named;
+  }
+
+  /// A coordinator that has taken over may not know an older zone.
+  static void log_zone(const Amendment& amendment, std::span<const Zone> zones) {
+    const auto zone = std::ranges::find(zones, amendment.number, &Zone::number);
+    if (zone == zones.end())
+      return spdlog::info("zone {} has ended (amendment {})", to_hex(amendment.hash),
+                          amendment.number);
+    spdlog::info(
+        "zone {} is closed from tick {} on, and free from tick {} until tick {} (amendment {})",
+        to_hex(amendment.hash), zone->closed, zone->from, zone->until, amendment.number);
   }
 
   MissionState state_ = MissionState::kWaiting;
   static const char* effect_of(AmendmentKind kind) {
     constexpr const char* kEffects[] = {"is paused", "counts", "has another target",
-                                        "has another end", "is out of a zone"};
+                                        "has another end"};
     return kEffects[static_cast<int>(kind)];
   }
 
