@@ -141,13 +141,15 @@ ergocast_test(NAME runtime_tests LABELS unit
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
     cli/amend_order_test.cc
+    cli/amendment_lines_test.cc
     cli/control_desk_test.cc
+    cli/pause_order_test.cc
     cli/rate_test.cc
     cli/team_monitor_test.cc
     cli/workers_test.cc
     ${CMAKE_SOURCE_DIR}/cli/progress_line.cc
     ${CMAKE_SOURCE_DIR}/cli/study/workers.cc
-  LIBS ergocast_orders ergocast::core ergocast::runtime)
+  LIBS ergocast_orders ergocast_run_directory ergocast::core ergocast::runtime)
 
 ergocast_test(NAME page_server_tests LABELS unit
   SOURCES

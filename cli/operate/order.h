@@ -58,7 +58,7 @@ Outgoing mission_question(const MonitoredRun& team, Header& header);
 /// Why a coordinator has not named the tick of an amendment.
 std::string why_no_tick(const MonitoredRun& team);
 
-/// ", in 2.0 s", or nothing if the time is not known.
+/// ", in 2.0 s of wall time", or nothing if the time is not known.
 std::string in_seconds(double seconds);
 
 /// "4 of 6 stand, 1 circles; agent 2 still moves", from the world's newest states. A fixed wing
