@@ -74,7 +74,7 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 
 /// Names fields and columns as the file has them.
 Problems as_in_file(Problems problems, const fs::path& file) {
-  const std::string drawing = "file: " + fs::absolute(file).lexically_normal().string() + ": ";
+  const std::string whole_name = fs::absolute(file).lexically_normal().string() + ": ";
   for (Problem& problem : problems) {
     const bool is_unknown = problem.what.starts_with("unknown field");
     if (is_unknown && !problem.remedy.starts_with("did you mean"))
@@ -84,7 +84,10 @@ Problems as_in_file(Problems problems, const fs::path& file) {
       replace_all(*text, std::string(kPath), "polygon");
       replace_all(*text, kBlock, "");
       replace_all(*text, " in Polygon", "");
-      replace_all(*text, drawing, "");
+    }
+    if (is_drawing(file) && problem.where == file.string() + ": file") {
+      problem.where = file.string();
+      replace_all(problem.what, whole_name, "");
     }
     const std::string first = file.string() + ":1:";
     if (!problem.where.starts_with(first)) continue;

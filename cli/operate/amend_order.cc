@@ -125,11 +125,13 @@ const Amendment* successor_of(const MonitoredRun& team, const Amendment& amendme
     return nullptr;
   const auto kind =
       amendment.kind == AmendmentKind::kPause ? AmendmentKind::kResume : amendment.kind;
-  const auto& recent = team.amendments().recent;
-  const auto found = std::ranges::find_if(recent, [&](const Amendment& one) {
-    return one.number > amendment.number && one.kind == kind;
-  });
-  return found == recent.end() ? nullptr : &*found;
+  const Amendment* next = nullptr;
+  for (const Amendment& one : team.amendments().recent) {
+    if (one.number <= amendment.number || one.kind != kind) continue;
+    // A later one from the same tick on has replaced the next one.
+    if (next == nullptr || one.from <= next->from) next = &one;
+  }
+  return next;
 }
 
 /// Whether another amendment took the place of this one before its tick.

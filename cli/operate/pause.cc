@@ -41,14 +41,16 @@ class Pausing : public TeamCommand {
   /// Waits until no vehicle moves, and prints which ones still do.
   std::optional<OrderReport> stand(PauseOrder& order) {
     BrakingWatch braking(kPatience / kTurnTime);
+    std::string shown;
     for (int turns = 1;; ++turns) {
       const OrderReport report = turn(order);
       if (report.state != State::kObeyed) return report;
       if (braking.is_stuck(runs_.begin()->second.standing().speed_mps))
         return OrderReport{State::kFailed, report.text + ", and none of them has slowed down for " +
                                                std::to_string(kPatience.count()) + " s"};
-      if (turns % (kShowPeriod / kTurnTime) == 0) {
-        std::printf("%s\n", report.text.c_str());
+      if (turns % (kShowPeriod / kTurnTime) == 0 && report.text != shown) {
+        shown = report.text;
+        std::printf("%s\n", shown.c_str());
         std::fflush(stdout);
       }
       if (!listen()) return std::nullopt;

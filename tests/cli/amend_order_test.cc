@@ -273,6 +273,7 @@ TEST_F(Amended, TheListNamesWhatHoldsAndWhatHeld) {
   name_pause(list_, 30);
   name_pause(list_, 35);
   name_target(list_, 80, target(0.125));
+  replace_target(list_, target(0.0625));
   announce_list();
   move_to(40);
   const auto text = [&](std::size_t i) {
@@ -285,7 +286,11 @@ TEST_F(Amended, TheListNamesWhatHoldsAndWhatHeld) {
   EXPECT_EQ(text(3), "holds since tick 25, t = 2.5 s");
   EXPECT_EQ(text(4), "held at tick 30, t = 3.0 s, until amendment 5");
   EXPECT_EQ(text(5), "holds since tick 30, t = 3.0 s");
-  EXPECT_EQ(text(6), "holds from tick 75, t = 7.5 s");
+  EXPECT_NE(amendment_text(team_, list_.recent[6]).find("never holds: amendment 7 replaced it"),
+            std::string::npos);
+  EXPECT_EQ(text(7), "holds from tick 75, t = 7.5 s");
+  move_to(85);
+  EXPECT_EQ(text(1), "held from tick 20, t = 2.0 s, until tick 75, t = 7.5 s: amendment 7");
 }
 
 TEST_F(Amended, TheListNamesZonesThatHaveEnded) {

@@ -99,8 +99,7 @@ TEST_F(TablesOfModes, AProcessThatComputesAnotherOneStaysOutAndNamesTheFile) {
   Program& bare = hand("ergocast-agent", {"--id", "1"});
   hand("ergocast-coordinator", {two_rooms(), "--modes", other});
   EXPECT_EQ(wait_for(bare.child), 4) << bare.printed();
-  EXPECT_TRUE(bare.prints("start it with --modes and that table's file, modes-"))
-      << bare.printed();
+  EXPECT_TRUE(bare.prints("start it with --modes and that table's file, modes-")) << bare.printed();
   EXPECT_TRUE(equipped.prints("admitted")) << equipped.printed();
   EXPECT_TRUE(equipped.child.running()) << equipped.printed();
 }
@@ -127,8 +126,7 @@ TEST_F(TablesOfModes, AProcessThatIsHandedAnotherOneOrNoneComputesIt) {
   hand("ergocast-coordinator", {two_rooms("", 1)});
   EXPECT_TRUE(missing.prints("missing.bin: cannot be read as a table of modes; it is computed"))
       << missing.printed();
-  EXPECT_TRUE(
-      cut.prints("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
+  EXPECT_TRUE(cut.prints("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
       << cut.printed();
   for (const Program* agent : {&missing, &cut, &wrong})
     EXPECT_TRUE(agent->prints("admitted")) << agent->printed();
