@@ -2,8 +2,10 @@
 // ergocast-coordinator: runs the coordinator as a process and logs changes of the roster.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "coordinator/coordinator.h"
@@ -106,16 +108,36 @@ class MissionLog {
   void look_at_amendments(const Coordinator& coordinator) {
     for (const Amendment& one : coordinator.amendments().recent) {
       if (one.number < logged_amendments_) continue;
-      spdlog::info("mission {} from tick {} on (amendment {}{}{})", effect_of(one.kind), one.from,
-                   one.number, one.by.empty() ? "" : ", by ", one.by);
+      if (one.kind == AmendmentKind::kZone) {
+        log_zone(one, coordinator.amendments().zones);
+      } else {
+        spdlog::info("mission {} from tick {} on (amendment {})", effect_of(one.kind), one.from,
+                     named_text(one));
+      }
     }
     logged_amendments_ = coordinator.amendments().named;
   }
 
+  /// A coordinator that has taken over may not know an older zone.
+  static void log_zone(const Amendment& amendment, std::span<const Zone> zones) {
+    const auto zone = std::ranges::find(zones, amendment.number, &Zone::number);
+    if (zone == zones.end())
+      return spdlog::info("zone {} has ended (amendment {})", to_hex(amendment.hash),
+                          named_text(amendment));
+    spdlog::info(
+        "zone {} is closed from tick {} on, and free from tick {} until tick {} (amendment {})",
+        to_hex(amendment.hash), zone->closed, zone->from, zone->until, named_text(amendment));
+  }
+
+  /// "3, by anna@base"
+  static std::string named_text(const Amendment& amendment) {
+    return std::to_string(amendment.number) + (amendment.by.empty() ? "" : ", by " + amendment.by);
+  }
+
   MissionState state_ = MissionState::kWaiting;
   static const char* effect_of(AmendmentKind kind) {
-    constexpr const char* kEffects[] = {"is paused",       "counts",           "has another target",
-                                        "has another end", "is out of a zone", "has another law"};
+    constexpr const char* kEffects[] = {"is paused",       "counts", "has another target",
+                                        "has another end", "",       "has another law"};
     return kEffects[static_cast<int>(kind)];
   }
 

@@ -13,7 +13,6 @@
 #include <span>
 #include <string_view>
 
-#include "core/mission/end_schedule.h"
 #include "core/mission/kinds.h"
 #include "logger/amendments_file.h"
 #include "logger/recorder.h"
@@ -143,11 +142,10 @@ std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
 
 }  // namespace
 
-bool RunData::rests(const Mission& mission, AgentId id, Tick tick) const {
-  const auto recall = recalls.find(id);
-  return (recall != recalls.end() && tick >= recall->second) ||
-         EndSchedule(mission, holds(), amendments.ends())
-             .rests(mission, id, counted_ticks(holds(), tick));
+bool RecordedRests::rests(AgentId id, Tick tick) const {
+  const auto recall = run_.recalls.find(id);
+  return (recall != run_.recalls.end() && tick >= recall->second) ||
+         ends_.rests(mission_, id, counted_ticks(run_.holds(), tick));
 }
 
 double RunData::end_s() const {
@@ -237,11 +235,12 @@ Coefficients coverage_of(const RunData& run, const Mission& mission) {
   Coefficients sums = Coefficients::Zero(mission.basis.mode_count());
   double samples = 0;
   const Sensors sensors(mission);
+  const RecordedRests rests(run, mission);
   for (const auto& [agent, track] : run.tracks) {
     const Sensor& sensor = sensors.of(planned_kind(mission, agent));
     for (const TrackPoint& point : track) {
       if (!mission.domain.contains(point.x_m) || is_held(run.holds(), point.tick)) continue;
-      if (run.rests(mission, agent, point.tick)) continue;
+      if (rests.rests(agent, point.tick)) continue;
       samples += sensor.sample(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
                                sums.data());
     }

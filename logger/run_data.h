@@ -13,6 +13,7 @@
 #include "core/base/ids.h"
 #include "core/base/result.h"
 #include "core/basis/basis.h"
+#include "core/mission/end_schedule.h"
 #include "core/mission/hold.h"
 #include "core/mission/mission.h"
 #include "logger/received_amendments.h"
@@ -51,10 +52,24 @@ struct RunData {
 
   /// Ticks that do not count.
   const std::vector<Hold>& holds() const { return amendments.holds(); }
-  /// Whether an agent rests at a tick: by the plan, or because it was recalled.
-  bool rests(const Mission& mission, AgentId id, Tick tick) const;
   bool empty() const { return tracks.empty(); }
   double end_s() const;  ///< time of the last row, 0 if there is none
+};
+
+/// Which agents of a record rest at which tick: by the plan and its other ends, or because they
+/// were recalled.
+class RecordedRests {
+ public:
+  /// @param run      outlives this object, as `mission` does
+  RecordedRests(const RunData& run, const Mission& mission)
+      : run_(run), mission_(mission), ends_(mission, run.holds(), run.amendments.ends()) {}
+
+  bool rests(AgentId id, Tick tick) const;
+
+ private:
+  const RunData& run_;
+  const Mission& mission_;
+  EndSchedule ends_;
 };
 
 /// The mission of the record's plan.binpb, or an error that names the file.

@@ -127,6 +127,7 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
   Numbers result(shape);
   double* out = result.mutable_data();
   std::fill(out, out + result.size(), 0.0);
+  const RecordedRests rests(record.rows, mission);
   Observer observer;
   observer.begin(mission);
   auto next = ticks.begin();
@@ -154,7 +155,7 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
     write_before(point.tick);
     aim_at(point.tick);
     const bool counts =
-        !is_held(record.rows.holds(), point.tick) && !record.rows.rests(mission, agent, point.tick);
+        !is_held(record.rows.holds(), point.tick) && !rests.rests(agent, point.tick);
     if (counts && is_member(agent, point.tick)) {
       const Tick counted = counted_ticks(record.rows.holds(), point.tick);
       observer.see(mission, counted, planned_kind(mission, agent), point.x_m);

@@ -3,7 +3,11 @@
 #include "scenario/zone_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "scenario/compile/defaults.h"
@@ -28,12 +32,39 @@ using Problems = std::vector<Problem>;
 constexpr std::string_view kBefore = "target{keep_outs{", kAfter = "\n}}";
 constexpr std::string_view kPath = "target.keep_outs[0]";
 const std::string kBlock = "target.keep_outs.";
+/// What a text has.
+const std::string kCorners = "vertices { x_m: … y_m: … } for each corner";
+
+/// As is_zone() has it, in multiples of the domain's longer side.
+constexpr double kFarthest = 10;
 
 std::string field(const std::string& name) { return std::string(kPath) + "." + name; }
 
-bool is_drawing(const fs::path& file) {
+bool is_geojson(const fs::path& file) {
   const std::string end = file.extension().string();
-  return end == ".geojson" || end == ".json" || end == ".svg";
+  return end == ".geojson" || end == ".json";
+}
+bool is_drawing(const fs::path& file) { return is_geojson(file) || file.extension() == ".svg"; }
+
+/// Whether the text has any field of a scenario, which may have mistakes.
+bool is_scenario(const std::string& text) {
+  proto::Scenario scenario;
+  Findings mistakes("");
+  read_text(text, scenario, mistakes);
+  return scenario.ByteSizeLong() > 0;
+}
+
+/// Why a text is no polygon as a whole, and what to do; nothing if it may be one.
+std::optional<FileProblem> why_no_polygon(const std::string& text) {
+  const auto is = [](const char* what, std::string remedy) {
+    return FileProblem{FileProblem::Kind::kUnreadable, what, std::move(remedy)};
+  };
+  if (text.find_first_not_of(" \t\r\n") == text.npos) return is("is empty", "write " + kCorners);
+  if (is_scenario(text))
+    return is("is a scenario, and a zone is one polygon", "write only " + kCorners);
+  if (text.find("x_m") == text.npos && text.find("file") == text.npos)
+    return is("is no polygon", "name GeoJSON (.geojson), a drawing (.svg) or a text: " + kCorners);
+  return std::nullopt;
 }
 
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
@@ -43,11 +74,20 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 
 /// Names fields and columns as the file has them.
 Problems as_in_file(Problems problems, const fs::path& file) {
+  const std::string whole_name = fs::absolute(file).lexically_normal().string() + ": ";
   for (Problem& problem : problems) {
+    const bool is_unknown = problem.what.starts_with("unknown field");
+    if (is_unknown && !problem.remedy.starts_with("did you mean"))
+      problem.remedy = "a zone's text has " + kCorners + ", and in a box low_z_m and high_z_m";
     for (std::string* text : {&problem.where, &problem.what, &problem.remedy}) {
       replace_all(*text, field(""), "");
       replace_all(*text, std::string(kPath), "polygon");
       replace_all(*text, kBlock, "");
+      replace_all(*text, " in Polygon", "");
+    }
+    if (is_drawing(file) && problem.where == file.string() + ": file") {
+      problem.where = file.string();
+      replace_all(problem.what, whole_name, "");
     }
     const std::string first = file.string() + ":1:";
     if (!problem.where.starts_with(first)) continue;
@@ -59,16 +99,49 @@ Problems as_in_file(Problems problems, const fs::path& file) {
 
 /// Fills in the keep-out; false if the file cannot be read, which is then reported.
 bool read_polygon(const fs::path& file, proto::Scenario& scenario, Findings& findings) {
-  if (is_drawing(file)) {
+  std::error_code ignored;
+  if (is_drawing(file) && fs::file_size(file, ignored) != 0) {
     scenario.mutable_target()->add_keep_outs()->set_file(file.filename().string());
     return true;
   }
   auto text = read_whole(file, kMaxScenarioBytes);
-  if (!text) {
-    findings.add_to_file(text.error().what, text.error().remedy);
+  const auto problem = text ? why_no_polygon(*text) : text.error();
+  if (problem) {
+    findings.add_to_file(problem->what, problem->remedy);
     return false;
   }
   return read_text(std::string(kBefore) + *text + std::string(kAfter), scenario, findings);
+}
+
+/// Reports the first coordinate that is no number, or far from the domain.
+bool has_near_numbers(const proto::Polygon& polygon, const Box& domain, Checks& checks) {
+  const double far_m = kFarthest * domain.size_m.maxCoeff();
+  const auto is_near = [&](const std::string& name, double value_m, int axis) {
+    const double low_m = domain.origin_m[axis] - far_m;
+    const double high_m = domain.origin_m[axis] + domain.size_m[axis] + far_m;
+    const std::string wanted = "from " + shortest(low_m) + " to " + shortest(high_m);
+    return checks.in_range(field(name), value_m, {limits::between(low_m, high_m)}, wanted);
+  };
+  for (int i = 0; i < polygon.vertices_size(); ++i) {
+    const std::string vertex = indexed("vertices", i) + '.';
+    const proto::Vertex& corner = polygon.vertices(i);
+    if (!is_near(vertex + "x_m", corner.x_m(), 0) || !is_near(vertex + "y_m", corner.y_m(), 1))
+      return false;
+  }
+  return true;
+}
+
+/// Reports a prism that has no height, or none in the domain.
+void check_heights(const proto::Polygon& polygon, const Box& domain, Checks& checks) {
+  const double floor_m = domain.origin_m.z(), top_m = floor_m + domain.size_m.z();
+  const double low_m = polygon.has_low_z_m() ? polygon.low_z_m() : floor_m;
+  const double high_m = polygon.has_high_z_m() ? polygon.high_z_m() : top_m;
+  const bool has_height = low_m < high_m && std::isfinite(low_m) && std::isfinite(high_m);
+  if (has_height && low_m < top_m && high_m > floor_m) return;
+  checks.problem(
+      field(polygon.has_low_z_m() ? "low_z_m" : "high_z_m"),
+      "from " + shortest(low_m) + " to " + shortest(high_m) + " m it has no height in the domain",
+      "write low_z_m below high_z_m, between " + shortest(floor_m) + " and " + shortest(top_m));
 }
 
 /// Reports what a zone may not be, though a keep-out may.
@@ -85,9 +158,11 @@ void check(const proto::Scenario& scenario, Checks& checks) {
   if (polygon.holes_size() > 0)
     checks.problem(field("holes[0]"), "a zone has no holes", "cut the polygon into two zones");
   const Box domain = domain_of(scenario.domain());
+  if (!has_near_numbers(polygon, domain, checks)) return;
   const auto flaw = flaw_of(polygon_of(polygon), least_area_m2(domain.size_m.maxCoeff()));
   if (flaw && polygon.holes_size() == 0)
-    checks.problem(std::string(kPath), flaw->what, flaw->remedy);
+    checks.problem(flaw->corner < 0 ? std::string(kPath) : field(indexed("vertices", flaw->corner)),
+                   flaw->what, flaw->remedy);
   if (polygon.vertices_size() > static_cast<int>(kMaxZoneCorners))
     checks.problem(std::string(kPath),
                    "has " + std::to_string(polygon.vertices_size()) + " corners, above the limit " +
@@ -96,6 +171,8 @@ void check(const proto::Scenario& scenario, Checks& checks) {
   if (domain.planar()) {
     if (polygon.has_low_z_m()) checks.of_a_box_alone(field("low_z_m"));
     if (polygon.has_high_z_m()) checks.of_a_box_alone(field("high_z_m"));
+  } else {
+    check_heights(polygon, domain, checks);
   }
 }
 
@@ -137,6 +214,12 @@ Result<Zone, Problems> load_zone(const fs::path& file, const std::string& runnin
   if (!read_polygon(file, scenario, findings) || !findings.empty()) return problems();
   Checks checks(findings);
   place_in(mission, scenario, checks);
+  if (is_geojson(file) && !scenario.has_origin()) {
+    findings.add_to_file(
+        "needs the origin of the mission's scenario, which has none, or is not on this host",
+        "write the corners in metres in a text: " + kCorners);
+    return problems();
+  }
   const Box domain = domain_of(scenario.domain());
   proto::Polygon as_written =
       scenario.target().keep_outs_size() > 0 ? scenario.target().keep_outs(0) : proto::Polygon();
@@ -151,12 +234,9 @@ Result<Zone, Problems> load_zone(const fs::path& file, const std::string& runnin
   }
   if (!is_sound(scenario, checks, findings)) return problems();
   const Zone zone = zone_of(scenario.target().keep_outs(0), domain);
-  if (!is_zone(zone, domain)) {
-    checks.problem(std::string(kPath), "is far from the domain, or its heights are",
-                   "move it into the domain, with low_z_m below high_z_m");
-    return problems();
-  }
-  return zone;
+  if (is_zone(zone, domain)) return zone;
+  checks.problem(std::string(kPath), "cannot be a zone of this domain", "draw it anew");
+  return problems();
 }
 
 }  // namespace ergocast

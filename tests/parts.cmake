@@ -143,8 +143,10 @@ ergocast_test(NAME runtime_tests LABELS unit
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
     cli/amend_order_test.cc
+    cli/amendment_lines_test.cc
     cli/control_desk_test.cc
     cli/new_law_test.cc
+    cli/pause_order_test.cc
     cli/rate_test.cc
     cli/team_monitor_test.cc
     cli/workers_test.cc

@@ -62,7 +62,9 @@ class Amending : public TeamCommand {
     const TargetChange change = target_change_of(*compiled);
     // What has arrived meanwhile.
     if (!listen()) return interrupted();
-    return options_.dry_run ? describe(change) : order(wish_of(change), delay());
+    if (!options_.dry_run) return order(wish_of(change), delay());
+    const auto problem = why_impossible(team(), wish_of(change), delay());
+    return problem ? report_error(kExitFailed, *problem) : describe(change);
   }
 
   const MonitoredRun& team() const { return runs_.begin()->second; }
@@ -172,7 +174,10 @@ class Amending : public TeamCommand {
               " to leave the zone: name a later time, leave --at out, or add --force and see "
               "which agents are inside then");
     if (!listen()) return interrupted();
-    if (options_.dry_run) return describe(zone, notice);
+    if (options_.dry_run) {
+      const auto problem = why_impossible(team(), wish_of(zone), notice);
+      return problem ? report_error(kExitFailed, *problem) : describe(zone, notice);
+    }
     const int code = order(wish_of(zone), notice);
     return code == kExitDone ? who_is_inside(zone) : code;
   }
@@ -190,12 +195,15 @@ class Amending : public TeamCommand {
   int describe(const Zone& zone, Tick notice) const {
     const Mission& mission = team().mission();
     const std::string inside = inside_text(team(), zone);
-    std::printf("no problems: zone %s, %zu corners, for %s\n", to_hex(zone_hash(zone)).c_str(),
-                zone.corners_m.size(), seconds_text(zone.until, mission).c_str());
+    std::printf("no problems: zone %s, %zu corners, for %s of the world's time\n",
+                to_hex(zone_hash(zone)).c_str(), zone.corners_m.size(),
+                seconds_text(zone.until, mission).c_str());
     std::printf("now %s\n", inside.empty() ? "nobody is in it" : inside.c_str());
-    std::printf("it would be amendment %d, closed at the earliest from %s on, and free %s later\n",
-                team().amendments().named, team().mission_time(earliest_tick(team(), 0)).c_str(),
-                seconds_text(notice, mission).c_str());
+    std::printf(
+        "it would be amendment %d, closed at the earliest from %s on, and free %s of the "
+        "world's time later\n",
+        team().amendments().named, team().mission_time(earliest_tick(team(), 0)).c_str(),
+        seconds_text(notice, mission).c_str());
     std::printf("nothing was sent\n");
     return kExitDone;
   }
@@ -251,7 +259,14 @@ double delay_from(std::string text) {
   }
   throw CLI::ValidationError(
       "--at",
-      "\"" + written + "\" is no time from now on: write +10s for ten seconds of mission time");
+      "\"" + written + "\" is no time from now on: write +10s for ten seconds of the world's time");
+}
+
+std::int32_t number_from(const std::string& text) {
+  if (const auto number = read_number<std::int32_t>(text)) return *number;
+  throw CLI::ValidationError(
+      "--cancel",
+      "\"" + text + "\" is no number of an amendment: ergocast amend --list shows them");
 }
 
 EndWish end_from(const std::string& text) {
@@ -270,7 +285,7 @@ double duration_from(std::string text) {
   const auto value = read_number<double>(text);
   if (value && *value > 0 && *value <= kMostDelay_s) return *value;
   throw CLI::ValidationError(
-      "--for", "\"" + written + "\" is no time: write 600s for ten minutes of mission time");
+      "--for", "\"" + written + "\" is no time: write 600s for ten minutes of the world's time");
 }
 
 LawWish law_from(const std::string& text) {
@@ -311,8 +326,8 @@ void add_zone_options(CLI::App& command, AmendOptions& options) {
           .add_option_function<std::string>(
               "--for",
               [&options](const std::string& text) { options.zone_lasts_s = duration_from(text); },
-              "How long the zone lasts from when nobody is inside: 600s; a pause does not stop "
-              "this time")
+              "How long the zone lasts from when nobody is inside, in the world's time, which a "
+              "pause does not stop: 600s")
           ->type_name("TIME");
   auto* force = command.add_flag(
       "--force", options.force,
@@ -338,8 +353,7 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
       .add_option_function<std::string>(
           "--at", [&options](const std::string& text) { options.delay_s = delay_from(text); },
           "How much later than necessary a target or law holds, or how long after it is closed a "
-          "zone is "
-          "free, in mission time: +10s")
+          "zone is free, in the world's time, which a pause does not stop: +10s")
       ->type_name("+TIME");
   command
       .add_option_function<std::string>(
@@ -348,8 +362,9 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
           "the end that holds")
       ->type_name("TIME");
   command
-      .add_option("--cancel", options.cancel,
-                  "Undo amendment N, as --list numbers it: what held before it holds again")
+      .add_option_function<std::string>(
+          "--cancel", [&options](const std::string& text) { options.cancel = number_from(text); },
+          "Undo amendment N, as --list numbers it: what held before it holds again")
       ->type_name("N");
   command.add_flag("--dry-run", options.dry_run,
                    "Only check the target, law or zone and show what would change; send nothing");
@@ -380,9 +395,10 @@ void add_amend(CLI::App& app, Action& action) {
       "A later end must be named 10 s of mission time before the end that holds; an earlier one\n"
       "is possible if each agent can be at its station in time.\n"
       "Another law binds only agents that cover: they go home and leave zones as fast as planned.\n"
-      "Exit codes: 0 it holds, or nobody is in the zone; 2 the target, end, zone or law has\n"
-      "problems, or several runs are found; 3 LCM cannot be used; 4 no team is found, it was not\n"
-      "seen to obey, or agents are in the zone.");
+      "Exit codes: 0 it holds, or nobody is in the zone; 2 an option, the target, the zone or the\n"
+      "law has problems, or several runs are found; 3 LCM cannot be used; 4 no team is found, the\n"
+      "mission as it is now cannot get this amendment, the team was not seen to obey, another\n"
+      "amendment took its place, or agents are in the zone.");
   command->callback([&action, options, command] {
     const bool has_target = !options->target.empty() || !options->overrides.fields.empty();
     if (!has_target && options->zone.empty() && options->law.empty() && !options->list &&

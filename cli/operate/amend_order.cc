@@ -90,15 +90,87 @@ std::optional<std::string> why_no_place(const MonitoredRun& team) {
          "repeat the order when the first of them has ended, at " + team.mission_time(first);
 }
 
-/// ", closed since tick 500, t = 50.0 s, until tick 900, t = 90.0 s".
-std::string zone_ticks_text(const MonitoredRun& team, std::int32_t number) {
-  for (const Zone& zone : team.amendments().zones) {
-    if (zone.number != number) continue;
-    const bool closed = team.tick() >= zone.closed, ended = team.tick() >= zone.until;
-    return (closed ? ", closed since " : ", closed from ") + team.mission_time(zone.closed) +
-           (ended ? ", ended at " : ", until ") + team.mission_time(zone.until);
+/// The coordinator decides by the same rules, with newer places.
+std::optional<std::string> why_no_end(const MonitoredRun& team, const AmendmentWish& wish,
+                                      Tick delay) {
+  const auto wanted = static_cast<Tick>(wish.hash);
+  const std::string when = end_text(team, wanted);
+  EndRules rules;
+  switch (rules.problem(team.mission(), team.amendments(), team.tick(), earliest_tick(team, delay),
+                        wanted, team.places())) {
+    case EndProblem::kNone:
+      return std::nullopt;
+    case EndProblem::kSame:
+      return "the mission ends at " + when + " already";
+    case EndProblem::kFull:
+      return "a mission can get " + std::to_string(kMaxEnds) +
+             " other ends, and this one has had them: end it with ergocast stop";
+    case EndProblem::kPassed:
+      return when + " has passed before all agents can know it: name a later end, or use " +
+             "ergocast stop";
+    case EndProblem::kTooLate:
+      return "a later end must be named " + std::to_string(static_cast<int>(kEndNotice_s)) +
+             " s of mission time before the end that holds, and that is at " +
+             end_text(team, team.tick_count()) + ": start another mission";
+    case EndProblem::kTooFar:
+      return "agent " + std::to_string(rules.too_far()) +
+             " cannot be at its station in time for an end at " + when + ": name a later end";
   }
-  return "";
+  return std::nullopt;
+}
+
+/// "holds since tick 517, t = 51.7 s".
+std::string since_text(const MonitoredRun& team, Tick from) {
+  const bool holds = team.tick() >= from;
+  return (holds ? "holds since " : "holds from ") + team.mission_time(from) +
+         (holds ? "" : in_seconds(team.seconds_until(from)));
+}
+
+/// "was closed from … until …", or "holds since …, closed since …, until …".
+std::string zone_ticks_text(const MonitoredRun& team, const Amendment& amendment) {
+  const auto& zones = team.amendments().zones;
+  const auto zone = std::ranges::find(zones, amendment.number, &Zone::number);
+  if (zone == zones.end()) return "has ended";  // the list has only zones that had not ended
+  const std::string until = team.mission_time(zone->until);
+  if (team.tick() >= zone->until)
+    return "was closed from " + team.mission_time(zone->closed) + " until " + until;
+  return since_text(team, amendment.from) +
+         (team.tick() >= zone->closed ? ", closed since " : ", closed from ") +
+         team.mission_time(zone->closed) + ", until " + until;
+}
+
+/// The amendment that ends what a target, an end or a pause has changed; null if none is named.
+const Amendment* successor_of(const MonitoredRun& team, const Amendment& amendment) {
+  if (amendment.kind == AmendmentKind::kZone || amendment.kind == AmendmentKind::kResume)
+    return nullptr;
+  const auto kind =
+      amendment.kind == AmendmentKind::kPause ? AmendmentKind::kResume : amendment.kind;
+  const Amendment* next = nullptr;
+  for (const Amendment& one : team.amendments().recent) {
+    if (one.number <= amendment.number || one.kind != kind) continue;
+    // A later one from the same tick on has replaced the next one.
+    if (next == nullptr || one.from <= next->from) next = &one;
+  }
+  return next;
+}
+
+/// Whether another amendment took the place of this one before its tick.
+bool never_holds(const MonitoredRun& team, const Amendment& amendment) {
+  const Amendment* const next = successor_of(team, amendment);
+  return next != nullptr && next->from <= amendment.from;
+}
+
+std::string ticks_text(const MonitoredRun& team, const Amendment& amendment) {
+  if (amendment.kind == AmendmentKind::kZone) return zone_ticks_text(team, amendment);
+  const Amendment* const next = successor_of(team, amendment);
+  if (next == nullptr || (team.tick() < next->from && !never_holds(team, amendment)))
+    return since_text(team, amendment.from);
+  const std::string number = "amendment " + std::to_string(next->number);
+  const std::string from = team.mission_time(amendment.from);
+  if (never_holds(team, amendment)) return "never holds: " + number + " replaced it before " + from;
+  // No mission time passes in a pause.
+  if (amendment.kind == AmendmentKind::kPause) return "held at " + from + ", until " + number;
+  return "held from " + from + ", until " + team.mission_time(next->from) + ": " + number;
 }
 
 }  // namespace
@@ -171,7 +243,7 @@ void AmendOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
   if (team.over()) return;
   if (team.is_running() && !number_) {
     number_ = team.amendments().named;
-    problem_ = why_impossible(team);
+    problem_ = why_impossible(team, wish_, delay_);
     since_ = now;
     next_ = now;
   }
@@ -197,49 +269,21 @@ void AmendOrder::send_parts(const MonitoredRun& team, Outbox& out) {
   }
 }
 
-/// Why no coordinator would obey; nothing if one may.
-std::optional<std::string> AmendOrder::why_impossible(const MonitoredRun& team) const {
-  if (*number_ >= kMaxAmendments)
+std::optional<std::string> why_impossible(const MonitoredRun& team, const AmendmentWish& wish,
+                                          Tick delay) {
+  if (team.amendments().named >= kMaxAmendments)
     return "a mission can be amended " + std::to_string(kMaxAmendments) +
            " times, and this one has been: end it with ergocast stop";
-  if (delay_ >= team.ticks_left())
+  if (delay >= team.ticks_left())
     return "the mission ends before that, at " +
            team.mission_time(team.tick() + team.ticks_left()) + ": name an earlier time";
-  if (wish_.kind == AmendmentKind::kEnd) return why_no_end(team);
-  if (wish_.kind == AmendmentKind::kZone) return why_no_place(team);
-  const auto waiting = waiting_for(wish_.kind, team);
-  const std::chrono::duration<double> patience = kAnswerPatience;
-  if (wish_.brings_back || !waiting || team.seconds_until(waiting->from) < patience.count())
+  if (wish.kind == AmendmentKind::kEnd) return why_no_end(team, wish, delay);
+  if (wish.kind == AmendmentKind::kZone) return why_no_place(team);
+  const auto waiting = waiting_for(wish.kind, team);
+  const std::chrono::duration<double> patience = Order::kAnswerPatience;
+  if (wish.brings_back || !waiting || team.seconds_until(waiting->from) < patience.count())
     return std::nullopt;
-  return waiting_text(team, wish_.kind, *waiting);
-}
-
-/// The coordinator decides by the same rules, with newer places.
-std::optional<std::string> AmendOrder::why_no_end(const MonitoredRun& team) const {
-  const auto wanted = static_cast<Tick>(wish_.hash);
-  const std::string when = end_text(team, wanted);
-  EndRules rules;
-  switch (rules.problem(team.mission(), team.amendments(), team.tick(), earliest_tick(team, delay_),
-                        wanted, team.places())) {
-    case EndProblem::kNone:
-      return std::nullopt;
-    case EndProblem::kSame:
-      return "the mission ends at " + when + " already";
-    case EndProblem::kFull:
-      return "a mission can get " + std::to_string(kMaxEnds) +
-             " other ends, and this one has had them: end it with ergocast stop";
-    case EndProblem::kPassed:
-      return when + " has passed before all agents can know it: name a later end, or use " +
-             "ergocast stop";
-    case EndProblem::kTooLate:
-      return "a later end must be named " + std::to_string(static_cast<int>(kEndNotice_s)) +
-             " s of mission time before the end that holds, and that is at " +
-             end_text(team, team.tick_count()) + ": start another mission";
-    case EndProblem::kTooFar:
-      return "agent " + std::to_string(rules.too_far()) +
-             " cannot be at its station in time for an end at " + when + ": name a later end";
-  }
-  return std::nullopt;
+  return waiting_text(team, wish.kind, *waiting);
 }
 
 OrderReport AmendOrder::report(const MonitoredRun& team, Instant now) const {
@@ -256,7 +300,7 @@ OrderReport AmendOrder::unnamed(const MonitoredRun& team, Instant now) const {
   if (const auto waiting = waiting_for(wish_.kind, team))
     return {State::kFailed, waiting_text(team, wish_.kind, *waiting)};
   if (wish_.kind == AmendmentKind::kEnd)
-    if (const auto problem = why_no_end(team)) return {State::kFailed, *problem};
+    if (const auto problem = why_no_end(team, wish_, delay_)) return {State::kFailed, *problem};
   return {State::kFailed, why_no_tick(team)};
 }
 
@@ -265,6 +309,7 @@ OrderReport AmendOrder::named(const MonitoredRun& team) const {
   if (amendment_->kind != wish_.kind || amendment_->hash != wish_.hash)
     return {State::kFailed, "another operator was first: " + text +
                                 ". This order had no effect: repeat it if it is still wanted"};
+  if (never_holds(team, *amendment_)) return {State::kFailed, text};
   if (team.tick() >= amendment_->from) return {State::kDone, text};
   if (team.over()) return {State::kFailed, "the mission has ended: " + team.reason()};
   return {State::kAnswered, text};
@@ -277,12 +322,8 @@ Tick earliest_tick(const MonitoredRun& team, Tick delay) {
 }
 
 std::string amendment_text(const MonitoredRun& team, const Amendment& amendment) {
-  const bool holds = team.tick() >= amendment.from;
   return "amendment " + std::to_string(amendment.number) + ", " + kind_text(team, amendment) +
-         (holds ? ", holds since " : ", holds from ") + team.mission_time(amendment.from) +
-         (holds ? "" : in_seconds(team.seconds_until(amendment.from))) +
-         zone_ticks_text(team, amendment.number) +
-         (amendment.by.empty() ? "" : ", by " + amendment.by);
+         ", " + ticks_text(team, amendment) + (amendment.by.empty() ? "" : ", by " + amendment.by);
 }
 
 std::string inside_text(const MonitoredRun& team, const Zone& zone) {

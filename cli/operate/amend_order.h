@@ -38,6 +38,10 @@ AmendmentWish wish_of(const LawChange& law);
 /// to do instead. @pre team.knows_mission()
 Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std::int32_t number);
 
+/// Why no coordinator would name this now; nothing if one may. @pre team.knows_mission()
+std::optional<std::string> why_impossible(const MonitoredRun& team, const AmendmentWish& wish,
+                                          Tick delay);
+
 class AmendOrder final : public Order {
  public:
   /// @param delay   how many ticks later than necessary it shall hold
@@ -51,8 +55,6 @@ class AmendOrder final : public Order {
 
  private:
   void send_parts(const MonitoredRun& team, Outbox& out);
-  std::optional<std::string> why_impossible(const MonitoredRun& team) const;
-  std::optional<std::string> why_no_end(const MonitoredRun& team) const;
   OrderReport unnamed(const MonitoredRun& team, Instant now) const;
   OrderReport named(const MonitoredRun& team) const;
   Instant::duration period() const;
@@ -74,8 +76,9 @@ Tick earliest_tick(const MonitoredRun& team, Tick delay);
 /// "agents 1 and 4 are in it" for the zone of an amendment; empty if nobody is.
 std::string inside_text(const MonitoredRun& team, const Zone& zone);
 
-/// "amendment 3, target 5f0c…, holds since tick 517, t = 51.7 s", or "… holds from tick 517,
-/// t = 51.7 s, in 2.0 s", then ", by anna@base" if its operator is known. @pre team.knows_mission()
+/// "amendment 3, target 5f0c…, holds since tick 517, t = 51.7 s", or "holds from …, in 2.0 s of
+/// wall time", "held from …, until …", "never holds: …", then ", by anna@base" if its operator is
+/// known. @pre team.knows_mission()
 std::string amendment_text(const MonitoredRun& team, const Amendment& amendment);
 
 }  // namespace ergocast::cli

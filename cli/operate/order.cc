@@ -50,7 +50,7 @@ std::string why_no_tick(const MonitoredRun& team) {
 std::string in_seconds(double seconds) {
   if (!(seconds > 0)) return {};
   char text[32];
-  std::snprintf(text, sizeof text, ", in %.1f s", seconds);
+  std::snprintf(text, sizeof text, ", in %.1f s of wall time", seconds);
   return text;
 }
 

@@ -61,7 +61,7 @@ std::string why_no_tick(const MonitoredRun& team);
 /// "anna@base": the operator of this process, as amendments name it.
 std::string own_operator_name();
 
-/// ", in 2.0 s", or nothing if the time is not known.
+/// ", in 2.0 s of wall time", or nothing if the time is not known.
 std::string in_seconds(double seconds);
 
 /// "4 of 6 stand, 1 circles; agent 2 still moves", from the world's newest states. A fixed wing

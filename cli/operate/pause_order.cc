@@ -15,6 +15,16 @@ using State = OrderReport::State;
 
 }  // namespace
 
+bool BrakingWatch::is_stuck(double speed_mps) {
+  constexpr double kSlower = 0.999;  // a vehicle that brakes is soon slower by more
+  ++idle_;
+  if (speed_mps < kSlower * least_mps_) {
+    least_mps_ = speed_mps;
+    idle_ = 0;
+  }
+  return idle_ >= patience_;
+}
+
 PauseOrder::PauseOrder(bool pauses, Instant now, std::string by)
     : pauses_(pauses),
       by_(std::move(by)),
@@ -53,6 +63,9 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
 
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {
   if (!number_) return waiting_for_mission(team, now - since_);
+  // A mission that goes on may end before the next look at it.
+  if (!pauses_ && was_named_ && is_named(team) && team.tick() >= team.holds().back().until)
+    return resumed(team);
   if (team.over()) return {State::kFailed, "the mission has ended: " + team.reason()};
   if (!is_named(team) && was_named_)
     return {State::kDone, pauses_ ? "the mission was resumed" : "the mission was paused again"};
@@ -79,13 +92,14 @@ OrderReport PauseOrder::paused(const MonitoredRun& team) const {
               standing_text(team)};
 }
 
-/// A resumption counts as obeyed before its tick, because no operator has to wait for that.
 OrderReport PauseOrder::resumed(const MonitoredRun& team) const {
-  if (obsolete_ || team.holds().empty()) return {State::kDone, "the mission is not paused"};
+  if (team.holds().empty()) return {State::kDone, "the mission is not paused"};
   const Tick named = team.holds().back().until;
-  const std::string when = "the mission goes on at " + team.mission_time(named);
-  if (team.tick() >= named) return {State::kDone, when};
-  return {State::kObeyed, when + in_seconds(team.seconds_until(named))};
+  const std::string when = team.mission_time(named);
+  if (team.tick() < named)
+    return {State::kAnswered, "the coordinator resumes the mission at " + when +
+                                  in_seconds(team.seconds_until(named))};
+  return {State::kDone, obsolete_ ? "the mission is not paused" : "the mission goes on at " + when};
 }
 
 std::string PauseOrder::why_not(const MonitoredRun& team) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -10,6 +11,22 @@
 #include "team/messages.h"
 
 namespace ergocast::cli {
+
+/// Finds out whether vehicles that still move have stopped slowing down. It counts looks, not time:
+/// the process may have been stopped.
+class BrakingWatch {
+ public:
+  /// The looks without a lower speed after which they have.
+  explicit BrakingWatch(int patience) : patience_(patience) {}
+
+  /// @param speed_mps  of all that still move, added up
+  bool is_stuck(double speed_mps);
+
+ private:
+  int patience_;
+  int idle_ = 0;
+  double least_mps_ = std::numeric_limits<double>::infinity();
+};
 
 class PauseOrder final : public Order {
  public:

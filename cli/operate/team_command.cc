@@ -11,7 +11,6 @@
 namespace ergocast::cli {
 namespace {
 
-constexpr auto kTurnTime = std::chrono::milliseconds(20);
 /// The most runs beyond kMostRuns that are remembered.
 constexpr std::size_t kMostInCrowd = 256;
 
@@ -73,14 +72,18 @@ std::optional<int> TeamCommand::choose_run() {
   return std::nullopt;
 }
 
-std::optional<OrderReport> TeamCommand::obeyed(Order& order) {
+OrderReport TeamCommand::turn(Order& order) {
   const MonitoredRun& team = runs_.begin()->second;
+  Outbox out;
+  order.send(team, now(), out);
+  transport_->publish(out);
+  return order.report(team, now());
+}
+
+std::optional<OrderReport> TeamCommand::obeyed(Order& order) {
   bool answered = false;
   while (true) {
-    Outbox out;
-    order.send(team, now(), out);
-    transport_->publish(out);
-    const OrderReport report = order.report(team, now());
+    const OrderReport report = turn(order);
     if (report.ended() || report.state == OrderReport::State::kObeyed) return report;
     if (report.state == OrderReport::State::kAnswered && !std::exchange(answered, true)) {
       std::printf("%s\n", report.text.c_str());

@@ -37,6 +37,7 @@ class TeamCommand {
   virtual int act() = 0;
 
   static constexpr auto kListeningTime = Order::kListeningTime;
+  static constexpr std::chrono::milliseconds kTurnTime{20};
   /// Longer than the interval between an agent's messages, so that every other run on this URL is
   /// detected.
   static constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
@@ -44,11 +45,13 @@ class TeamCommand {
   /// Listens until a run is received, and long enough to receive any other run on this URL. False
   /// if a signal arrived.
   bool look_around();
-  /// Listens for one turn. False if a signal arrived.
+  /// Listens for one turn, kTurnTime. False if a signal arrived.
   bool listen();
   /// Finds the only run on this URL and listens to it alone. If there is none, or several, prints
   /// an error and returns the exit code.
   std::optional<int> choose_run();
+  /// Sends what is due of an order to that run. @pre choose_run()
+  OrderReport turn(Order& order);
   /// Gives the order to that run until the team obeys or the order has failed, and prints the
   /// coordinator's answer. Nothing if a signal arrived. @pre choose_run()
   std::optional<OrderReport> obeyed(Order& order);

@@ -61,13 +61,9 @@ Result<bool> is_taken(const LcmUrl& url, StopSignals& signals) {
 
 class Player {
  public:
-  Player(ReplaySource& source, BusWriter& writer, StopSignals& signals, const Mission& mission,
+  Player(ReplaySource& source, BusWriter& writer, StopSignals& signals, double end_s,
          const ReplayOptions& options)
-      : source_(source),
-        writer_(writer),
-        signals_(signals),
-        duration_s_(static_cast<double>(mission.timing.tick_count) * mission.timing.dt_s),
-        options_(options) {}
+      : source_(source), writer_(writer), signals_(signals), end_s_(end_s), options_(options) {}
 
   /// Runs until the record's end, a problem or a signal. Returns the number of messages sent.
   std::int64_t play() {
@@ -120,14 +116,13 @@ class Player {
   }
   void show() {
     if (!line_.due(ProgressLine::Clock::now())) return;
-    line_.show(t_s_ / duration_s_,
-               {text_of("t = %.1f s", t_s_), std::to_string(sent_) + " messages"});
+    line_.show(t_s_ / end_s_, {text_of("t = %.1f s", t_s_), std::to_string(sent_) + " messages"});
   }
 
   ReplaySource& source_;
   BusWriter& writer_;
   StopSignals& signals_;
-  double duration_s_;
+  double end_s_;
   const ReplayOptions& options_;
   ProgressLine line_;
   Instant next_repeat_{};
@@ -155,7 +150,7 @@ int play(const ReplayOptions& options, const LcmUrl& url, const Mission& mission
   if (!writer) return report_error(kExitUnavailable, writer.error());
   announce(url, mission, options);
   ReplaySource& messages = *source;
-  Player player(messages, **writer, signals, mission, options);
+  Player player(messages, **writer, signals, recorded_end_s(options.run_dir, mission), options);
   const std::int64_t sent = player.play();
   if (messages.problem()) return report_error(kExitBadInput, *messages.problem());
   if (sent == 0 && options.from_s > player.t_s()) {

@@ -4,13 +4,19 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <utility>
+#include <vector>
 
+#include "cli/record/amendment_lines.h"
 #include "cli/report_error.h"
 #include "cli/team/recorded_team.h"
+#include "logger/amendments_file.h"
 #include "logger/run_data.h"
 #include "logger/run_record.h"
+#include "logger/summary.h"
 #include "modes/table_file.h"
 #include "plan/plan.h"
 #include "report/report.h"
@@ -138,6 +144,22 @@ void print_summary(const Json& summary) {
   if (summary.contains("stations")) print_stations(summary["stations"]);
 }
 
+/// What has changed in the mission, if it can be read.
+void print_amendments(const fs::path& run_dir, const Json& summary, const Mission& mission) {
+  constexpr std::size_t kMost = 20;
+  auto amendments = recorded_amendments(run_dir, summary, mission);
+  if (!amendments || amendments->empty()) return;
+  const auto has_zone = [](const ReceivedAmendment& one) { return one.zone.has_value(); };
+  RunData run;
+  if (std::ranges::any_of(amendments->all(), has_zone))
+    run = read_tracks(run_dir).value_or(RunData());
+  run.amendments = *std::move(amendments);
+  const std::vector<std::string> lines = amendment_lines(run, mission);
+  const std::size_t hidden = lines.size() - std::min(lines.size(), kMost);
+  if (hidden > 0) std::printf("  earlier   %zu others, in amendments.json\n", hidden);
+  for (std::size_t i = hidden; i < lines.size(); ++i) std::printf("  %s\n", lines[i].c_str());
+}
+
 }  // namespace
 
 std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& overrides) {
@@ -154,6 +176,15 @@ std::optional<Mission> recorded_mission_or_complain(const fs::path& run_dir) {
   if (read) return *std::move(read);
   report_error(kExitBadInput, read.error());
   return std::nullopt;
+}
+
+double recorded_end_s(const fs::path& run_dir, const Mission& mission) {
+  const auto summary = read_summary(run_dir);
+  const auto read = recorded_amendments(run_dir, summary.value_or(Json()), mission);
+  const ReceivedAmendments amendments = read.value_or(ReceivedAmendments());
+  Tick end = tick_count_of(mission.timing, amendments.ends());
+  if (!is_open(amendments.holds())) end = tick_after(amendments.holds(), end);
+  return static_cast<double>(end) * mission.timing.dt_s;
 }
 
 Result<fs::path> prepare_run_directory(const fs::path& wanted, const Scenario& scenario) {
@@ -186,6 +217,7 @@ void conclude(const fs::path& run_dir, const Json& summary, const Scenario& scen
   const auto problem =
       write_report(run_dir, scenario.mission(), recorded_team(run_dir, scenario.mission()));
   print_summary(summary);
+  print_amendments(run_dir, summary, scenario.mission());
   std::printf("  record    %s\n", run_dir.c_str());
   if (!problem) std::printf("  report    %s\n", (fs::absolute(run_dir) / "report.html").c_str());
   std::fflush(stdout);

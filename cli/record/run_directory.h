@@ -18,6 +18,9 @@ std::optional<Scenario> load_or_complain(const std::filesystem::path& file,
 /// The mission of a run directory's plan.binpb, or an error on the standard error stream.
 std::optional<Mission> recorded_mission_or_complain(const std::filesystem::path& run_dir);
 
+/// When the mission of a run directory ends by its newest end, with the pauses before [s].
+double recorded_end_s(const std::filesystem::path& run_dir, const Mission& mission);
+
 /// Makes the folder (`wanted`, or runs/<scenario>-<time> if empty) and writes scenario.textproto,
 /// plan.binpb and target_density.csv into it. An error if it cannot be written or is not empty.
 Result<std::filesystem::path> prepare_run_directory(const std::filesystem::path& wanted,

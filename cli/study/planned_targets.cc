@@ -40,7 +40,11 @@ PlannedAmendment planned_from(const std::string& text) {
   const auto t_s = seconds_in(time.substr(0, plus));
   std::optional<double> lasts_s;
   if (plus != std::string_view::npos) lasts_s = seconds_in(time.substr(plus + 1)).value_or(0);
-  if (file.empty() || !t_s || (lasts_s && *lasts_s == 0))
+  if (!file.empty() && t_s && lasts_s && *lasts_s == 0)
+    throw CLI::ValidationError(
+        "--amend", "\"" + text + "\": a zone lasts for TIME above 0: write 60+300:" + file +
+                       " for one that is free from t = 60 s on, for 300 s");
+  if (file.empty() || !t_s)
     throw CLI::ValidationError("--amend",
                                "\"" + text +
                                    "\" is not T:FILE, such as 60:north.textproto for a target "
@@ -96,13 +100,6 @@ std::optional<std::string> why_impossible(Tick tick, const PlannedAmendment& one
   return std::nullopt;
 }
 
-void append(Tick tick, TargetChange change, Amendments& list) {
-  change.number = list.named++;
-  change.from = tick;
-  list.recent.push_back({change.number, AmendmentKind::kTarget, tick, target_hash(change)});
-  list.targets.push_back(std::move(change));
-}
-
 /// Why a mission cannot get this end at a tick; nothing if it got it.
 std::optional<std::string> append_end(Tick tick, const PlannedAmendment& one,
                                       const Mission& mission, Amendments& list) {
@@ -150,14 +147,14 @@ bool append_target(Tick tick, const PlannedAmendment& one, const Mission& missio
     return false;
   }
   for (const Problem& warning : loaded->warnings()) print_message("warning: " + to_string(warning));
-  append(tick, target_change_of(*loaded), list);
+  add_target(list, tick, target_change_of(*loaded));
   return true;
 }
 
 /// Adds a zone that is free from a tick on, and closed as long before as agents need to leave it.
 /// If it has a problem, prints it and returns false.
-bool add_zone(Tick tick, const PlannedAmendment& planned, const Mission& mission,
-              const std::filesystem::path& scenario, Amendments& list) {
+bool append_zone(Tick tick, const PlannedAmendment& planned, const Mission& mission,
+                 const std::filesystem::path& scenario, Amendments& list) {
   auto loaded = load_zone(planned.file, zone_context(mission, scenario));
   if (!loaded) return report_error(kExitBadInput, loaded.error()) == kExitDone;
   Zone zone = *std::move(loaded);
@@ -182,12 +179,7 @@ bool add_zone(Tick tick, const PlannedAmendment& planned, const Mission& mission
                   " zones can be in force at a time");
     return false;
   }
-  zone.number = list.named++;
-  zone.closed = closed;
-  zone.from = tick;
-  zone.until += tick;
-  list.recent.push_back({zone.number, AmendmentKind::kZone, tick, zone_hash(zone)});
-  list.zones.push_back(std::move(zone));
+  add_zone(list, closed, notice, std::move(zone));
   return true;
 }
 
@@ -252,7 +244,7 @@ std::optional<Amendments> amendments_with(const std::vector<PlannedAmendment>& p
       return std::nullopt;
     }
     if (one.end || one.law) continue;
-    const bool appended = is_zone_file(one) ? add_zone(tick, one, mission, file, list)
+    const bool appended = is_zone_file(one) ? append_zone(tick, one, mission, file, list)
                                             : append_target(tick, one, mission, file, list);
     if (!appended) return std::nullopt;
   }

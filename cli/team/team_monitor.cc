@@ -120,6 +120,7 @@ MonitoredRun::Standing MonitoredRun::standing() const {
       ++found.circling;
     } else {
       found.moving.push_back(name_of(id));
+      found.speed_mps += vehicle.velocity_mps.norm();
     }
   }
   return found;

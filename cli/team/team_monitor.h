@@ -85,6 +85,7 @@ class MonitoredRun {
     int all = 0, standing = 0;
     int circling = 0;                 ///< in a pause: fixed wings, which cannot stand
     std::vector<std::string> moving;  ///< the others: "agent 2"
+    double speed_mps = 0;             ///< of the others, added up
   };
   Standing standing() const;
   /// Where each vehicle is in the newest state that names it [m].

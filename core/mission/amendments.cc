@@ -150,13 +150,17 @@ void name_pause(Amendments& list, Tick tick) {
   name(list, {.kind = AmendmentKind::kPause, .from = list.holds.back().from});
 }
 
-void name_target(Amendments& list, Tick tick, TargetChange change) {
+void add_target(Amendments& list, Tick tick, TargetChange change) {
   change.from = list.targets.empty() ? tick : std::max(tick, list.targets.back().from + 1);
   change.number = list.named;
   name(list, {.kind = AmendmentKind::kTarget, .from = change.from, .hash = target_hash(change)});
+  list.targets.push_back(std::move(change));
+}
+
+void name_target(Amendments& list, Tick tick, TargetChange change) {
   // The second newest holds until the newest one does.
   if (list.targets.size() > 1) list.targets.erase(list.targets.begin(), list.targets.end() - 1);
-  list.targets.push_back(std::move(change));
+  add_target(list, tick, std::move(change));
 }
 
 void replace_target(Amendments& list, TargetChange change) {
@@ -175,9 +179,7 @@ void name_end(Amendments& list, Tick tick, Tick tick_count) {
        {.kind = AmendmentKind::kEnd, .from = tick, .hash = static_cast<std::uint64_t>(tick_count)});
 }
 
-void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone) {
-  list.zones = not_ended(list.zones, now);
-  ERGOCAST_REQUIRE(list.zones.size() < kMaxZones);
+void add_zone(Amendments& list, Tick closed, Tick notice, Zone zone) {
   const Tick lasts = zone.until - zone.from;
   zone.number = list.named;
   zone.closed = closed;
@@ -185,6 +187,12 @@ void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone) 
   zone.until = zone.from + lasts;
   name(list, {.kind = AmendmentKind::kZone, .from = zone.from, .hash = zone_hash(zone)});
   list.zones.push_back(std::move(zone));
+}
+
+void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone) {
+  list.zones = not_ended(list.zones, now);
+  ERGOCAST_REQUIRE(list.zones.size() < kMaxZones);
+  add_zone(list, closed, notice, std::move(zone));
 }
 
 void name_law(Amendments& list, Tick tick, LawChange change) {

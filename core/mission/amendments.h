@@ -166,4 +166,11 @@ void replace_law(Amendments& list, LawChange change);
 /// How many zones have not ended at a tick.
 std::size_t zones_at(const Amendments& list, Tick tick);
 
+// ---- for lists that keep all targets and zones, as a plan of amendments does ----
+
+/// As name_target(); no older target leaves the list.
+void add_target(Amendments& list, Tick tick, TargetChange change);
+/// As name_zone(); no zone leaves the list.
+void add_zone(Amendments& list, Tick closed, Tick notice, Zone zone);
+
 }  // namespace ergocast

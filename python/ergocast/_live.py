@@ -31,7 +31,7 @@ _BAD_INPUT = 2
 _ENUMERATIONS = {"first_row"}
 _NAMED = re.compile(
     r"^amendment (?P<number>\d+), (?:target|law) (?P<target>[0-9a-f]+)(?: \(.*\))?, "
-    r"holds since tick (?P<tick>\d+), t = (?P<t_s>[\d.]+) s(?:, by .*)?$",
+    r"(?:holds since|held from) tick (?P<tick>\d+), t = (?P<t_s>[\d.]+) s(?:, until .*)?(?:, by .*)?$",
     re.MULTILINE,
 )
 _PLANNED = re.compile(
@@ -118,7 +118,8 @@ class LiveRun:
                 name of a shipped scenario.
         set: fields of the target and their values, such as {"target.uniform_weight": 0.1}. Without
             `target` they change the scenario in the run's directory.
-        at: how much later than necessary it shall hold, in mission time [s].
+        at: how much later than necessary it shall hold, in the world's time, which a pause does not
+            stop [s].
         dry_run: only checks the target; sends nothing.
 
         Raises ScenarioError if the target has problems, with all of them, or if several teams are

@@ -99,6 +99,7 @@ class McapExport {
     const auto cells_along = coverage_cells(mission_);
     Coefficients sums = Coefficients::Zero(mission_.basis.mode_count());
     const Sensors sensors(mission_);
+    const RecordedRests rests(record_.run, mission_);
     double samples = 0;  // each weighted by its quality
     int shown = 0;
     const double end_s = record_.run.end_s();
@@ -115,7 +116,7 @@ class McapExport {
         shown = 1 + static_cast<int>(std::floor(last_s / end_s * kCoveragePictures));
       }
       last_s = point.t_s;
-      if (!mission_.domain.contains(point.x_m) || record_.run.rests(mission_, agent, point.tick) ||
+      if (!mission_.domain.contains(point.x_m) || rests.rests(agent, point.tick) ||
           is_held(record_.run.holds(), point.tick))
         return;
       samples += sensors.of(planned_kind(mission_, agent))

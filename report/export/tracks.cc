@@ -37,7 +37,7 @@ Json domain_feature(const LocalPlane& plane, const ExportRecord& record) {
   }
   Json properties = {{"kind", "domain"}, {"scenario", record.mission.name}};
   if (record.summary.is_object()) {
-    for (const char* key : {"run_id", "result", "started", "seed", "ticks"}) {
+    for (const char* key : {"run_id", "result", "started", "seed", "ticks", "amendments"}) {
       if (record.summary.contains(key)) properties[key] = record.summary[key];
     }
   }
@@ -93,6 +93,26 @@ void add_stations(const LocalPlane& plane, const ExportRecord& record, Json& fea
   }
 }
 
+/// A polygon for each zone that was received, with the times of world's ticks as tracks have them.
+void add_zones(const LocalPlane& plane, const ExportRecord& record, Json& features) {
+  const auto t_s = [&record](Tick tick) {
+    return static_cast<double>(tick) * record.mission.timing.dt_s;
+  };
+  for (const ReceivedAmendment& one : record.run.amendments.all()) {
+    if (!one.zone || one.is_void) continue;
+    const Zone& zone = *one.zone;
+    Json properties = {{"kind", "zone"},
+                       {"amendment", zone.number},
+                       {"closed_from_s", t_s(zone.closed)},
+                       {"free_from_s", t_s(zone.from)},
+                       {"until_s", t_s(zone.until)}};
+    if (zone.high_m > zone.low_m) properties["heights_m"] = {zone.low_m, zone.high_m};
+    Json rings = Json::array({ring_json(plane, zone.corners_m, false)});
+    features.push_back(
+        feature({{"type", "Polygon"}, {"coordinates", std::move(rings)}}, std::move(properties)));
+  }
+}
+
 Json track_feature(const LocalPlane& plane, const ExportRecord& record, AgentId agent,
                    const Track& track) {
   Json line = Json::array();
@@ -117,6 +137,7 @@ std::optional<std::string> write_geojson(const ExportRecord& record,
   Json features = Json::array({domain_feature(plane, record)});
   add_walls(plane, record.mission.walls, features);
   add_stations(plane, record, features);
+  add_zones(plane, record, features);
   for (const auto& [agent, track] : record.run.tracks)
     features.push_back(track_feature(plane, record, agent, track));
   std::ofstream out(file, std::ios::binary);

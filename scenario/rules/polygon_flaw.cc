@@ -2,6 +2,8 @@
 // Tests every ring and every pair of edges, then whether each hole lies inside the outline.
 #include "scenario/rules/polygon_flaw.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "scenario/parse/findings.h"
@@ -18,6 +20,18 @@ std::string name_of(std::size_t ring, std::size_t corner) {
          std::to_string(corner) + "]";
 }
 
+/// Whether all corners are on one line, up to rounding.
+bool on_a_line(const Ring& ring) {
+  Eigen::Vector2d along(0, 0);
+  for (const Eigen::Vector2d& corner : ring)
+    if ((corner - ring[0]).squaredNorm() > along.squaredNorm()) along = corner - ring[0];
+  const double most = 1e-12 * along.squaredNorm();
+  return std::ranges::all_of(ring, [&](const Eigen::Vector2d& corner) {
+    const Eigen::Vector2d to = corner - ring[0];
+    return std::abs(along.x() * to.y() - along.y() * to.x()) <= most;
+  });
+}
+
 std::optional<PolygonFlaw> flaw_of_ring(const Ring& ring, int hole) {
   if (ring.size() < 3) {
     return PolygonFlaw{hole, std::to_string(ring.size()) + " vertices enclose nothing",
@@ -30,8 +44,11 @@ std::optional<PolygonFlaw> flaw_of_ring(const Ring& ring, int hole) {
         hole,
         "vertices[" + std::to_string(i) + "] and vertices[" + std::to_string(next) +
             "] are the same",
-        next == 0 ? "leave out the last: a ring closes by itself" : "leave out one of them"};
+        next == 0 ? "leave out the last: a ring closes by itself" : "leave out one of them",
+        static_cast<int>(next == 0 ? i : next)};
   }
+  if (on_a_line(ring))
+    return PolygonFlaw{hole, "all its vertices are on one line", "move one of them off the line"};
   return {};
 }
 

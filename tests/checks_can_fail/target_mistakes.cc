@@ -105,6 +105,8 @@ std::vector<Mistake> mistakes_of_targets() {
        "target.regions[0].polygon.holes[0]: the hole is outside"},
       {kUniform, polygon(kSquare, hole("20 20 30 20 30 30 20 30") + hole("24 24 25 24 25 25")),
        "target.regions[0].polygon.holes[1]: the hole is inside"},
+      {kUniform, polygon("10 10 20 20 40 40"),
+       "target.regions[0].polygon: all its vertices are on one line"},
       {kUniform, polygon("10 10 10.001 10 10.001 10.001"), "target.regions[0].polygon: its area"},
       {kUniform, polygon("200 10 300 10 300 20"), "target.regions[0]: nothing of it is left"},
       {kUniform,

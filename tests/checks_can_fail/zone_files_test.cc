@@ -14,10 +14,11 @@ class ZoneFilesCanFail : public OwnHost {
   }
   /// Rehearses a zone in a plane of 2 km, and stores what is printed.
   void expect_problem(const std::string& name, const std::string& content,
-                      const std::string& problem) {
+                      const std::string& problem,
+                      const std::string& scenario = "quadrimodal_corners") {
     write_file(folder_ / name, content);
-    EXPECT_EQ(ergocast({"simulate", "quadrimodal_corners", "--duration", "60", "--out",
-                        folder_ / "run", "--amend", "30+10:" + (folder_ / name).string()}),
+    EXPECT_EQ(ergocast({"simulate", scenario, "--duration", "60", "--out", folder_ / "run",
+                        "--amend", "30+10:" + (folder_ / name).string()}),
               2)
         << content;
     EXPECT_NE(output().find(problem), std::string::npos) << problem << ":\n" << output();
@@ -43,13 +44,39 @@ TEST_F(ZoneFilesCanFail, InEachOfTheirProblems) {
   std::string far = square_;
   for (auto at = far.find("00 "); at != far.npos; at = far.find("00 ", at + 5))
     far.replace(at, 3, "00000 ");
-  expect_problem("far.textproto", far, "is far from the domain");
+  expect_problem("far.textproto", far,
+                 "far.textproto:1:12: vertices[0].x_m: 100000 is far outside the domain");
   expect_problem("crossing.textproto",
                  corner(100, 100) + corner(400, 400) + corner(400, 100) + corner(100, 400),
                  "cross");
-  expect_problem("typo.textproto", "vertex { x_m: 1 }", "unknown field \"vertex\"");
-  const std::vector<Unsayable> unsayable = {{"scenario/zone_file.cc", "the running mission",
-                                             "the mission is one that a program has written"}};
+  expect_problem("typo.textproto", "vertex { x_m: 1 }",
+                 "unknown field \"vertex\" (a zone's text has vertices { x_m: … y_m: … }");
+  expect_problem("nan.textproto", corner(100, 100) + "vertices { x_m: 9 y_m: nan }" + square_,
+                 "nan.textproto:2:19: vertices[1].y_m: nan is not a number");
+  expect_problem("twice.textproto", corner(100, 100) + corner(200, 100) + corner(200, 100),
+                 "twice.textproto:3:1: vertices[2]: vertices[1] and vertices[2] are the same");
+  expect_problem("line.textproto", corner(100, 100) + corner(200, 200) + corner(300, 300),
+                 "all its vertices are on one line");
+  expect_problem("empty.textproto", " \n", "empty.textproto: is empty");
+  expect_problem("empty.geojson", "", "empty.geojson: is empty");
+  expect_problem("whole.textproto", "target { keep_outs { " + square_ + "} }",
+                 "is a scenario, and a zone is one polygon");
+  expect_problem("table.csv", "100,100\n400,100\n400,400\n", "table.csv: is no polygon");
+  expect_problem("place.geojson",
+                 R"({"type":"Polygon","coordinates":[[[8,47],[8.001,47],[8,47.001],[8,47]]]})",
+                 "needs the origin of the mission's scenario");
+  expect_problem("drawing.svg", "no drawing", "drawing.svg: line 1: is no XML");
+  expect_problem("low.textproto", square_ + "low_z_m: 1", "low_z_m");
+  expect_problem("high.textproto", square_ + "high_z_m: 1", "high_z_m");
+  expect_problem("heights.textproto", square_ + "low_z_m: 1e6 high_z_m: 2e6",
+                 "from 1000000 to 2000000 m it has no height in the domain", "cube_corners");
+  const std::vector<Unsayable> unsayable = {
+      {"scenario/zone_file.cc", "the running mission",
+       "the mission is one that a program has written"},
+      {"scenario/zone_file.cc", " in Polygon", "it is taken out of a message"},
+      {"scenario/zone_file.cc", ": file", "it is taken out of a message"},
+      {"scenario/zone_file.cc", "cannot be a zone of this domain",
+       "all that is_zone() asks is checked before"}};
   expect_all_said({"scenario/zone_file.cc"}, said_, unsayable);
 }
 

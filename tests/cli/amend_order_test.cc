@@ -233,6 +233,97 @@ TEST_F(Amended, TheFirstTargetAndTheFirstEndAreCancelledByThePlans) {
   EXPECT_FALSE(sent_.empty());
 }
 
+TEST_F(Amended, AWaitingTargetThatIsReplacedFailsAndNamesItsSuccessor) {
+  announce_list();
+  AmendOrder order(target(0.5), 0, now_);
+  turn(order, 20ms);
+  name_target(list_, 50, target(0.5));
+  announce_list();
+  move_to(10);
+  EXPECT_EQ(turn(order, 1s).state, State::kAnswered);
+  replace_target(list_, {.target = mission_.target_coefficients});
+  announce_list();
+  const OrderReport report = turn(order, 1s);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("never holds: amendment 1 replaced it before tick 50, t = 5.0 s"),
+            std::string::npos)
+      << report.text;
+}
+
+TEST_F(Amended, IsDoneIfItHeldAlthoughAnotherOneHoldsNow) {
+  announce_list();
+  AmendOrder order(target(0.5), 0, now_);
+  turn(order, 20ms);
+  name_target(list_, 20, target(0.5));
+  name_target(list_, 30, target(0.25));
+  announce_list();
+  move_to(40);
+  const OrderReport report = turn(order, 1s);
+  EXPECT_EQ(report.state, State::kDone);
+  EXPECT_NE(report.text.find("held from tick 20, t = 2.0 s, until tick 30, t = 3.0 s: amendment 1"),
+            std::string::npos)
+      << report.text;
+}
+
+TEST_F(Amended, TheListNamesWhatHoldsAndWhatHeld) {
+  name_target(list_, 10, target(0.5));
+  name_target(list_, 20, target(0.25));
+  name_end(list_, 21, 90);
+  name_end(list_, 25, 95);
+  name_pause(list_, 30);
+  name_pause(list_, 35);
+  name_target(list_, 80, target(0.125));
+  replace_target(list_, target(0.0625));
+  announce_list();
+  move_to(40);
+  const auto text = [&](std::size_t i) {
+    const std::string whole = amendment_text(team_, list_.recent[i]);
+    return whole.substr(whole.rfind(", h") + 2);
+  };
+  EXPECT_EQ(text(0), "held from tick 10, t = 1.0 s, until tick 20, t = 2.0 s: amendment 1");
+  EXPECT_EQ(text(1), "holds since tick 20, t = 2.0 s");
+  EXPECT_EQ(text(2), "held from tick 21, t = 2.1 s, until tick 25, t = 2.5 s: amendment 3");
+  EXPECT_EQ(text(3), "holds since tick 25, t = 2.5 s");
+  EXPECT_EQ(text(4), "held at tick 30, t = 3.0 s, until amendment 5");
+  EXPECT_EQ(text(5), "holds since tick 30, t = 3.0 s");
+  EXPECT_NE(amendment_text(team_, list_.recent[6]).find("never holds: amendment 7 replaced it"),
+            std::string::npos);
+  EXPECT_EQ(text(7), "holds from tick 75, t = 7.5 s");
+  move_to(85);
+  EXPECT_EQ(text(1), "held from tick 20, t = 2.0 s, until tick 75, t = 7.5 s: amendment 7");
+}
+
+TEST_F(Amended, TheListNamesZonesThatHaveEnded) {
+  const Zone zone{.until = 10, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  name_zone(list_, 0, 5, 3, zone);
+  announce_list();
+  const auto text = [&] {
+    const std::string whole = amendment_text(team_, list_.recent[0]);
+    return whole.substr(whole.find(", ", whole.find("zone")) + 2);
+  };
+  move_to(6);
+  EXPECT_EQ(text(),
+            "holds from tick 8, t = 0.8 s, closed since tick 5, t = 0.5 s, until tick 18, t = 1.8 "
+            "s");
+  move_to(18);
+  EXPECT_EQ(text(), "was closed from tick 5, t = 0.5 s until tick 18, t = 1.8 s");
+  list_.zones.clear();
+  announce_list();
+  EXPECT_EQ(text(), "has ended");
+}
+
+TEST_F(Amended, ThereIsNoPlaceForANinthZone) {
+  const Zone zone{.until = 50, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  for (std::size_t i = 0; i < kMaxZones; ++i) name_zone(list_, 0, 5, 3, zone);
+  announce_list();
+  move_to(6);
+  const auto problem = why_impossible(team_, wish_of(zone), 3);
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("8 zones are in force"), std::string::npos) << *problem;
+  move_to(58);
+  EXPECT_EQ(why_impossible(team_, wish_of(zone), 3), std::nullopt);
+}
+
 TEST_F(Amended, SurvivesThatItsProcessIsStopped) {
   announce_list();
   AmendOrder order(target(0.5), 0, now_);

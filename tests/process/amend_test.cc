@@ -177,11 +177,13 @@ TEST_F(AmendCommand, IsRehearsedInASimulation) {
                       "20:" + file("middle.textproto", gaussian_at(1000)).string()}),
             0)
       << output();
+  EXPECT_TRUE(answered("\n  target    amendment 1 from t = 60.0 s on\n")) << output();
   EXPECT_GT(share_in_the_east(1100), 0.8);
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
-  for (const auto& [wrong, why] : {std::pair("60", "is not T:FILE"),
-                                   std::pair("300:lake_search", "the mission has ended then"),
-                                   std::pair("60:lake_search", "domain: has ")}) {
+  for (const auto& [wrong, why] :
+       {std::pair("60", "is not T:FILE"), std::pair("60+0:a", "a zone lasts for TIME above 0"),
+        std::pair("300:lake_search", "the mission has ended then"),
+        std::pair("60:lake_search", "domain: has ")}) {
     EXPECT_EQ(rehearse({"--amend", wrong}), 2) << output();
     EXPECT_TRUE(answered(why)) << output();
   }

@@ -111,6 +111,7 @@ TEST_F(EndCommand, NamesTheProblemsOfAnEnd) {
   refuses({"--end", std::string(kEndless) + "s"}, 4, "already");
   refuses({"--cancel", "0"}, 4, "amendment 0 is a pause: ergocast resume ends it");
   refuses({"--cancel", "7"}, 4, "there is no amendment 7");
+  refuses({"--cancel", "abc"}, 2, "\"abc\" is no number of an amendment");
   const int end_s = mission_s() + 5;
   ASSERT_EQ(amend({"--end", std::to_string(end_s) + "s"}), 0) << output();
   refuses({"--end", "+60s"}, 4, "must be named 10 s of mission time before the end that holds");
@@ -146,14 +147,20 @@ TEST_F(EndCommand, TargetsAreCancelledWhileTheyHoldAndWhileTheyWait) {
   EXPECT_TRUE(answered("amendment 1, target ")) << output();
   ASSERT_EQ(send_command("pause"), 0) << output();
   Child waits = start("ergocast", {"amend", "--target", east, "--at", "+50s", "--lcm-url", kUrl});
+  const auto waits_log = log_;
   ASSERT_TRUE(logs("coordinator", "amendment 3")) << log_of("coordinator");
   Child cancels = start("ergocast", {"amend", "--cancel", "3", "--lcm-url", kUrl});
   ASSERT_TRUE(logs("coordinator", "amendment 4")) << log_of("coordinator");
   ASSERT_EQ(send_command("resume"), 0) << output();
-  EXPECT_EQ(wait_for(waits), 0);
+  EXPECT_EQ(wait_for(waits), 4);
+  EXPECT_NE(text_of(waits_log).find("never holds: amendment 4 replaced it"), std::string::npos)
+      << text_of(waits_log);
   EXPECT_EQ(wait_for(cancels), 0);
   EXPECT_EQ(amend({"--cancel", "3"}), 4) << output();
   EXPECT_TRUE(answered("a later amendment has replaced amendment 3")) << output();
+  EXPECT_EQ(amend({"--list"}), 0) << output();
+  EXPECT_TRUE(answered(", held from tick ")) << output();
+  EXPECT_TRUE(answered(", never holds: amendment 4 replaced it before tick ")) << output();
   ASSERT_TRUE(moves_on());
   ASSERT_EQ(send_command("stop"), 0) << output();
   ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
@@ -170,6 +177,8 @@ TEST_F(EndCommand, IsRehearsedInASimulation) {
     return ergocast(more);
   };
   EXPECT_EQ(rehearse({"--end", "60:+50s", "--end", "100:220s"}), 0) << output();
+  EXPECT_TRUE(answered("\n  end       amendment 0 at t = 250.0 s, from t = 60.0 s on\n"))
+      << output();
   EXPECT_EQ(summary()["ticks"], 2200);
   EXPECT_EQ(summary()["amendments"].size(), 2U);
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();

@@ -95,6 +95,18 @@ TEST_F(PauseCommand, HoldsAMissionInRealTimeInWhichAnAgentRestarts) {
   expect_standing(holds[0][0].get<Tick>() + 10, holds[0][1]);
 }
 
+TEST_F(PauseCommand, WaitsUntilAllVehiclesStand) {
+  const auto slow = scenario("pace: REALTIME realtime_factor: 10");
+  std::ofstream(slow, std::ios::app)
+      << "world { speed_limit_mps: 20 }\n"
+         "vehicle { kind: ACCELERATION max_acceleration_mps2: 0.5 }\n";
+  Child mission = launch_endless(slow, {"--lcm-url", kUrl});
+  ASSERT_EQ(send_command("pause"), 0) << output();
+  EXPECT_TRUE(answered(": 4 of 4 stand\n`ergocast resume`")) << output();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+}
+
 TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
   ASSERT_EQ(send_command("pause"), 0) << output();

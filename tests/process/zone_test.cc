@@ -6,7 +6,7 @@
 namespace ergocast::test {
 namespace {
 
-class ZoneCommand : public RunningMission, public ::testing::WithParamInterface<const char*> {
+class ZoneCommand : public RunningMission {
  protected:
   /// A square round all peaks of the target, so that agents are inside.
   std::filesystem::path square() const {
@@ -25,12 +25,13 @@ class ZoneCommand : public RunningMission, public ::testing::WithParamInterface<
     return count;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Paces, ZoneCommand, ::testing::Values("--lockstep", "--realtime=10"),
+class ZoneInEitherPace : public ZoneCommand, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Paces, ZoneInEitherPace, ::testing::Values("--lockstep", "--realtime=10"),
                          [](const auto& pace) {
                            return pace.index == 0 ? "Lockstep" : "Realtime";
                          });
 
-TEST_P(ZoneCommand, SendsTheTeamOutAndKeepsItOut) {
+TEST_P(ZoneInEitherPace, SendsTheTeamOutAndKeepsItOut) {
   Child mission = launch_endless(scenario(), {GetParam(), "--lcm-url", kUrl});
   ASSERT_TRUE(moves_on(400000)) << printed();  // all are inside
   const std::vector<std::string> order = {"--zone", square(), "--for", "1000000s"};
@@ -46,6 +47,7 @@ TEST_P(ZoneCommand, SendsTheTeamOutAndKeepsItOut) {
   ASSERT_TRUE(moves_on(200000)) << printed();
   ASSERT_EQ(amend({"--list"}), 0) << output();
   EXPECT_TRUE(answered("amendment 0, zone ")) << output();
+  EXPECT_TRUE(logs("coordinator", " is closed from tick ")) << log_of("coordinator");
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
   const auto [after, before] = rows_inside(from);
@@ -54,6 +56,27 @@ TEST_P(ZoneCommand, SendsTheTeamOutAndKeepsItOut) {
   if (GetParam() != std::string("--lockstep")) return;
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   EXPECT_TRUE(answered("identical to its simulation")) << output();
+}
+
+TEST_F(ZoneCommand, ADryRunNamesThatThereIsNoPlaceForANinthZone) {
+  Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+  const std::vector<std::string> order = {"--zone", square(), "--for", "1000000s"};
+  for (int i = 0; i < 8; ++i) ASSERT_EQ(amend(order), 0) << output();
+  std::vector<std::string> tried = order;
+  tried.emplace_back("--dry-run");
+  EXPECT_EQ(amend(tried), 4) << output();
+  EXPECT_TRUE(answered("8 zones are in force")) << output();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+}
+
+TEST_F(ZoneCommand, IsRehearsedInASimulationThatNamesItInItsLastLines) {
+  EXPECT_EQ(ergocast({"simulate", scenario(), "--duration", "200", "--out", out(), "--amend",
+                      "150+20:" + square().string()}),
+            0)
+      << output();
+  EXPECT_TRUE(answered("\n  zone      amendment 0 closed from t = ")) << output();
+  EXPECT_TRUE(answered(" until t = 170.0 s; at t = 150.0 s nobody was inside\n")) << output();
 }
 
 }  // namespace

@@ -41,6 +41,8 @@ TEST(Polygons, WithTooFewOrRepeatedVerticesAreNamed) {
   EXPECT_EQ(problem_of({{{0, 0}, {4, 0}, {4, 0}, {0, 4}}, {}}),
             "-1: vertices[1] and vertices[2] are the same");
   EXPECT_EQ(problem_of({box(0, 0, 10), {{{1, 1}, {2, 2}}}}), "0: 2 vertices enclose nothing");
+  EXPECT_EQ(problem_of({{{0.1, 0.1}, {0.2, 0.2}, {0.7, 0.7}, {0.3, 0.3}}, {}}),
+            "-1: all its vertices are on one line");
   const auto closed = flaw_of({{{0, 0}, {4, 0}, {0, 4}, {0, 0}}, {}}, 1);
   ASSERT_TRUE(closed);
   EXPECT_EQ(closed->remedy, "leave out the last: a ring closes by itself");

@@ -9,9 +9,10 @@ class ExportedMap : public OwnHost {
  protected:
   /// The features of a simulated mission's map.
   nlohmann::json map_of(const std::string& scenario, const std::vector<std::string>& more = {}) {
-    EXPECT_EQ(ergocast({"simulate", scenario_file(scenario), "--duration", "20", "--out", out()}),
-              0)
-        << output();
+    std::vector<std::string> simulate{
+        "simulate", scenario_file(scenario), "--duration", "20", "--out", out()};
+    simulate.insert(simulate.end(), amendments_.begin(), amendments_.end());
+    EXPECT_EQ(ergocast(simulate), 0) << output();
     std::vector<std::string> words{"export", out(), "--to", "geojson"};
     words.insert(words.end(), more.begin(), more.end());
     EXPECT_EQ(ergocast(words), 0) << output();
@@ -25,6 +26,8 @@ class ExportedMap : public OwnHost {
     }
     return found;
   }
+
+  std::vector<std::string> amendments_;
 };
 
 TEST_F(ExportedMap, OfAScenarioWithoutAnOriginLiesAtZeroWithANote) {
@@ -54,6 +57,27 @@ TEST_F(ExportedMap, HasTheStations) {
   EXPECT_EQ(stations[1]["properties"]["agent"], 1);
   EXPECT_EQ(stations[1]["properties"]["rests_from_s"], 8) << "twelve seconds before the end";
   EXPECT_NEAR(stations[1]["geometry"]["coordinates"][0], 14 / 111319.5, 1e-7);
+}
+
+TEST_F(ExportedMap, HasTheZonesAndAmendments) {
+  std::ofstream file(folder_ / "zone.textproto");
+  for (const auto& [x_m, y_m] : {std::pair{900, 900}, {1100, 900}, {1100, 1100}})
+    file << "vertices { x_m: " << x_m << " y_m: " << y_m << " }\n";
+  file.close();
+  amendments_ = {"--amend", "15+3:" + (folder_ / "zone.textproto").string(), "--end", "1:30s"};
+  const auto features = map_of("quadrimodal_corners");
+  const auto zones = of_kind(features, "zone");
+  ASSERT_EQ(zones.size(), 1U);
+  EXPECT_EQ(zones[0]["properties"]["amendment"], 1);
+  EXPECT_EQ(zones[0]["properties"]["free_from_s"], 15);
+  EXPECT_EQ(zones[0]["properties"]["until_s"], 18);
+  EXPECT_LT(zones[0]["properties"]["closed_from_s"], 15);
+  const auto ring = zones[0]["geometry"]["coordinates"][0];
+  ASSERT_EQ(ring.size(), 4U);
+  EXPECT_NEAR(ring[1][0], 1100 / 111319.5, 1e-5);
+  const auto amendments = of_kind(features, "domain").at(0)["properties"]["amendments"];
+  ASSERT_EQ(amendments.size(), 2U);
+  EXPECT_EQ(amendments[0]["tick_count"], 300);
 }
 
 }  // namespace
