@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The control step: when an agent samples, sends and answers, in lockstep and in real time.
+#include "core/law/control.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/law/control.h"
 #include "core/law/forecast.h"
 #include "tests/agent/live_team.h"
 #include "tests/support/bytes.h"

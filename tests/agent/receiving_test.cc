@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/law/control.h"
 #include "tests/agent/driven_agent.h"
 
 namespace ergocast {
