@@ -247,8 +247,8 @@ TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
     }
   }
   EXPECT_EQ(record.metrics.str().substr(0, record.metrics.str().find('\n')),
-            "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
-            "contributions_lost,blocked_share");
+            "tick,t_s,ergodic_metric,detection_probability,metric_spread,max_staleness_s,"
+            "contributions_received,contributions_lost,blocked_share");
   const auto rows = record.metrics_rows();
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(columns(rows[1])[0], "10");

@@ -376,7 +376,7 @@ TEST_F(Resume, OfEachDamagedFileTheRowsBeforeTheDamageCount) {
         header + "0,0,0,1,1,0,0\n1,0.1,0,2,2,0,0\n2,0.2,5,garbage\n3,0.3,0,9,9,0,0\n");
   write("metrics.csv", "another header\n");
   write("trajectory-001.csv", header + "7,0.7,0,3,3,0,0\n");
-  write("metrics-001.csv", values + "7,0.7,0.5,0,0,0,0,0\n");
+  write("metrics-001.csv", values + "7,0.7,0.5,0.25,0,0,0,0,0\n");
   write("trajectory-002.csv", header + "9,0.9,0,4,4,0,0\n");
   RunData run;
   const auto damage = read_up_to_damage(dir, run);

@@ -72,7 +72,7 @@ class Report : public testing::Test {
               << 500 + radius * std::sin(angle) << ',' << 10 * std::cos(angle) << ",0\n";
       }
       if (tick % 10 == 0) {
-        metrics << tick << ',' << t_s << ',' << 1 / (1 + t_s) << ",0,0.1," << tick << ",0,0\n";
+        metrics << tick << ',' << t_s << ',' << 1 / (1 + t_s) << ",0.25,0,0.1," << tick << ",0,0\n";
       }
     }
     write(dir / "trajectory.csv", track.str());
@@ -257,7 +257,7 @@ TEST_F(Report, CountsOfContributionsThatCannotBeAreNamed) {
   for (const char* counts : {"-1,0", "0.5,0", "1e30,0", "0,1e30"}) {
     record(1, 2);
     write(dir / "metrics.csv",
-          std::string(kMetricsHeader) + "\n0,0,0.5,0,0,4711,0,0\n1,0.1,0.5,0,0," + counts + ",0\n");
+          std::string(kMetricsHeader) + "\n0,0,0.5,0,0,0,4711,0,0\n1,0.1,0.5,0,0,0," + counts + ",0\n");
     const auto problem = report();
     ASSERT_TRUE(problem) << counts;
     EXPECT_NE(problem->find("metrics.csv:3: the contributions"), std::string::npos) << *problem;

@@ -71,6 +71,7 @@ class Falsified : public OwnHost {
 constexpr const char* kMetricsColumns[] = {"tick",
                                            "t_s",
                                            "ergodic_metric",
+                                           "detection_probability",
                                            "metric_spread",
                                            "max_staleness_s",
                                            "contributions_received",
@@ -80,7 +81,7 @@ constexpr const char* kMetricsColumns[] = {"tick",
 TEST_F(Falsified, SimulationIsFoundInEveryColumnAndValue) {
   record("simulate");
   const std::string metrics = text_of(out() / "metrics.csv");
-  for (int column = 0; column < 8; ++column) {
+  for (int column = 0; column < 9; ++column) {
     expect_found("metrics.csv", with_another_digit(metrics, 4, column),
                  std::string("metrics.csv:4, column ") + kMetricsColumns[column]);
   }
@@ -91,7 +92,7 @@ TEST_F(Falsified, SimulationIsFoundInEveryColumnAndValue) {
 TEST_F(Falsified, RunIsFoundInAllThatItsSimulationDetermines) {
   record("run");
   const std::string metrics = text_of(out() / "metrics.csv");
-  for (int column = 0; column < 3; ++column) {
+  for (int column = 0; column < 4; ++column) {
     expect_found("metrics.csv", with_another_digit(metrics, 4, column),
                  std::string("metrics.csv:4, column ") + kMetricsColumns[column]);
   }
