@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/mission/hold.h"
+#include "core/mission/law_change.h"
 #include "core/motion/zones.h"
 
 namespace ergocast::cli {
@@ -25,6 +26,10 @@ class Lines {
     return "end       amendment " + std::to_string(amendment.number) + " at " +
            text_of(static_cast<Tick>(amendment.hash)) + ", from " + time_of(amendment.from) +
            " on" + replaced(amendment);
+  }
+  std::string law(const Amendment& amendment, const LawChange& law) const {
+    return "law       amendment " + std::to_string(amendment.number) + " from " +
+           time_of(amendment.from) + " on: " + law_text(law, mission_) + replaced(amendment);
   }
   std::string zone(const Zone& zone) const {
     std::string text = "zone      amendment " + std::to_string(zone.number) + " closed from " +
@@ -84,6 +89,7 @@ std::vector<std::string> amendment_lines(const RunData& run, const Mission& miss
     if (one.is_void) continue;
     if (one.amendment.kind == AmendmentKind::kTarget) all.push_back(lines.target(one.amendment));
     if (one.amendment.kind == AmendmentKind::kEnd) all.push_back(lines.end(one.amendment));
+    if (one.law) all.push_back(lines.law(one.amendment, *one.law));
     if (one.zone) all.push_back(lines.zone(*one.zone));
   }
   return all;

@@ -40,17 +40,21 @@ class AmendmentLines : public ::testing::Test {
   Amendments list_;
 };
 
-TEST_F(AmendmentLines, NameTargetsAndEnds) {
+TEST_F(AmendmentLines, NameTargetsEndsAndLaws) {
   name_pause(list_, 5);
   name_pause(list_, 15);
   name_target(list_, 30, target(0.5));
   replace_target(list_, target(0.25));
   name_end(list_, 40, 200);
+  LawChange law = plans_law(mission_);
+  law.kinds[0].u_max_mps /= 2;
+  name_law(list_, 50, law);
   EXPECT_EQ(amendment_lines(run(), mission_),
             (std::vector<std::string>{
                 "target    amendment 2 from t = 2.0 s on, replaced before by amendment 3",
                 "target    amendment 3 from t = 2.0 s on",
-                "end       amendment 4 at t = 20.0 s, from t = 3.0 s on"}));
+                "end       amendment 4 at t = 20.0 s, from t = 3.0 s on",
+                "law       amendment 5 from t = 4.0 s on: " + law_text(law, mission_)}));
 }
 
 TEST_F(AmendmentLines, NameWhoWasInAZone) {
