@@ -154,8 +154,9 @@ void Invariants::check(double t_s, const Command& command, const TableView& spea
   if (speaker.held) return check_paused(t_s, command);
   // A repeated command may be older than the law that its sender knows by now.
   const auto [newest, first] = commanded_.try_emplace(speaker.self, command.header.tick);
-  if (!first && command.header.tick <= newest->second) return;
-  newest->second = command.header.tick;
+  const bool has_laws = speaker.amendments != nullptr && !speaker.amendments->laws.empty();
+  if (has_laws && !first && command.header.tick <= newest->second) return;
+  newest->second = std::max(newest->second, command.header.tick);
   const int kind = planned_kind(mission_, command.header.sender);
   ControlLaw law = law_of(mission_, kind);
   // On the way home and out of a zone the plan's speed holds.

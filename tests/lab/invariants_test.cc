@@ -213,6 +213,24 @@ TEST_F(InvariantsTest, InputsAreBounded) {
   EXPECT_EQ(violated(), "|u| <= u_max");
 }
 
+TEST_F(InvariantsTest, InputsAreBoundedByTheLawThatHolds) {
+  Amendments list;
+  LawChange law = plans_law(mission_);
+  law.kinds[0].u_max_mps = 1;
+  name_law(list, 0, law);
+  TableView one = answering();
+  one.amendments = &list;
+  team_.sent(1, command(1), &one);
+  EXPECT_EQ(violated(), "");
+  Invariants other(mission_);
+  other.sent(1, command(1.0001), &one);
+  EXPECT_EQ(violated_by(other), "|u| <= u_max");
+  list.laws[0].from = 1'000'000;
+  Invariants before(mission_);
+  before.sent(1, command(2), &one);
+  EXPECT_EQ(violated_by(before), "");
+}
+
 TEST_F(InvariantsTest, NotANumberIsNoInput) {
   const TableView one = answering();
   team_.sent(1, command(std::numeric_limits<double>::quiet_NaN()), &one);

@@ -224,6 +224,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(amend_wire.amend_parts, 4);
   ASSERT_EQ(amend_wire.amend_size, 400);
   EXPECT_EQ(amend_wire.amend_content[399], (399 * 5) % 256);
+  EXPECT_EQ(amend_wire.operator_name, "anna@base");
 
   const auto recall_wire = read_by_lcm<recall_t>(encoded(recall()));
   expect_header(recall_wire.header, kOperator);
@@ -304,6 +305,7 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
   team.host.assign(kMaxHostLength, 'h');
   Amend amendment = amend();
   amendment.content.assign(kMaxPlanBytesPerMessage, std::byte{1});
+  amendment.by.assign(kMaxOperatorNameLength, 'a');
   for (const Message& message :
        {Message(part), Message(world), Message(status), Message(team), Message(amendment)}) {
     EXPECT_LE(encoded(message).size(), kMaxDatagramBytes);
