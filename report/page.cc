@@ -294,6 +294,14 @@ void add_amendments(const ReceivedAmendments& heard, const Mission& mission, Jso
   if (!zones.empty()) record["zones"] = page_zones(zones, mission.domain);
 }
 
+/// The agents that stand in the last state that the record has of them.
+Json standing_at_the_end(const RunData& run, const Mission& mission) {
+  Json list = Json::array();
+  for (const auto& [agent, track] : run.tracks)
+    if (stands(motion_of(mission, agent), track.back().v_mps)) list.push_back(agent);
+  return list;
+}
+
 /// The command of a vehicle that turns is its velocity at the tick's end.
 void put(TrackGrid& grid, AgentId agent, const Track& track) {
   const TrackPoint* before = nullptr;
@@ -408,6 +416,7 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
                  {"stride", grid.stride()},
                  {"rows", grid.rows()},
                  {"tracks", grid.encode(0, grid.rows())},
+                 {"standing", standing_at_the_end(run, mission)},
                  {"team", team}};
   if (team.is_null() && any_station(mission)) record["home_from"] = homes_from(run, mission);
   add_amendments(run.amendments, mission, record);

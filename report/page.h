@@ -44,8 +44,9 @@ nlohmann::ordered_json page_target(const TargetChange& change);
 /// Whether any agent's vehicle has a heading, so that the page gets them with the positions.
 bool any_that_turn(const Mission& mission);
 
-/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team", "home_from", "amendments",
-/// "targets", "zones"}: the record's data for the page. "amendments" and "targets",
+/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "standing", "team", "home_from",
+/// "amendments", "targets", "zones"}: the record's data for the page. "standing" has the agents
+/// that stand in their last state. "amendments" and "targets",
 /// {page_target_name(): page_target(), …}, are present only if there are any. "home_from", {"0":
 /// tick, …}, is present only without `team`: the ticks at which agents with a station went home by
 /// the rule of core/motion/way_home.h.

@@ -42,7 +42,19 @@ class CommandWindow {
   /// Whether a command that names `tick` is recent.
   bool admits(Tick tick) const { return tick >= oldest_; }
 
+  /// Whether another process of this host may have received `tick` before us: it is at most as far
+  /// ahead as the mission has gone in the window.
+  bool foresees(Tick tick) const {
+    return tick <= newest_ + std::max(kLeastAhead, newest_ - oldest_);
+  }
+
  private:
+  /// At the beginning the window is empty.
+  /// Limit (Page): ticks by which the page of an operator may always be ahead of the process that
+  /// gives the orders. Beyond it: a request is refused, unless the mission has gone as far in the
+  /// last seconds.
+  static constexpr Tick kLeastAhead = 1000;
+
   Tick newest_ = -1;
   Tick oldest_ = -1;              // the oldest that is admitted
   Tick next_oldest_ = -1;         // the newest at since_

@@ -20,8 +20,9 @@ enum class Role {
   kLogger,
   kLauncher,  ///< `ergocast run`
   kMonitor,   ///< `ergocast status`, `stop`, `pause`, `recall`
+  kPage,      ///< `ergocast watch`: a monitor that shows commands, too
 };
-inline constexpr int kRoleCount = 7;
+inline constexpr int kRoleCount = 8;
 
 /// Kinds of messages: bit i stands for alternative i of Message.
 using MessageTypes = std::uint32_t;
@@ -71,6 +72,9 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   subscribes(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);
   subscribes(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState, RecordAck>);
   subscribes(Role::kMonitor,     Bus::kCommand, kTypes<RecordAck>);
+  subscribes(Role::kPage,        Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck, Command>);
+  subscribes(Role::kPage,        Bus::kWorld,   kTypes<WorldState, RecordAck>);
+  subscribes(Role::kPage,        Bus::kCommand, kTypes<RecordAck, Command>);
   return table;
 }();
 // clang-format on

@@ -254,7 +254,7 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
   }
   supervise(launcher, mission, **transport, page, signals, display);
   if (registered) registered->reset();
-  if (page != nullptr) page->end_control();  // the report may take longer than a page waits
+  if (page != nullptr) page->end_control(now());  // the report may take longer than a page waits
   display.end();
 
   const auto summary = amended_summary(scenario, setup, launcher, mission);

@@ -70,11 +70,26 @@ void Control::attend(Instant now) {
   Outbox out;
   desk_.advance(team_, now, out);
   transport_->publish(out);
-  for (const std::string& line : desk_.take_lines()) print_(line);
-  std::string state = desk_.state().dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  print_lines();
+  std::string state = state_text();
   if (state == state_ && now < next_state_) return;
   if (links_.first.send(state)) state_ = std::move(state);
   next_state_ = now + kStatePeriod;
+}
+
+void Control::end(Instant now) {
+  attend(now);
+  desk_.end(team_, now);
+  print_lines();
+  links_.first.send(state_text());
+}
+
+void Control::print_lines() {
+  for (const std::string& line : desk_.take_lines()) print_(line);
+}
+
+std::string Control::state_text() const {
+  return desk_.state().dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace ergocast::cli

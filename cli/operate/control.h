@@ -33,18 +33,22 @@ class Control {
   /// Listens until `until`, or until `wake_fd` is readable. For a caller that has no other bus.
   void listen(Instant until, int wake_fd) { transport_->deliver_until(until, wake_fd); }
 
-  /// Tells the page that the mission is over and no order has an effect. attend() is called no
-  /// more.
-  void end() const { links_.first.send(kControlOver); }
+  /// Sends the page the last state: the mission is over, and no order has an effect. attend() is
+  /// called no more.
+  void end(Instant now);
 
   /// Whether the mission's end has been received.
   bool over() const { return team_.over(); }
+  /// Whether no order waits for anything.
+  bool is_settled() const { return desk_.is_settled(); }
   /// The page's end of the link. The page's process inherits it.
   const ControlLink& page_end() const { return links_.second; }
   /// Each request of a page must have this token.
   const std::string& token() const { return token_; }
 
  private:
+  void print_lines();
+  std::string state_text() const;
   Control(const BusOptions& team, std::pair<ControlLink, ControlLink> links,
           std::function<void(const std::string&)> print);
 

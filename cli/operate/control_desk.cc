@@ -17,6 +17,10 @@ using State = OrderReport::State;
 
 constexpr std::chrono::seconds kSecond{1};
 
+/// No page has this number: the act was given elsewhere.
+constexpr std::uint32_t kElsewhere = 0;
+constexpr const char* kAnother = "another operator, on another page or by a command";
+
 std::string called(const ControlRequest& request) {
   return request.name.empty() ? "an operator without a name" : request.name;
 }
@@ -34,6 +38,10 @@ std::string what(const ControlRequest& request) {
       return "new target";
     case ControlAct::kZone:
       return "new zone";
+    case ControlAct::kTake:
+      return "take control";
+    case ControlAct::kRelease:
+      return "give control back";
     default:
       return to_string(request.act);
   }
@@ -76,6 +84,8 @@ void ControlDesk::receive(const ControlRequest& request, const MonitoredRun& tea
     return;
   }
   if (const auto why = why_refused(request, team, now)) {
+    // The sign that a browser is still there is no order.
+    if (request.act == ControlAct::kHere) return;
     refused_ = {request, *why};
     if (over_rate_ <= 1)
       note(called(request) + " asks for: " + what(request) + ": refused: " + *why);
@@ -98,6 +108,8 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
   if (request.act == ControlAct::kHere || request.act == ControlAct::kRelease) return std::nullopt;
   if (!window_.admits(request.tick))
     return "the page has shown nothing new for several seconds: look at the team again";
+  if (!window_.foresees(request.tick))
+    return "the page names a tick that the team has not reached: reload it";
   if (request.act == ControlAct::kTake) return std::nullopt;
   if (team.unheard()) return "no message of the team arrives";
   if (amends(request.act)) return why_not_amended(request.act);
@@ -163,14 +175,41 @@ void ControlDesk::change_operator(const ControlRequest& request, const Monitored
 void ControlDesk::give(const ControlRequest& request, const MonitoredRun& team, Instant now) {
   const bool is_known = std::ranges::any_of(acts_, [&request](const Act& act) {
     const bool stands = act.request.act == ControlAct::kStopNow && act.report.state == State::kDone;
-    return (!act.over() || stands) && act.request.act == request.act &&
+    // A page repeats a stop at once, under its number, until it sees the answer.
+    const bool is_repeated =
+        act.request.operator_id == request.operator_id && act.request.number == request.number;
+    return (!act.over() || stands || is_repeated) && act.request.act == request.act &&
            act.request.agent == request.agent;
   });
   if (is_known && !amends(request.act)) return;
   end_contradicted(request);
   make_room();
   note(called(request) + " asks for: " + what(request) + ", at " + team.mission_time(team.tick()));
-  acts_.push_back({request, team.mission_time(team.tick()), order_for(request, team, now)});
+  acts_.push_back(
+      {request, what(request), team.mission_time(team.tick()), order_for(request, team, now)});
+}
+
+/// A change is ours if one of our orders of its kind has not been named yet.
+void ControlDesk::note_changes(const MonitoredRun& team) {
+  for (NamedChange& change : changes_.take(team)) {
+    const auto ours = std::ranges::find_if(acts_, [&change](const Act& act) {
+      return !act.named && !act.report.ended() && act.request.act != ControlAct::kStopNow &&
+             to_string(act.request.act) == change.act && act.request.agent == change.agent;
+    });
+    if (ours != acts_.end()) {
+      ours->named = true;
+      continue;
+    }
+    note(change.what + " by " + kAnother + ": " + change.text);
+    make_room();
+    ControlRequest request{.operator_id = kElsewhere, .name = kAnother, .number = ++elsewhere_};
+    acts_.push_back({std::move(request),
+                     std::move(change.what),
+                     team.mission_time(team.tick()),
+                     nullptr,
+                     {State::kDone, std::move(change.text)},
+                     true});
+  }
 }
 
 /// Removes the oldest order that has ended, if there are too many. If none has, an agent on its way
@@ -188,7 +227,7 @@ void ControlDesk::make_room() {
 }
 
 void ControlDesk::note_end(const Act& act, const std::string& then) {
-  note(what(act.request) + " of " + called(act.request) + ", asked for at " + act.at + ": " +
+  note(act.what + " of " + called(act.request) + ", asked for at " + act.at + ": " +
        act.report.text + then);
 }
 
@@ -247,6 +286,7 @@ void ControlDesk::advance(const MonitoredRun& team, Instant now, Outbox& out) {
          ": the browser has been silent for " + std::to_string(kSilence.count()) + " s");
     operator_.reset();
   }
+  note_changes(team);
   for (Act& act : acts_) {
     if (act.over()) continue;
     act.order->send(team, now, out);
@@ -257,9 +297,25 @@ void ControlDesk::advance(const MonitoredRun& team, Instant now, Outbox& out) {
   }
 }
 
+void ControlDesk::end(const MonitoredRun& team, Instant now) {
+  for (Act& act : acts_) {
+    if (act.over()) continue;
+    act.report = act.order->report_at_end(team, now);
+    note_end(act, "");
+    act.order.reset();
+  }
+  operator_.reset();
+  ended_ = true;
+}
+
+bool ControlDesk::is_settled() const {
+  return std::ranges::all_of(acts_, [](const Act& act) { return act.over(); });
+}
+
 nlohmann::ordered_json ControlDesk::state() const {
   using Json = nlohmann::ordered_json;
   Json state;
+  if (ended_) state["over"] = true;  // the first key, as kControlOver has it
   state["operator"] =
       operator_ ? Json{{"id", operator_->id}, {"name", operator_->name}} : Json(nullptr);
   Json acts = Json::array();
@@ -267,8 +323,9 @@ nlohmann::ordered_json ControlDesk::state() const {
     acts.push_back({{"operator", act.request.operator_id},
                     {"name", called(act.request)},
                     {"number", act.request.number},
-                    {"what", what(act.request)},
+                    {"what", act.what},
                     {"at", act.at},
+                    {"over", act.over()},
                     {"state", word_of(act.report.state)},
                     {"text", act.report.text}});
   }

@@ -10,7 +10,10 @@
 // A request counts once: its number must exceed all earlier numbers of the same operator. A request
 // for control or for an order names the newest tick that the page has shown. That tick must be
 // recent (team/command_window.h). A stop at once is obeyed at any tick, because a late one is safer
-// than none.
+// than none. A page repeats it under one number until it sees the answer.
+//
+// What was ordered elsewhere, on another page or by a command, appears among the acts as soon as
+// MISSION names it.
 #pragma once
 
 #include <chrono>
@@ -24,6 +27,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/operate/named_changes.h"
 #include "cli/operate/order.h"
 #include "cli/watch/control_request.h"
 #include "core/base/ids.h"
@@ -60,7 +64,13 @@ class ControlDesk {
   /// times a second.
   void advance(const MonitoredRun& team, Instant now, Outbox& out);
 
-  /// What every page shows: {"operator", "acts", "refused"}.
+  /// The mission is over, and its processes have ended: judges the orders that still wait.
+  /// advance() is called no more.
+  void end(const MonitoredRun& team, Instant now);
+  /// Whether no order waits for anything.
+  bool is_settled() const;
+
+  /// What every page shows: {"over": true after end(), "operator", "acts", "refused"}.
   nlohmann::ordered_json state() const;
   /// Lines for the log since the last call: each request, its operator, its time and its outcome.
   std::vector<std::string> take_lines() { return std::exchange(lines_, {}); }
@@ -73,9 +83,11 @@ class ControlDesk {
   };
   struct Act {
     ControlRequest request;
-    std::string at;  ///< mission time
+    std::string what;  ///< "pause", "agent 2 home"
+    std::string at;    ///< mission time
     std::unique_ptr<Order> order;
     OrderReport report = {};
+    bool named = false;  ///< MISSION has named it, or it was given elsewhere
     bool over() const { return order == nullptr; }
   };
   /// The last number of each operator.
@@ -96,6 +108,7 @@ class ControlDesk {
   void give(const ControlRequest& request, const MonitoredRun& team, Instant now);
   std::unique_ptr<Order> order_for(const ControlRequest& request, const MonitoredRun& team,
                                    Instant now) const;
+  void note_changes(const MonitoredRun& team);
   void end_contradicted(const ControlRequest& request);
   void make_room();
   void note_end(const Act& act, const std::string& then);
@@ -107,9 +120,12 @@ class ControlDesk {
   std::optional<Operator> operator_;
   Numbers numbers_;
   CommandWindow window_;
+  NamedChanges changes_;
   std::deque<Act> acts_;                                           // the newest last
   std::optional<std::pair<ControlRequest, std::string>> refused_;  // the last, and the reason
   std::vector<std::string> lines_;
+  std::int64_t elsewhere_ = 0;  // how many acts were given elsewhere
+  bool ended_ = false;
   Instant second_{};
   int in_this_second_ = 0, over_rate_ = 0;
 };

@@ -31,8 +31,8 @@ class ControlledPage {
   /// Call at least ten times a second.
   void attend(Instant now);
   /// The mission is over: no order has an effect from now on.
-  void end_control() const {
-    if (control_) control_->end();
+  void end_control(Instant now) {
+    if (control_) control_->end(now);
   }
 
  private:

@@ -17,6 +17,12 @@ constexpr std::size_t kMostNames = 10;
 
 }  // namespace
 
+OrderReport Order::report_at_end(const MonitoredRun& team, Instant now) const {
+  OrderReport last = report(team, now);
+  if (last.ended()) return last;
+  return {OrderReport::State::kFailed, last.text + "; then the mission ended"};
+}
+
 OrderReport waiting_for_mission(const MonitoredRun& team, Instant::duration waited) {
   using State = OrderReport::State;
   if (team.over()) return {State::kFailed, "the mission is over: " + team.reason()};

@@ -46,6 +46,8 @@ class Order {
   virtual void send(const MonitoredRun& team, Instant now, Outbox& out) = 0;
   /// Call after send(), with the same team.
   virtual OrderReport report(const MonitoredRun& team, Instant now) const = 0;
+  /// The last report: the mission's processes have ended, and no further message will arrive.
+  virtual OrderReport report_at_end(const MonitoredRun& team, Instant now) const;
 };
 
 /// The report of an order that has waited for the mission so far.

@@ -20,6 +20,9 @@ class StopOrder final : public Order {
 
   void send(const MonitoredRun& team, Instant now, Outbox& out) override;
   OrderReport report(const MonitoredRun& team, Instant now) const override;
+  OrderReport report_at_end(const MonitoredRun& team, Instant now) const override {
+    return concluded(team, now);
+  }
 
  private:
   std::vector<std::string> awaited(const MonitoredRun& team, Instant now) const;

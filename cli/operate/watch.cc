@@ -38,6 +38,8 @@ constexpr auto kControlPeriod = 50ms;
 /// After the mission's end the coordinator still reports the reason, and the logger closes the
 /// record.
 constexpr auto kLinger = 1s;
+/// An order is judged in this time (cli/operate/stop_order.cc).
+constexpr auto kLongestStop = 20s;
 
 struct WatchOptions : BusOptions {
   fs::path run_dir;
@@ -99,16 +101,27 @@ int control_team(WatchOptions options, const fs::path& run_dir, StopSignals& sig
   if (const int code = finder.carry_out(); code != kExitDone) return code;
   options.run = finder.run();
   ProgressDisplay display;
+  display.stamp();
   auto started = ControlledPage::start(options, run_dir, options.page, true, display);
   if (!started) return report_error(kExitUnavailable, started.error());
   ControlledPage& watched = **started;
   announce(watched.page().url());
+  display.also_to([&watched](const std::string& line) { watched.page().print(line); });
   std::optional<Instant> over_since;
+  bool ended = false;
   while (signals.take() == 0) {
     watched.control()->listen(now() + kControlPeriod, signals.fd());
+    if (ended) {
+      watched.page().attend(now());
+      continue;
+    }
     watched.attend(now());
     if (watched.control()->over() && !over_since) over_since = now();
-    if (over_since && now() - *over_since >= kLinger) watched.page().finish();
+    const bool is_settled = watched.control()->is_settled();
+    if (!over_since || now() - *over_since < (is_settled ? kLinger : kLongestStop)) continue;
+    watched.end_control(now());
+    watched.page().finish();
+    ended = true;
   }
   return kExitDone;
 }

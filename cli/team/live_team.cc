@@ -4,9 +4,11 @@
 #include "cli/team/live_team.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "cli/team/team_text.h"
+#include "core/motion/vehicle.h"
 #include "report/page.h"
 
 namespace ergocast {
@@ -16,6 +18,8 @@ using Json = nlohmann::ordered_json;
 
 /// A gap of at most twice this mission time is not reported.
 constexpr double kShortGap_s = 1;
+/// As the page averages the velocity of a point (report/web/data/motion.js).
+constexpr double kMeanOfCommands_s = 1;
 constexpr std::int64_t kPositionsPerFrame = 20'000;
 
 std::string event(const char* name, const Json& data) {
@@ -52,6 +56,16 @@ void LiveTeam::on(const WorldState& world) {
   }
 }
 
+void LiveTeam::on(const Command& command) {
+  if (!me_.knows_mission() || command.header.sender < 0 || command.header.tick < 0) return;
+  auto& commands = commands_mps_[command.header.sender];
+  commands[command.header.tick] = command.velocity_mps;
+  const auto second = std::llround(kMeanOfCommands_s / me_.timing().dt_s);
+  const Tick newest = commands.rbegin()->first;
+  commands.erase(commands.begin(),
+                 commands.upper_bound(newest - std::max<Tick>(1, static_cast<Tick>(second))));
+}
+
 void LiveTeam::on(const MissionPart&) {
   if (me_.knows_mission()) amendments_.note(me_.follower().amendments());
 }
@@ -79,6 +93,7 @@ void LiveTeam::look(Instant now) {
   status_ = Json::parse(team_json(picture));
   // The page's time continues in a pause, as in the record.
   status_["t_s"] = static_cast<double>(picture.tick) * picture.dt_s;
+  status_["commands_mps"] = commands_json();
   history_.add(picture);
   agents_.add(picture, now);
   ++statuses_;
@@ -195,6 +210,23 @@ Json LiveTeam::roster_json() const {
     list.push_back(std::move(json));
   }
   return list;
+}
+
+/// {"0": [x, y], …}: what each agent commands. A point's single commands are mostly noise, so the
+/// mean of the newest second is shown.
+Json LiveTeam::commands_json() const {
+  Json json = Json::object();
+  const int axes = me_.knows_mission() && !me_.mission().domain.planar() ? 3 : 2;
+  for (const auto& [agent, commands] : commands_mps_) {
+    Eigen::Vector3d mean_mps = commands.rbegin()->second;
+    if (motion_of(me_.mission(), agent).is_point()) {
+      mean_mps.setZero();
+      for (const auto& [tick, v_mps] : commands) mean_mps += v_mps;
+      mean_mps /= static_cast<double>(commands.size());
+    }
+    json[std::to_string(agent)] = std::vector<double>(mean_mps.data(), mean_mps.data() + axes);
+  }
+  return json;
 }
 
 std::string LiveTeam::frame(Cursor& cursor, bool& more) const {

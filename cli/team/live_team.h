@@ -26,7 +26,7 @@ namespace ergocast {
 /// gets what it missed later and uses no extra memory. Not thread-safe.
 class LiveTeam {
  public:
-  static constexpr Role kRole = Role::kMonitor;
+  static constexpr Role kRole = Role::kPage;
   /// Limit (Page): log lines on the page. Beyond it: the oldest is removed.
   static constexpr std::size_t kMostLines = 400;
   /// Limit (Page): incidents on the page. Beyond it: the oldest is removed.
@@ -85,6 +85,7 @@ class LiveTeam {
   template <class M>
   void on(const M&) {}  // the other types need no more action
   void on(const WorldState& world);
+  void on(const Command& command);
   void on(const MissionPart& part);
   bool joined_late(const Author& author) const;
   void note_holds(Tick tick, double dt_s);
@@ -93,6 +94,7 @@ class LiveTeam {
   void add_incident(Incident incident);
   void close_outage(const std::string& of, double t_s);
   nlohmann::ordered_json roster_json() const;
+  nlohmann::ordered_json commands_json() const;
 
   Participant me_;
   TeamView view_;
@@ -102,6 +104,8 @@ class LiveTeam {
   TeamHistory history_;
   AgentHistory agents_;
   AmendmentHistory amendments_;
+  /// Each agent's newest commands by tick: those of a second of mission time, or the newest one.
+  std::map<AgentId, std::map<Tick, Eigen::Vector3d>> commands_mps_;
   std::map<AgentId, LastLook> last_looks_;
   std::map<std::string, bool> trouble_;  // of the processes, by name
   std::deque<Incident> incidents_;

@@ -32,6 +32,8 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
                                  {"restarts", row.restarts}};
   if (!row.kind.empty()) json["kind"] = row.kind;
   json["position_m"] = or_null(!row.position_m.empty(), row.position_m);
+  json["velocity_mps"] = or_null(!row.velocity_mps.empty(), row.velocity_mps);
+  json["moves"] = or_null(row.moves.has_value(), row.moves.value_or(false));
   if (!row.status) return json;
   const AgentStatus& status = *row.status;
   json["host"] = status.host;

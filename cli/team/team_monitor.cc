@@ -25,9 +25,9 @@ std::string name_of(AgentId sender) {
 }  // namespace
 
 Result<std::unique_ptr<Transport>> listen_to_teams(const BusOptions& options, OnMessage on_message,
-                                                   OnMessage on_replayed) {
+                                                   OnMessage on_replayed, Role role) {
   return Transport::open(
-      options.url, options.run, options.authenticator, subscriptions_of(Role::kMonitor),
+      options.url, options.run, options.authenticator, subscriptions_of(role),
       {.on_message = std::move(on_message), .on_replayed = std::move(on_replayed)});
 }
 

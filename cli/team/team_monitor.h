@@ -31,8 +31,10 @@ using OnMessage = std::function<void(const Message&, Bus, AgentId transmitter)>;
 
 /// Receives all messages about the state of teams, and those of replays. An error if LCM cannot be
 /// used.
+/// @param role  whose subscriptions are used
 Result<std::unique_ptr<Transport>> listen_to_teams(const BusOptions& options, OnMessage on_message,
-                                                   OnMessage on_replayed);
+                                                   OnMessage on_replayed,
+                                                   Role role = Role::kMonitor);
 
 /// The messages received from one run.
 class MonitoredRun {

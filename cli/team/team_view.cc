@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/mission/kinds.h"
+#include "core/motion/vehicle.h"
 #include "team/median_metric.h"
 
 namespace ergocast {
@@ -73,9 +74,8 @@ void TeamView::on(const WorldState& world, const Arrival& arrival) {
   skipped_ticks_ = std::max(skipped_ticks_, world.skipped_ticks);
   clamped_commands_ = std::max(clamped_commands_, world.clamped_commands);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
-    const auto [at, is_new] = places_m_.try_emplace(vehicle.id);
-    if (is_new || arrival.from.tick >= at->second.first)
-      at->second = {arrival.from.tick, vehicle.position_m};
+    const auto [at, is_new] = vehicles_.try_emplace(vehicle.id);
+    if (is_new || arrival.from.tick >= at->second.first) at->second = {arrival.from.tick, vehicle};
   }
 }
 
@@ -130,7 +130,7 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
     const double dt_s = follower().mission() ? follower().mission()->timing.dt_s : 0;
     row.blocked_s = static_cast<double>(row.status->blocked_now_ticks) * dt_s;
   }
-  if (member) row.position_m = position_of(author.agent);
+  if (member) add_vehicle(row);
   if (!member && row.condition != Condition::kFinished) row.condition = Condition::kGone;
   const auto& roster = follower().roster();
   const RosterEntry* const own = follower().entry_of(author.incarnation);
@@ -143,12 +143,15 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
   return row;
 }
 
-std::vector<double> TeamView::position_of(AgentId id) const {
-  const auto found = places_m_.find(id);
-  if (found == places_m_.end() || !follower().mission()) return {};
-  const Eigen::Vector3d& at_m = found->second.second;
-  if (follower().mission()->domain.planar()) return {at_m.x(), at_m.y()};
-  return {at_m.x(), at_m.y(), at_m.z()};
+void TeamView::add_vehicle(AgentRow& row) const {
+  const auto found = vehicles_.find(row.author.agent);
+  const auto& mission = follower().mission();
+  if (found == vehicles_.end() || !mission) return;
+  const Vehicle& vehicle = found->second.second;
+  const int axes = mission->domain.planar() ? 2 : 3;
+  row.position_m.assign(vehicle.position_m.data(), vehicle.position_m.data() + axes);
+  row.velocity_mps.assign(vehicle.velocity_mps.data(), vehicle.velocity_mps.data() + axes);
+  row.moves = !stands(motion_of(*mission, row.author.agent), vehicle.velocity_mps);
 }
 
 /// For each number: the newest incarnation, and whether it is a member.

@@ -40,6 +40,10 @@ struct AgentRow {
   double blocked_s = 0;  ///< without a break, by a teammate's body or an edge, in mission time
   /// Its place in the newest state of the world: two numbers, in a box three; empty: not known.
   std::vector<double> position_m{};
+  /// Its velocity there, in as many numbers.
+  std::vector<double> velocity_mps{};
+  /// Whether it moves in that state; nothing: not known.
+  std::optional<bool> moves{};
 };
 
 /// Coordinator, world or logger.
@@ -116,7 +120,7 @@ class TeamView {
   const MissionFollower& follower() const { return me_.follower(); }
   Instant last_sign(const Author& author) const;
   AgentRow row_of(const Author& author, bool member, Instant now) const;
-  std::vector<double> position_of(AgentId id) const;
+  void add_vehicle(AgentRow& row) const;
   Condition condition_of(const Author& author, const Seen& seen, Instant now) const;
   std::map<AgentId, std::pair<Author, bool>> newest_incarnations() const;
   void add_agents(TeamPicture& picture, Instant now) const;
@@ -131,8 +135,8 @@ class TeamView {
   Instant since_;
   Tick tick_ = 0, world_tick_ = 0;
   std::map<Author, Seen> agents_;
-  std::map<AgentId, Header> processes_;                           // the newest message of each
-  std::map<AgentId, std::pair<Tick, Eigen::Vector3d>> places_m_;  // each vehicle's newest
+  std::map<AgentId, Header> processes_;                   // the newest message of each
+  std::map<AgentId, std::pair<Tick, Vehicle>> vehicles_;  // each one's newest state
   std::string coordinator_host_;
   std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;

@@ -14,8 +14,8 @@
 
 namespace ergocast::cli {
 
-/// The state of control that the page gets last: the mission is over.
-inline constexpr const char* kControlOver = R"({"over":true})";
+/// The beginning of the state of control that the page gets last: the mission is over.
+inline constexpr const char* kControlOver = R"({"over":true)";
 
 class ControlLink {
  public:

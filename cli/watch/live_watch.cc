@@ -69,7 +69,7 @@ class Watch final : public LiveWatch {
   }
 
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(source_.bus, receiver(false), receiver(true));
+    auto opened = listen_to_teams(source_.bus, receiver(false), receiver(true), LiveTeam::kRole);
     if (!opened) return opened.error();
     transport_ = *std::move(opened);
     return {};

@@ -23,7 +23,7 @@ void PageControl::listen(Instant now) {
     second_ = now;
     passed_on_ = 0;
   }
-  over_ = over_ || state_ == kControlOver;
+  over_ = over_ || state_.starts_with(kControlOver);
   const bool silent = !over_ && now - heard_ > kPatience;
   if (silent != silent_) ++changes_;
   silent_ = silent;

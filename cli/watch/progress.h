@@ -8,6 +8,7 @@
 
 #include "cli/progress_line.h"
 #include "core/base/ids.h"
+#include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
 
@@ -28,9 +29,11 @@ class ProgressDisplay {
   /// Shows the progress, if the last display was long enough ago.
   void show(const MissionProgress& progress);
   void print(const std::string& line) {
-    line_.print(line);
+    line_.print(stamped_ ? wall_clock_text() + ' ' + line : line);
     if (also_) also_(line);
   }
+  /// From now on each printed line begins with the wall time.
+  void stamp() { stamped_ = true; }
   /// A second receiver of the lines.
   void also_to(std::function<void(const std::string&)> listener) { also_ = std::move(listener); }
   void end() { line_.end(); }
@@ -40,7 +43,7 @@ class ProgressDisplay {
 
   ProgressLine line_;
   Rate ticks_;
-  bool overload_reported_ = false;
+  bool overload_reported_ = false, stamped_ = false;
   std::function<void(const std::string&)> also_;
 };
 

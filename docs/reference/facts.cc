@@ -27,8 +27,8 @@
 namespace ergocast {
 namespace {
 
-constexpr const char* kRoleNames[kRoleCount] = {"agents", "coordinator",    "world",   "drivers",
-                                                "logger", "`ergocast run`", "displays"};
+constexpr const char* kRoleNames[kRoleCount] = {"agents", "coordinator",    "world",    "drivers",
+                                                "logger", "`ergocast run`", "displays", "page"};
 
 void print(const std::vector<std::string>& parts) {
   for (std::size_t i = 0; i < parts.size(); ++i) std::cout << (i > 0 ? "\t" : "") << parts[i];
@@ -132,6 +132,9 @@ void print_message(std::size_t index) {
     for (std::size_t role = 0; role < kRoleCount; ++role) {
       const bool receives = (kSubscriptions[role][bus] >> index & 1) != 0;
       if (!receives || role == static_cast<std::size_t>(Role::kLogger)) continue;
+      // The page is one of the displays.
+      const auto displays = kSubscriptions[static_cast<std::size_t>(Role::kMonitor)][bus];
+      if (role == static_cast<std::size_t>(Role::kPage) && (displays >> index & 1) != 0) continue;
       receivers += (receivers.empty() ? "" : ", ") + std::string(kRoleNames[role]);
     }
     parts.push_back(receivers);

@@ -3,7 +3,7 @@
 import { S, ask, focusOf, mapState, onFrame, shown } from './panels/state.js';
 import { TAILS } from './map/map.js';
 import { lineBetween, signAt } from './map/blocks.js';
-import { courseOf } from './map/course.js';
+import { commandOf, courseOf } from './map/course.js';
 import { markersOf } from './map/markers.js';
 import { recordedRun } from './data/run.js';
 import { advance, seek } from './panels/timeline.js';
@@ -13,7 +13,7 @@ import { drawHeadline } from './panels/headline.js';
 import { followTarget, set, setTheme } from './panels/legend.js';
 import { livePage, showRecord } from './panels/shown_run.js';
 import { connectButtons, connectChart, connectKeys } from './panels/controls.js';
-import { connectControl } from './panels/control.js';
+import { connectControl, showControl } from './panels/control.js';
 import { connectDrawing, followDrawing } from './panels/drawing.js';
 import { followZones } from './panels/zone_words.js';
 import { connectMap } from './panels/map_pointer.js';
@@ -84,6 +84,8 @@ window.ergocast = {
   },
   marker: id => markersOf(shown(), view, mapState()).find(({ track }) => track.id === id),
   course: id => courseOf(shown(), view, ergocast.marker(id)),
+  command: id => commandOf(shown(), view, ergocast.marker(id), mapState()),
+  showControl,
   block: (id, by) =>
     by === null ? signAt(ergocast.marker(id)) : lineBetween(ergocast.marker(id), ergocast.marker(by)),
   frames: () => frames,

@@ -250,6 +250,66 @@ TEST_F(Desk, AStopAtOnceNeedsNoNumberAndIsSaidOnce) {
   EXPECT_NE(refusal().find("a later request"), std::string::npos);
 }
 
+TEST_F(Desk, ARepeatedStopAtOnceIsObeyedOnceEvenIfItHasFailed) {
+  ask(ControlAct::kStopNow);
+  now_ += 1min;  // no process has reported its end
+  advance();
+  EXPECT_EQ(state()["acts"][0]["over"], true);
+  EXPECT_EQ(state()["acts"][0]["state"], "failed");
+  desk_.receive(last_, team_, now_);
+  EXPECT_EQ(state()["acts"].size(), 1U);
+  ask(ControlAct::kStopNow);  // another press
+  EXPECT_EQ(state()["acts"].size(), 2U);
+}
+
+TEST_F(Desk, ATickThatTheTeamHasNotReachedIsRefused) {
+  ask(ControlAct::kTake, 1, 1'000'000'000);
+  EXPECT_EQ(refusal(), "the page names a tick that the team has not reached: reload it");
+  EXPECT_TRUE(operator_name().is_null());
+  ask(ControlAct::kTake, 1, 110);  // the page's process may be ahead of us
+  EXPECT_EQ(operator_name()["name"], "anna");
+}
+
+TEST_F(Desk, ASignOfABrowserWithoutControlIsNoRefusedOrder) {
+  ask(ControlAct::kHere, 2);
+  EXPECT_EQ(refusal(), "");
+  EXPECT_TRUE(lines_.empty());
+}
+
+TEST_F(Desk, ShowsWhatWasOrderedElsewhere) {
+  ask(ControlAct::kTake);
+  pause_from(110);
+  advance();
+  ASSERT_EQ(state()["acts"].size(), 1U);
+  EXPECT_EQ(state()["acts"][0]["what"], "pause");
+  EXPECT_EQ(state()["acts"][0]["text"], "from tick 110, t = 11.0 s");
+  EXPECT_EQ(lines_.back(),
+            "control: pause by another operator, on another page or by a command: from tick 110, "
+            "t = 11.0 s");
+  advance();
+  EXPECT_EQ(state()["acts"].size(), 1U);
+}
+
+TEST_F(Desk, ItsOwnOrderIsNoOrderFromElsewhere) {
+  ask(ControlAct::kTake);
+  ask(ControlAct::kPause);
+  pause_from(110);
+  move(110, 0);
+  ASSERT_EQ(state()["acts"].size(), 1U);
+  EXPECT_EQ(state()["acts"][0]["name"], "anna");
+}
+
+TEST_F(Desk, TheLastStateHasWhatTheOrdersHaveAchieved) {
+  ask(ControlAct::kStopNow);
+  desk_.end(team_, now_);
+  EXPECT_EQ(desk_.state().begin().key(), "over");
+  EXPECT_EQ(state()["acts"][0]["state"], "failed");
+  EXPECT_EQ(state()["acts"][0]["text"],
+            "the world is silent, and in its last state, of tick 100, t = 10.0 s, vehicles still "
+            "move: look at them");
+  EXPECT_TRUE(desk_.is_settled());
+}
+
 TEST_F(Desk, AResumptionEndsAPauseThatStillWaits) {
   ask(ControlAct::kTake);
   ask(ControlAct::kPause);

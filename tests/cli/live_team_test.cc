@@ -86,6 +86,25 @@ TEST_F(LiveTeamFrames, BeginWithWhatTheStatusesHaveReported) {
   EXPECT_FALSE(agent.contains("blocked_s"));
 }
 
+// Single commands of a point are mostly noise.
+TEST_F(LiveTeamFrames, HaveTheMeanOfAPointsCommandsOfTheNewestSecond) {
+  test::announce(test::small_mission(2));
+  LiveTeam live_team(test::kRun, kListening, false);
+  test::give(live_team, test::mission_part(1, MissionState::kRunning, test::roster_of(2)),
+             kListening);
+  for (Tick tick = 0; tick < 30; ++tick) {
+    Command command;
+    command.header = {test::kRun, 0, test::incarnation_of(0), test::next_sequence(), tick};
+    command.velocity_mps = {tick < 20 ? 100.0 : tick % 2, 2, 0};
+    live_team.receive(command, Bus::kCommand, 0, kListening);
+  }
+  live_team.look(kListening);
+  LiveTeam::Cursor cursor;
+  bool more = false;
+  const std::string text = live_team.frame(cursor, more);
+  EXPECT_NE(text.find(R"("commands_mps":{"0":[0.5,2.0]})"), std::string::npos) << text;
+}
+
 // A tick is named some time before it comes.
 TEST_F(LiveTeamFrames, ShowAPauseFromItsFirstTickToItsLast) {
   test::announce(test::small_mission(2));

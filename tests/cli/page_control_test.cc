@@ -55,10 +55,10 @@ TEST_F(PassedOn, NothingGoesToAProcessThatDoesNotAnswer) {
 
 // The process that gives the orders then writes the report, which may take long.
 TEST_F(PassedOn, SilenceAfterTheMissionsEndIsNoFault) {
-  ends_.first.send(kControlOver);
+  ends_.first.send(std::string(kControlOver) + R"(,"acts":[]})");
   control_.listen(now_);
   const auto browser = content_.events();
-  EXPECT_EQ(browser(), "event: control\ndata: {\"over\":true}\n\n");
+  EXPECT_EQ(browser(), "event: control\ndata: {\"over\":true,\"acts\":[]}\n\n");
   now_ += 60s;
   control_.listen(now_);
   EXPECT_EQ(browser(), "");

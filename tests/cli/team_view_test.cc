@@ -121,6 +121,12 @@ TEST_F(TeamViewTest, KnowsTheNewestPlaceOfEachVehicle) {
   give(view_, world_state(41, {{6, 1, 0}}), at(200ms));  // it was overtaken
   EXPECT_EQ(row(0, at(200ms)).position_m, (std::vector<double>{7, 1}));
   EXPECT_EQ(row(1, at(200ms)).position_m, (std::vector<double>{2, 8}));
+  EXPECT_EQ(row(0, at(200ms)).moves, false);
+  WorldState moving = world_state(43, {{7, 1, 0}});
+  moving.vehicles[0].velocity_mps = {3, -1, 0};
+  give(view_, moving, at(300ms));
+  EXPECT_EQ(row(0, at(300ms)).velocity_mps, (std::vector<double>{3, -1}));
+  EXPECT_EQ(row(0, at(300ms)).moves, true);
 }
 
 TEST_F(TeamViewTest, IsCompleteOnceTheMissionAndEveryMemberAreKnown) {

@@ -10,10 +10,12 @@ namespace {
 class ControlledPage : public PageInABrowser {
  protected:
   /// Starts a real-time team, and opens its page with the token that permits orders.
-  void control(const std::vector<std::string>& more = {}) {
+  void control(const std::vector<std::string>& more = {}, const std::string& vehicle = "") {
     std::vector<std::string> options{"--watch", "--control", "--port", "8820"};
     options.insert(options.end(), more.begin(), more.end());
-    mission_ = launch_endless(scenario("pace: REALTIME realtime_factor: 10"), options);
+    const auto file = scenario("pace: REALTIME realtime_factor: 10");
+    std::ofstream(file, std::ios::app) << vehicle;
+    mission_ = launch_endless(file, options);
     browser_->resize(400, 800);
     browser_->open(address());
     ASSERT_TRUE(browser_->becomes("return !document.getElementById('control')?.hidden"));
@@ -76,7 +78,11 @@ TEST_F(ControlledPage, PausesResumesAndStopsATeamFromAPhonesWindow) {
   EXPECT_TRUE(becomes("state", "running"));
 
   order("stop");
-  EXPECT_TRUE(browser_->becomes("return document.getElementById('control').hidden"));
+  EXPECT_TRUE(becomes("holder", "The mission has ended"));
+  for (const char* id : {"controlText", "controlSpoken"})
+    EXPECT_TRUE(becomes(id, "^stop by anna: the mission has ended at tick \\d+.*stopped by anna"))
+        << text(id);
+  for (const char* id : {"#stopNow", "#take", "#orders"}) EXPECT_FALSE(visible(id)) << id;
   end_with_the_mission();
   EXPECT_EQ(summary()["result"], "stopped");
   EXPECT_TRUE(summary()["reason"].get<std::string>().starts_with("stopped by anna on the page of"))
@@ -123,7 +129,22 @@ TEST_F(ControlledPage, StopsAtOnceWithOnePressThatIsAlwaysInSight) {
          "return box.top >= 0 && box.bottom <= innerHeight && box.left >= 0 && "
          "box.right <= innerWidth && box.height >= 40");
   EXPECT_EQ(in_sight, true);
+  js("document.getElementById('operatorName').value = 'anna'");
   browser_->click("#stopNow");  // also without control
+  // What it has achieved stays on the page of the record, too.
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.live === false"));
+  for (const char* id : {"controlText", "controlSpoken"})
+    EXPECT_TRUE(becomes(id, "^stop now by anna: stopped at tick \\d+.*: all stand still"))
+        << text(id);
+  EXPECT_TRUE(visible("#controlText"));
+  EXPECT_EQ(js("return ergocast.S.run.tracks.map(({ id }) => ergocast.course(id)).every(c => c === "
+               "null)"),
+            true);
+  EXPECT_EQ(js("return [...new Set([...document.querySelectorAll('#rows td:nth-child(3)')].map("
+               "td => td.textContent))].join()"),
+            "0.0 m/s");
+  js("scrollTo(0, 0)");
+  screenshot("control_stopped");
   end_with_the_mission();
   EXPECT_TRUE(summary()["reason"].get<std::string>().starts_with("stopped at once by "))
       << summary()["reason"];
@@ -140,9 +161,192 @@ TEST_F(ControlledPage, GivesOrdersByHttpsWhereOtherHostsReachIt) {
   order("pause");
   EXPECT_TRUE(becomes("controlText", "paused at tick .*: 4 of 4 stand"));
   browser_->click("#stopNow");
-  EXPECT_TRUE(browser_->becomes("return document.getElementById('control').hidden"));
+  EXPECT_TRUE(becomes("controlText", "stopped at tick"));
   end_with_the_mission();
   expect_no_errors();
+}
+
+// Neither a dialog nor a menu covers it, or takes it away.
+TEST_F(ControlledPage, NothingCoversStopNow) {
+  control();
+  take_control();
+  const auto covering = [&](const std::string& opened) {
+    wait_for_frame();
+    screenshot("control_under_" + opened);
+    return js("const stop = document.getElementById('stopNow'), box = stop.getBoundingClientRect();"
+              "const other = [[2, 2], [0.5, 0.5], [-2, -2]].map(([x, y]) =>"
+              " document.elementFromPoint(x < 0 ? box.right + x : x < 1 ? (box.left + box.right) / "
+              "2 :"
+              " box.left + x, y < 0 ? box.bottom + y : y < 1 ? (box.top + box.bottom) / 2 :"
+              " box.top + y)).find(node => node !== stop);"
+              "return other === undefined ? '' : (other?.id || other?.tagName || 'out of sight')")
+        .get<std::string>();
+  };
+  for (const int width : {400, 1200}) {
+    browser_->resize(width, 800);
+    for (const char* dialog : {"keys", "details"}) {
+      browser_->click(dialog == std::string("keys") ? "#help" : "#detailsButton");
+      EXPECT_EQ(covering(std::string(dialog) + std::to_string(width)), "") << dialog << width;
+      browser_->press("\uE00C");
+      EXPECT_FALSE(visible(std::string("#") + dialog));
+    }
+    browser_->click("#saveButton");
+    EXPECT_EQ(covering("menu" + std::to_string(width)), "") << width;
+    EXPECT_TRUE(visible("#savePng"));
+    browser_->press("\uE00C");
+  }
+  browser_->resize(400, 800);
+  browser_->click("#help");
+  EXPECT_TRUE(becomes("keys", "Stop now: one press"));
+  browser_->press("!");  // its key works in a dialog, too
+  EXPECT_TRUE(becomes("controlText", "stopped at tick .*: all stand still"));
+  end_with_the_mission();
+}
+
+// The second press gives the order of the first one, which the button names.
+TEST_F(ControlledPage, ASecondPressConfirmsOnlyWhatTheFirstOneNamed) {
+  control();
+  take_control();
+  EXPECT_TRUE(
+      browser_->becomes("return document.querySelectorAll('#orderedAgent option').length === 4"));
+  const std::string out = button("out");
+  const auto press_out = [&](int agent) {
+    return js("document.getElementById('orderedAgent').value = " + std::to_string(agent) +
+              "; const out = document.querySelector('" + out +
+              "'); out.click(); return out.textContent");
+  };
+  const std::string armed = "return document.querySelector('.armed')?.textContent ?? ''";
+  EXPECT_EQ(press_out(2), "Again: agent 2 out");
+  EXPECT_EQ(press_out(3), "Again: agent 3 out");
+  screenshot("control_armed");
+  js("document.getElementById('orderedAgent').dispatchEvent(new Event('change', { bubbles: true "
+     "}))");
+  EXPECT_EQ(js(armed), "");
+  // Another place, the Escape key, and a key that is held.
+  press_out(2);
+  browser_->click("#holder");
+  EXPECT_EQ(js(armed), "");
+  press_out(2);
+  browser_->press("\uE00C");
+  EXPECT_EQ(js(armed), "");
+  js("const key = repeat => new KeyboardEvent('keydown', { key: 'Enter', repeat, bubbles: true,"
+     " cancelable: true }), out = document.querySelector('" +
+     out +
+     "');"
+     "window.held = [false, true, true].map(repeat => out.dispatchEvent(key(repeat)))");
+  EXPECT_EQ(js("return held.join()"), "true,false,false");  // false: the press is taken away
+  order("pause");
+  EXPECT_TRUE(becomes("controlText", "4 of 4 stand"));
+  EXPECT_FALSE(printed("out of the mission")) << printed();
+  browser_->click("#stopNow");
+  end_with_the_mission();
+}
+
+TEST_F(ControlledPage, ShowsEachOrderThatFailedOrIsUnfinishedAndSpeaksItOnce) {
+  control();
+  js("window.spoken = [];"
+     "new MutationObserver(() => spoken.push(document.getElementById('controlSpoken').textContent))"
+     ".observe(document.getElementById('controlSpoken'),"
+     " { childList: true, characterData: true, subtree: true });"
+     "window.act = (number, what, state, over, text) =>"
+     " ({ operator: 5, name: 'bert', number, what, at: '', state, over, text });"
+     "window.show = acts => ergocast.showControl({ operator: null, acts, refused: null })");
+  js("show([act(1, 'agent 3 home', 'failed', true, 'agent 3 does not report it'),"
+     " act(2, 'pause', 'done', true, 'paused'), act(3, 'agent 1 home', 'obeyed', false, 'leaves'),"
+     " act(4, 'resume', 'sent', false, 'no answer yet')])");
+  EXPECT_EQ(text("controlText"), "resume by bert: no answer yet");
+  EXPECT_EQ(js("return [...document.querySelectorAll('#controlActs li')].map(li => li.textContent)"
+               ".join('|')"),
+            "agent 1 home by bert: leaves|agent 3 home by bert: agent 3 does not report it");
+  screenshot("control_acts");
+  js("show([act(1, 'agent 3 home', 'failed', true, 'agent 3 does not report it'),"
+     " act(4, 'resume', 'sent', false, 'still no answer'),"
+     " act(5, 'agent 3 home', 'done', true, 'agent 3 rests')])");
+  EXPECT_EQ(text("controlActs"), "resume by bert: still no answer");
+  EXPECT_EQ(text("controlText"), "agent 3 home by bert: agent 3 rests");
+  EXPECT_EQ(js("return spoken.filter(text => text.includes('no answer')).length"), 1);
+  EXPECT_EQ(js("return spoken.filter(text => text.includes('agent 3')).length"), 2);
+  browser_->click("#stopNow");
+  end_with_the_mission();
+}
+
+// A flood of connections, or a page's process that is started again, may cost requests.
+TEST_F(ControlledPage, StopNowIsRepeatedByItselfUntilItIsAnswered) {
+  control();
+  js("const real = window.fetch; window.tries = [];"
+     "window.fetch = (url, options) => {"
+     " if (url !== 'control') return real(url, options);"
+     " tries.push(JSON.parse(options.headers['X-Ergocast-Request']).number);"
+     " return tries.length < 4 ? Promise.reject(new TypeError('lost')) : real(url, options); }");
+  browser_->click("#stopNow");
+  EXPECT_TRUE(becomes("controlText", "no answer yet, sent \\d times|stopped at"));
+  EXPECT_TRUE(becomes("controlText", "stopped at tick .*: all stand still"));
+  EXPECT_EQ(js("return tries.length >= 4 && new Set(tries).size"), 1);
+  end_with_the_mission();
+  const std::string text = printed(), asks = "asks for: stop now";
+  EXPECT_NE(text.find(asks), text.npos);
+  EXPECT_EQ(text.find(asks), text.rfind(asks)) << text;
+}
+
+TEST_F(ControlledPage, SignsOfTheBrowserAreNoOrders) {
+  control();
+  take_control();
+  const std::string spoken = text("controlSpoken");
+  js("const real = window.fetch; let count = 0;"
+     "window.fetch = (...all) => count++ ? real(...all) : Promise.reject(new TypeError('lost'));"
+     "window.notices = []; const node = document.getElementById('controlNotice');"
+     "new MutationObserver(() => notices.push(node.textContent))"
+     ".observe(node, { childList: true, characterData: true, subtree: true })");
+  EXPECT_TRUE(browser_->becomes("return notices.length === 2"));
+  EXPECT_TRUE(
+      js("return notices[0]").get<std::string>().starts_with("The server does not receive"));
+  EXPECT_EQ(js("return notices[1]"), "");
+  EXPECT_EQ(text("controlSpoken"), spoken);
+  browser_->click("#stopNow");
+  end_with_the_mission();
+}
+
+// As a command of another operator does, of which this page knows nothing.
+TEST_F(ControlledPage, ShowsWhatWasOrderedElsewhere) {
+  control();
+  take_control();
+  const std::string other = "by another operator, on another page or by a command: ";
+  EXPECT_EQ(ergocast({"pause"}), 0) << output();
+  EXPECT_TRUE(becomes("controlText", "^pause " + other + "from tick \\d+")) << text("controlText");
+  EXPECT_TRUE(becomes("pause", "“Resume” lets it go on"));
+  order("resume");
+  EXPECT_TRUE(becomes("controlText", "^resume: the mission goes on at tick"))
+      << text("controlText");
+  EXPECT_EQ(ergocast({"recall", "2"}), 0) << output();
+  EXPECT_TRUE(becomes("controlText", "^agent 2 home " + other)) << text("controlText");
+  EXPECT_FALSE(printed("resume " + other)) << printed();
+  browser_->click("#stopNow");
+  end_with_the_mission();
+}
+
+// A vehicle with inertia moves for seconds after the pause.
+TEST_F(ControlledPage, ShowsCommandsAndWhatStillMovesInAPause) {
+  control(
+      {},
+      "world { speed_limit_mps: 25 }\nvehicle { kind: ACCELERATION max_acceleration_mps2: 0.7 }\n");
+  take_control();
+  EXPECT_TRUE(browser_->becomes(
+      "return ergocast.S.run.tracks.every(({ id }) => ergocast.command(id)?.long > 0)"));
+  screenshot("control_commands");
+  js("window.moving = false; const rows = document.getElementById('rows');"
+     "new MutationObserver(() => { moving ||= rows.textContent.includes('paused: still moves'); })"
+     ".observe(rows, { childList: true, characterData: true, subtree: true })");
+  order("pause");
+  EXPECT_TRUE(browser_->becomes("return moving"));
+  EXPECT_TRUE(browser_->becomes(
+      "return ergocast.S.run.tracks.every(({ id }) => ergocast.command(id) === null)"));
+  screenshot("control_moving");
+  EXPECT_TRUE(becomes("controlText", "4 of 4 stand$"));
+  EXPECT_TRUE(
+      browser_->becomes("return [...document.querySelectorAll('#rows td')].every(td => "
+                        "td.textContent !== 'paused: still moves')"));
+  browser_->click("#stopNow");
+  end_with_the_mission();
 }
 
 TEST_F(ControlledPage, OnePressAloneGivesNoOrder) {
@@ -190,10 +394,15 @@ TEST_F(ControlledPage, AnotherOperatorTakesOverVisibly) {
       post({{"operator", 5}, {"name", "bert"}, {"number", 1}, {"tick", tick}, {"act", "take"}}),
       202);
   EXPECT_TRUE(becomes("holder", "bert has control"));
-  EXPECT_TRUE(becomes("controlText", "bert has taken control from you"));
+  EXPECT_TRUE(becomes("controlNotice", "bert has taken control from you"));
   EXPECT_FALSE(visible("#orders"));
+  // Taking over takes control away from somebody, so it needs two presses.
+  EXPECT_EQ(
+      js("const take = document.getElementById('take'); take.click(); return take.textContent"),
+      "Again: Take over");
   // His browser is silent, so he loses it, and the mission goes on.
   EXPECT_TRUE(becomes("holder", "No operator has control"));
+  EXPECT_EQ(text("controlNotice"), "bert has taken control from you.");  // it stays
   EXPECT_TRUE(printed("bert loses control at tick")) << printed();
   take_control();
   browser_->click("#release");
@@ -210,7 +419,7 @@ TEST_F(ControlledPage, APressIsNotLostSilentlyWhenThePagesProcessIsKilled) {
   signal_to({"ergocast run-page"}, SIGSTOP);
   order("pause");
   kill_next({"ergocast run-page"});
-  ASSERT_TRUE(becomes("controlText", "4 of 4 stand|may not have been sent")) << text("controlText");
+  ASSERT_TRUE(becomes("control", "4 of 4 stand|may not have been sent")) << text("control");
   if (text("controlText").find("stand") == std::string::npos) {
     if (text("holder") != "You have control") take_control();
     order("pause");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clients that must not give orders on a page with control: other processes of this host, clients
 // without the token, replayed requests, and too many requests.
+#include <regex>
+
 #include "tests/process/support/mission.h"
 #include "tests/support/http.h"
 
@@ -266,6 +268,11 @@ TEST_F(AttackedControl, AWatchWithControlGivesOrdersToARunOfThisUser) {
   EXPECT_TRUE(eventually([&] {
     return text_of(log_).find("stop now of anna") != std::string::npos;
   })) << text_of(log_);
+  // With the time of day: in its own output, and in the run's log.
+  const std::regex order(
+      "\\n\\d{4}-\\d\\d-\\d\\dT[\\d:.]+Z? [^\\n]*control: anna asks for: stop now, at");
+  EXPECT_TRUE(std::regex_search('\n' + text_of(log_), order)) << text_of(log_);
+  EXPECT_TRUE(std::regex_search('\n' + log_of("run"), order)) << log_of("run");
   watch.send(SIGINT);
   EXPECT_EQ(wait_for(watch), 0);
 }

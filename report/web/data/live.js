@@ -168,6 +168,8 @@ export function watchLive(page) {
       team.byId = new Map(agents.map(agent => [agent.id, agent]));
       addTold(run.told, team);
       run.setHolds(team.holds);
+      const standing = team.state === 'running' ? [] : agents.filter(agent => agent.moves === false);
+      run.standing = new Set(standing.map(agent => agent.id));
       if (run.times.length && run.times[run.times.length - 1] >= t) {
         run.times.pop();
         run.history.pop();

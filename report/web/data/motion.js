@@ -8,7 +8,7 @@ const TURN = ['UNICYCLE', 'FIXED_WING']; // vehicles with a heading, even at sta
 const SHARE = 0.1; // length of a course at full speed, in the domain's longest side
 
 // The vehicle of the agent's kind; "POINT" if the mission has no other vehicles.
-function vehicleOf(run, id) {
+export function vehicleOf(run, id) {
   const { vehicles } = run.mission;
   return vehicles ? (vehicles.find(kind => (id -= kind.count) < 0) ?? vehicles[0]).vehicle : 'POINT';
 }
@@ -44,7 +44,8 @@ export function velocityAt(run, id, row) {
   const track = run.byId.get(id),
     window = Math.max(1, Math.round(WINDOW_S / run.step)),
     most = Math.min(window, row - track.first);
-  if (most < 1 || !track.has(row) || run.heldAt(row)) return null;
+  if (most < 1 || !track.has(row) || run.standsAt(id, row)) return null;
+  if (run.heldAt(row) && !run.movesInPause(id, row)) return null;
   const smooth = vehicleOf(run, id) !== 'POINT',
     n = smooth ? spanOf(run, track, row, most) : most,
     seconds = n * run.step;

@@ -2,6 +2,7 @@
 // Holds a mission as the page shows it, from a record or as it grows, without any drawing.
 import { picture } from './cosine_sums.js';
 import { Coverage } from './coverage.js';
+import { vehicleOf } from './motion.js';
 import { amendedTarget, firstDifference, plannedTarget } from './targets.js';
 import { Track, addTracks } from './tracks.js';
 
@@ -37,6 +38,7 @@ export class Run {
     this.metrics = { t: [], phi: [], spread: [], age: [], received: [], lost: [] };
     this.incidents = []; // {t, kind, sign, text, agent, until}, ascending
     this.holds = []; // [first tick that does not count, first that counts again or null]
+    this.standing = new Set(); // agents that stand at the end, also if they moved up to it
     this.history = []; // {t, team} as live statuses came
     this.times = []; // their t
     // In ticks that count.
@@ -190,8 +192,16 @@ export class Run {
     const i = indexAt(this.times, t);
     return i < 0 ? null : this.history[i].team;
   }
+  standsAt(id, row) {
+    return this.standing.has(id) && row >= this.byId.get(id).last;
+  }
+  // Whether the world reported that the agent moves, although the mission is paused.
+  movesInPause(id, row) {
+    return this.heldAt(row) && Boolean(this.teamAt(row * this.step)?.byId.get(id)?.moves);
+  }
   // Metres per second over the last second: of one tick, noise is twice the speed.
   speedAt(track, row) {
+    if (this.standsAt(track.id, row)) return 0;
     const n = Math.min(row - track.first, Math.max(1, Math.round(1 / this.step)));
     if (n < 1 || !track.has(row) || !track.has(row - n)) return null;
     return track.between(row - n, row) / (n * this.step);
@@ -241,6 +251,7 @@ export function recordedRun(record) {
   run.setHolds(run.summary?.holds);
   run.recalledFrom = new Map(listOf(run.summary?.recalls).map(recall => [recall.agent, recall.from_tick]));
   run.homeFrom = new Map(Object.entries(record.home_from ?? {}).map(([id, tick]) => [Number(id), tick]));
+  run.standing = new Set(record.standing);
   run.slope = record.slope;
   run.ticks = record.ticks;
   const agents = listOf(run.summary?.agents);
@@ -353,7 +364,7 @@ export function stateOf(run, track, t) {
     said = team?.byId.get(track.id);
   if (row < track.first) return { kind: 'gone', text: 'not joined yet', rank: 5, said };
   if (!track.isMember(row)) return { kind: 'gone', text: 'left', rank: 4, said };
-  if (!said || said.state === 'ok') return { ...dutyOf(run, track, row, said), rank: 6, said };
+  if (!said || said.state === 'ok') return { rank: 6, ...dutyOf(run, track, row, said), said };
   const kinds = { silent: 'silent', waiting: 'late', late: 'late', 'not heard': 'gone', gone: 'gone' };
   const kind = kinds[said.state] ?? 'ok';
   const text =
@@ -374,6 +385,10 @@ export function stateOf(run, track, t) {
 
 // What an agent without trouble does: by its own report, or else by the plan and its track.
 function dutyOf(run, track, row, said) {
+  if (run.movesInPause(track.id, row))
+    return vehicleOf(run, track.id) === 'FIXED_WING'
+      ? { kind: 'idle', text: 'paused: circles' }
+      : { kind: 'late', text: 'paused: still moves', rank: 3 };
   if (run.heldAt(row)) return { kind: 'idle', text: 'paused' };
   const phase =
     said?.phase ??

@@ -22,6 +22,48 @@ export function courseOf(run, view, { track, at, x, y }) {
   return { heading: Math.atan2(ahead[1] - y, ahead[0] - x), end, long: Math.hypot(end[0] - x, end[1] - y) };
 }
 
+// The place to which what the agent commands would lead in the time of a course; null if it commands to
+// stand, or its command is not known.
+export function commandOf(run, view, { track, at, x, y }, { commands, inSpace }) {
+  const all = commands?.[track.id],
+    seen = inSpace ? all : all && run.axes.map((axis, i) => all[axis] * run.stretch[i]),
+    speed = seen ? Math.hypot(...seen) : 0;
+  if (!(speed > 0)) return null;
+  const direction = seen.map(v => v / speed),
+    end = view.later(run, track, at, direction, speed * courseSeconds(run)),
+    long = Math.hypot(end[0] - x, end[1] - y);
+  return long < LEAST ? null : { heading: Math.atan2(end[1] - y, end[0] - x), end, long };
+}
+
+// Paints a dashed line with an open head, wider than a course, which may lie on it.
+export function paintCommand(g, marker, command, colours) {
+  const at = placeOn(marker, command),
+    { long } = command;
+  if (long < 2 * HEAD) return;
+  const head = () => {
+    g.moveTo(...at(long - 1.6 * HEAD, HEAD));
+    g.lineTo(...at(long, 0));
+    g.lineTo(...at(long - 1.6 * HEAD, -HEAD));
+  };
+  g.lineJoin = 'round';
+  for (const [stroke, width] of [
+    [colours.panel, 4],
+    [colours.ink, 1.6],
+  ]) {
+    g.strokeStyle = stroke;
+    g.lineWidth = width;
+    g.setLineDash([5, 4]);
+    g.beginPath();
+    g.moveTo(...at(0, 0));
+    g.lineTo(...at(long, 0));
+    g.stroke();
+    g.setLineDash([]);
+    g.beginPath();
+    head();
+    g.stroke();
+  }
+}
+
 // Where the nose begins and ends on the course, in pixels from the agent's place.
 function noseOf({ r, outline }, { heading }) {
   const from = Math.hypot(outline[0] * Math.cos(heading), outline[1] * Math.sin(heading)) + GAP;

@@ -4,7 +4,7 @@
 import { inkOn } from '../colours.js';
 import { stateOf } from '../data/run.js';
 import { paintBlockLines, paintBlockSigns } from './blocks.js';
-import { courseOf, paintCourse, paintNose } from './course.js';
+import { commandOf, courseOf, paintCommand, paintCourse, paintNose } from './course.js';
 
 const MANY = 12; // more agents than these are drawn smaller
 const REACH = 2; // from the tip of a pin to the middle of its head, in radii of the head
@@ -190,6 +190,10 @@ export function paintAgents(g, run, view, state, tracks) {
   };
   const blocks = markers.flatMap((marker, i) => (looks[i].blocked ? [{ marker, ...looks[i].blocked }] : []));
   each((marker, i) => paintBody(g, marker, looks[i], colours));
+  const commands = markers.map((marker, i) =>
+    looks[i].away || (many(run) && !marker.hot) ? null : commandOf(run, view, marker, state),
+  );
+  if (state.course) each((marker, i) => commands[i] && paintCommand(g, marker, commands[i], colours));
   if (state.course)
     each((marker, i) => courses[i] && paintCourse(g, marker, courses[i], looks[i].fill, colours));
   paintBlockLines(g, markers, blocks, colours);

@@ -1,20 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lets an operator give orders to a running team, and shows what the team reports about the newest one.
+// Lets an operator give orders to a running team, and shows what the team reports about them.
 import { S } from './state.js';
-import { $, put } from '../text.js';
+import { $, element, put } from '../text.js';
 
 const CONFIRM_MS = 3000, // time for the second press
   HERE_MS = 3000, // an operator whose browser is silent for 10 s loses control
-  SEND_MS = 5000;
+  SEND_MS = 5000,
+  SHOWN_MS = 3000, // time for the server to show an order
+  STOP_MS = 700, // between repeats of Stop now
+  MOST_STOPS = 4; // requests at once; a browser has six connections to a server
+
+const WORDS = {
+  take: 'Take control',
+  release: 'Give back',
+  'stop-now': 'Stop now',
+  target: 'New target',
+};
+const capital = text => text.replace(/^./, first => first.toUpperCase());
+const wordsOf = act => WORDS[act] ?? capital(act);
 
 // The address has, after #, the token that permits orders. Only this page's memory keeps it: not the
 // address bar, the history or a cookie.
 const token = takeToken();
 const me = { id: crypto.getRandomValues(new Uint32Array(1))[0] || 1, number: 0, mine: false };
-let armed = null, // {button, timer}: the button that waits for its second press
-  shownAct = '', // operator, number and state of the order that was shown last
+let armed = null, // {button, name, order, timer}: the button that waits for its second press
+  stopping = null, // {request, tries, waiting, timer}: Stop now, until the team's answer is seen
+  pending = null, // {number, until}: an order that the server does not show yet
+  last = { acts: [] }, // the state that came last
+  over = false,
   shownRefusal = 0,
   chosenByPin;
+const spokenActs = new Set(); // operator, number, act and state of each that was spoken
 
 function takeToken() {
   const wishes = new URLSearchParams(location.hash.slice(1)),
@@ -26,8 +42,27 @@ function takeToken() {
   return found;
 }
 
-export const say = text => put($('controlText'), text);
+// ---- what is shown and spoken ----
+
+// The newest order.
+export function say(text) {
+  put($('controlText'), text);
+  $('controlText').classList.remove('bad');
+}
 const speak = text => put($('controlSpoken'), text);
+
+// What has gone wrong stays until the operator's next request.
+function notice(text) {
+  put($('controlNotice'), text);
+  $('controlNotice').hidden = !text;
+}
+
+export function complain(text) {
+  notice(text);
+  speak(text);
+}
+
+// ---- requests ----
 
 // A header holds ASCII only.
 const ascii = text =>
@@ -42,38 +77,101 @@ function fitting(name) {
 
 // Whether this page may give orders now, and whether it may take control.
 export const hasControl = () => me.mine;
-export const mayTakeControl = () => token !== null && !$('control').hidden;
+export const mayTakeControl = () => token !== null && !over && !$('control').hidden;
+
+const requestOf = (act, more = {}) => ({
+  operator: me.id,
+  name: fitting($('operatorName').value.trim()),
+  number: ++me.number,
+  tick: S.facts?.state?.world_tick ?? 0,
+  act,
+  ...more,
+});
+
+const post = request =>
+  fetch('control', {
+    method: 'POST',
+    headers: { 'X-Ergocast-Token': token, 'X-Ergocast-Request': ascii(JSON.stringify(request)) },
+    cache: 'no-store',
+    signal: AbortSignal.timeout(SEND_MS),
+  });
 
 // Sends a request; `more` has what only this act needs.
 export async function send(act, more = {}) {
-  const request = {
-    operator: me.id,
-    name: fitting($('operatorName').value.trim()),
-    number: ++me.number,
-    tick: S.facts?.state?.world_tick ?? 0,
-    act,
-    ...more,
-  };
+  const request = requestOf(act, more);
+  notice('');
   try {
-    const answer = await fetch('control', {
-      method: 'POST',
-      headers: { 'X-Ergocast-Token': token, 'X-Ergocast-Request': ascii(JSON.stringify(request)) },
-      cache: 'no-store',
-      signal: AbortSignal.timeout(SEND_MS),
-    });
+    const answer = await post(request);
     if (answer.status === 202) return;
-    complain(`${act}: not sent: ${(await answer.text()).trim()}`);
+    complain(`${wordsOf(act)}: not sent: ${(await answer.text()).trim()}`);
   } catch {
-    complain(`${act}: no answer from the page’s server: the order may not have been sent. Press again.`);
+    complain(
+      `${wordsOf(act)}: no answer from the page’s server: the order may not have been sent. Press again.`,
+    );
   }
 }
 
-export function complain(text) {
-  say(text);
-  speak(text);
+const UNSEEN = 'The server does not receive this browser: without a sign for 10 s you lose control.';
+
+// A sign that the browser is still there. It is no order, so no screen reader reads it.
+async function sendHere() {
+  const received = await post(requestOf('here')).then(
+    answer => answer.status === 202,
+    () => false,
+  );
+  const shown = $('controlNotice').textContent;
+  if (received && shown === UNSEEN) notice('');
+  else if (!received && me.mine && !shown) notice(UNSEEN);
 }
 
-function disarm() {
+// ---- Stop now ----
+
+// It is repeated under one number until the team's answer is seen or the mission has ended, and is obeyed
+// once.
+function stopNow() {
+  if (!stopping) {
+    notice('');
+    stopping = { request: requestOf('stop-now'), tries: 0, waiting: 0 };
+    say('Stop now: sent');
+  }
+  tryStop();
+}
+
+async function tryStop() {
+  const one = stopping;
+  if (!one) return;
+  clearTimeout(one.timer);
+  one.timer = setTimeout(tryStop, STOP_MS);
+  if (one.waiting >= MOST_STOPS) return;
+  one.tries++;
+  one.waiting++;
+  if (one.tries > 1) say(`Stop now: no answer yet, sent ${one.tries} times. It is repeated until the answer`);
+  if (one.tries === 2) speak('Stop now: no answer yet. It is repeated until the answer.');
+  try {
+    const answer = await post(one.request);
+    if (answer.status === 202 || answer.status === 503 || stopping !== one) return;
+    endStopping();
+    complain(`Stop now: not sent: ${(await answer.text()).trim()}`);
+  } catch {
+    // The next try follows.
+  } finally {
+    one.waiting--;
+  }
+}
+
+function endStopping() {
+  clearTimeout(stopping?.timer);
+  stopping = null;
+}
+
+// An earlier Stop now of another page counts as well, unless it has failed.
+const answersStop = act =>
+  (act.operator === me.id && act.number === stopping.request.number) ||
+  (act.what === 'stop now' && act.state !== 'failed');
+
+// ---- the second press ----
+
+export function disarm() {
   if (!armed) return;
   clearTimeout(armed.timer);
   put(armed.button, armed.button.dataset.label);
@@ -81,89 +179,178 @@ function disarm() {
   armed = null;
 }
 
-// Every order but the stop at once needs a second press, so that no order comes by accident.
-export function press(button, order) {
-  const { label } = button.dataset;
-  if (armed?.button === button) {
+// Every order but the stop at once needs a second press, so that no order comes by accident. The second
+// press gives the order of the first one, which the button names meanwhile.
+export function press(button, order, name = button.dataset.label) {
+  if (armed?.button === button && armed.name === name) {
+    const { order: first } = armed;
     disarm();
-    order();
+    first();
     return;
   }
   disarm();
-  armed = { button, timer: setTimeout(disarm, CONFIRM_MS) };
+  armed = { button, name, order, timer: setTimeout(disarm, CONFIRM_MS) };
   button.classList.add('armed');
-  put(button, `Again: ${label}`);
-  speak(`Press again within 3 seconds: ${label}`);
+  put(button, `Again: ${name}`);
+  speak(`Press again within 3 seconds: ${name}`);
 }
 
-function give(act, label) {
-  say(`${label}: sent`);
-  const named = act === 'home' || act === 'out';
-  send(act, named ? { agent: Number($('orderedAgent').value) } : {});
+function give(act, label, agent) {
+  say(`${capital(label)}: sent`);
+  send(act, agent === undefined ? {} : { agent });
+  pending = { number: me.number, until: performance.now() + SHOWN_MS };
+  setTimeout(() => !over && showActs(last), SHOWN_MS);
 }
+
+function pressOrder(button) {
+  const { act, label } = button.dataset,
+    names = act === 'home' || act === 'out',
+    agent = names ? Number($('orderedAgent').value) : undefined,
+    name = names ? `agent ${agent} ${act}` : label;
+  press(button, () => give(act, name, agent), name);
+}
+
+// Another operator loses control by the press, so that needs a second one.
+function pressTake() {
+  if (last.operator) press($('take'), () => send('take'));
+  else send('take');
+}
+
+const isText = ({ tagName, type }) => tagName === 'INPUT' && !['range', 'checkbox'].includes(type);
+
+// A first press ends with any other act, so the second one confirms only what is still in sight.
+function watchForOthers() {
+  addEventListener(
+    'pointerdown',
+    e => {
+      if (armed && !armed.button.contains(e.target)) disarm();
+    },
+    true,
+  );
+  addEventListener('change', disarm, true);
+  addEventListener('keydown', onKey, true);
+}
+
+function onKey(e) {
+  const ended = () => {
+    e.preventDefault();
+    e.stopImmediatePropagation();
+  };
+  const plain = !e.ctrlKey && !e.metaKey && !e.altKey;
+  if (e.repeat && e.key === 'Enter' && e.target.closest?.('#control button, .armed')) {
+    ended(); // a key that is held is one press
+  } else if (armed && e.key === 'Escape') {
+    disarm();
+    speak('The first press is taken back.');
+    ended();
+  } else if (e.key === '!' && plain && !isText(e.target) && mayTakeControl()) {
+    if (!e.repeat) stopNow();
+    ended();
+  } else if (armed && e.target !== armed.button && !['Tab', 'Shift'].includes(e.key)) {
+    disarm();
+  }
+}
+
+// ---- the state that the server sends ----
 
 // Lists the agents that can be chosen. An agent that is pinned on the map or in the table is chosen.
 export function listAgents() {
   if (!me.mine) return;
   const select = $('orderedAgent'),
+    before = select.value,
     ids = (S.facts?.state?.agents ?? []).map(agent => agent.id).sort((a, b) => a - b),
     [pinned] = S.pins;
   if ([...select.options].map(option => Number(option.value)).join() !== ids.join()) {
-    const chosen = select.value;
     select.replaceChildren(...ids.map(id => new Option(`agent ${id}`, id)));
-    if (chosen !== '' && ids.includes(Number(chosen))) select.value = chosen;
+    if (before !== '' && ids.includes(Number(before))) select.value = before;
   }
   if (S.pins.size === 1 && chosenByPin !== pinned) select.value = pinned;
   chosenByPin = pinned;
+  if (select.value !== before) disarm();
+}
+
+function showTake(label) {
+  const take = $('take');
+  if (take.dataset.label !== label && armed?.button === take) disarm();
+  take.dataset.label = label;
+  if (armed?.button !== take) put(take, label);
 }
 
 function showHolder(operator) {
   const mine = operator?.id === me.id;
   if (me.mine && !mine)
     complain(operator ? `${operator.name} has taken control from you.` : 'You no longer have control.');
+  if (me.mine !== mine) disarm();
   me.mine = mine;
   put(
     $('holder'),
     mine ? 'You have control' : operator ? `${operator.name} has control` : 'No operator has control',
   );
-  put($('take'), operator && !mine ? 'Take over' : 'Take control');
+  showTake(operator && !mine ? 'Take over' : 'Take control');
   $('take').hidden = $('operatorName').hidden = mine;
   $('release').hidden = !mine;
   $('orders').hidden = !mine;
-  if (!mine) disarm();
 }
 
-function showAct(acts) {
-  const act = acts[acts.length - 1];
-  if (!act) return;
-  const name = act.operator === me.id ? '' : ` by ${act.name}`,
-    said = act.text || 'sent',
-    text = said.startsWith('agent ') ? said : `${act.what}${name}: ${said}`;
-  if (act.state === 'failed') $('controlText').classList.add('bad');
-  else $('controlText').classList.remove('bad');
-  const key = [act.operator, act.number, act.state].join();
-  if (key !== shownAct) speak(text);
-  shownAct = key;
-  say(text);
+// "stop now by anna: stopped at tick 423, t = 42.3 s: all stand still". After the end all are named.
+function textOf(act) {
+  const name = act.operator === me.id && !over ? '' : ` by ${act.name}`,
+    said = act.text || 'sent';
+  return !name && said.startsWith('agent ') ? said : `${act.what}${name}: ${said}`;
+}
+
+// The newest order, and every earlier one that has failed or is unfinished. An order that was given again
+// stands for the earlier one.
+function showActs({ acts }) {
+  const shown = acts.filter(
+    (act, i) =>
+      i === acts.length - 1 ||
+      ((act.state === 'failed' || !act.over) && !acts.slice(i + 1).some(({ what }) => what === act.what)),
+  );
+  const spoken = [];
+  for (const act of shown) {
+    const key = [act.operator, act.number, act.what, act.state].join();
+    if (!spokenActs.has(key)) spoken.push(textOf(act));
+    spokenActs.add(key);
+  }
+  if (spoken.length) speak(spoken.join('. '));
+  const waits =
+    pending?.until > performance.now() &&
+    !acts.some(act => act.operator === me.id && act.number >= pending.number) &&
+    shownRefusal < pending.number;
+  const newest = shown.pop();
+  if (newest && (waits || stopping)) {
+    if (newest.state === 'failed' || !newest.over) shown.push(newest);
+  } else if (newest) {
+    say(textOf(newest));
+    $('controlText').classList.toggle('bad', newest.state === 'failed');
+  }
+  $('controlActs').replaceChildren(
+    ...shown.reverse().map(act => element('li', act.state === 'failed' ? 'bad' : '', textOf(act))),
+  );
+  $('controlActs').hidden = !shown.length;
 }
 
 function showRefusal(refused) {
-  if (refused?.operator !== me.id || refused.number <= shownRefusal) return false;
+  if (refused?.operator !== me.id || refused.number <= shownRefusal) return;
   shownRefusal = refused.number;
-  complain(`${refused.what}: refused: ${refused.text}`);
-  return true;
+  complain(`${capital(refused.what)}: refused: ${refused.text}`);
 }
 
-// Shows the state of control that the server sends: {operator, acts, refused}.
-export function showControl({ over, silent, operator, acts, refused }) {
-  if (over) return hideControl();
-  if (silent) {
-    complain('The process that gives the orders does not answer: no order is carried out.');
-    return;
-  }
+const SILENT = 'The process that gives the orders does not answer: no order is carried out.';
+
+// Shows the state of control that the server sends: {over, operator, acts, refused}, or {silent}.
+export function showControl(state) {
+  if (state.silent) return complain(SILENT);
+  if ($('controlNotice').textContent === SILENT) notice('');
+  last = { ...state, acts: state.acts ?? last.acts };
+  const { operator, acts, refused } = last;
+  if (stopping && acts.some(answersStop)) endStopping();
+  if (state.over) return endControl();
   $('control').hidden = false;
   $('readOnly').hidden = token !== null;
   $('stopNow').hidden = $('take').parentElement.hidden = token === null;
+  document.body.classList.toggle('controlled', token !== null);
   if (token === null) {
     put($('holder'), operator ? `${operator.name} has control` : 'No operator has control');
     $('orders').hidden = true;
@@ -171,26 +358,39 @@ export function showControl({ over, silent, operator, acts, refused }) {
     showHolder(operator);
     listAgents();
   }
-  if (!showRefusal(refused)) showAct(acts);
+  showRefusal(refused);
+  showActs(last);
 }
 
-export function hideControl() {
+// The mission has ended: what the last orders achieved stays.
+export function endControl() {
+  const unanswered = stopping !== null && !last.acts.some(answersStop);
   disarm();
+  endStopping();
+  over = true;
   me.mine = false;
-  $('control').hidden = true;
+  pending = null;
+  notice(unanswered ? 'Stop now: the mission ended before the team had answered.' : '');
+  for (const node of [$('stopNow'), $('take').parentElement, $('orders'), $('readOnly')]) node.hidden = true;
+  document.body.classList.remove('controlled');
+  put($('holder'), 'The mission has ended');
+  showActs(last);
+  const newest = last.acts[last.acts.length - 1];
+  if (newest) speak(textOf(newest));
+  $('control').classList.add('ended');
+  $('control').hidden = !newest && !unanswered;
 }
 
 export function connectControl() {
-  $('stopNow').onclick = () => give('stop-now', 'Stop now');
-  $('take').onclick = () => send('take');
+  $('stopNow').onclick = stopNow;
+  $('take').onclick = pressTake;
   $('release').onclick = () => send('release');
   for (const button of document.querySelectorAll('#orders [data-act]')) {
-    const { act } = button.dataset,
-      label = button.textContent;
-    button.dataset.label = label;
-    button.onclick = () => press(button, () => give(act, label));
+    button.dataset.label = button.textContent;
+    button.onclick = () => pressOrder(button);
   }
+  watchForOthers();
   setInterval(() => {
-    if (me.mine) send('here');
+    if (me.mine) sendHere();
   }, HERE_MS);
 }

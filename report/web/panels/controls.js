@@ -6,6 +6,7 @@ import { QUANTITIES, scalesOf } from './chart.js';
 import { faster, follow, jump, seek, setPlaying, step } from './timeline.js';
 import { pin } from './team.js';
 import { showDetails } from './details.js';
+import { connectDialogs, openDialog, openDialogOf, placeMenu } from './dialogs.js';
 import { savePng, saveSvg, saveVideo } from './save.js';
 import { set, setTheme } from './legend.js';
 import { fit, turn, zoom } from './map_pointer.js';
@@ -21,8 +22,7 @@ const showHelp = () =>
   S.run &&
   toggle($('keys'), () => {
     listWords();
-    $('keys').showModal();
-    $('keys').scrollTop = 0;
+    openDialog($('keys'));
   });
 const openDetails = () => S.run && toggle($('details'), showDetails);
 const closeMenu = () => {
@@ -58,6 +58,7 @@ export function connectButtons() {
   $('showAll').onclick = () => pin(-1);
   $('fit').onclick = fit;
   $('saveButton').onclick = () => {
+    placeMenu($('saveMenu'), $('saveButton'));
     $('saveMenu').hidden = !$('saveMenu').hidden;
     $('saveButton').setAttribute('aria-expanded', !$('saveMenu').hidden);
   };
@@ -74,6 +75,7 @@ export function connectButtons() {
   addEventListener('pointerdown', e => {
     if (!e.target.closest('.menu')) closeMenu();
   });
+  connectDialogs();
 }
 
 export function connectChart() {
@@ -135,6 +137,13 @@ const KEYS = {
   '?': showHelp,
 };
 
+// Whether a dialog is open, to which all keys belong.
+function closesDialog({ key }) {
+  const dialog = openDialogOf();
+  if (dialog && key === 'Escape') dialog.close();
+  return Boolean(dialog);
+}
+
 export function connectKeys() {
   addEventListener('keydown', e => {
     if (
@@ -142,7 +151,7 @@ export function connectKeys() {
       e.ctrlKey ||
       e.metaKey ||
       e.altKey ||
-      document.querySelector('dialog[open]') ||
+      closesDialog(e) ||
       e.target.tagName === 'SELECT' ||
       isTyped(e.target)
     )

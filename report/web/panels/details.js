@@ -3,6 +3,7 @@
 import { S } from './state.js';
 import { NOTABLE, lateCommands, lateText } from './notices.js';
 import { $, duration, element, grouped, ofModes, readable } from '../text.js';
+import { openDialog } from './dialogs.js';
 import { meaningOf } from './words.js';
 
 function list(pairs, css) {
@@ -266,5 +267,5 @@ export function showDetails() {
       element('pre', '', commands(said(summary, 'mode'))),
     );
   $('detailsText').replaceChildren(...parts);
-  $('details').showModal();
+  openDialog($('details'));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the sentences above the map: what a person should know or do now.
 import { S } from './state.js';
+import { hasControl, mayTakeControl } from './control.js';
 import { $, grouped, put } from '../text.js';
 
 export const NOTABLE = 0.01; // of the commands
@@ -47,11 +48,15 @@ function overload() {
   return '';
 }
 
+function resumption() {
+  if (hasControl()) return '“Resume” lets it go on.';
+  if (mayTakeControl()) return 'Take control; then “Resume” lets it go on.';
+  return 'The command “ergocast resume” lets it go on.';
+}
+
 function pause() {
   if (S.live && S.following) {
-    return S.facts?.state?.paused
-      ? 'The mission is paused. The command “ergocast resume” lets it go on.'
-      : '';
+    return S.facts?.state?.paused ? `The mission is paused. ${resumption()}` : '';
   }
   return S.run.heldAt(S.run.rowAt(S.t)) ? 'The mission was paused at this time.' : '';
 }

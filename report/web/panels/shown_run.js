@@ -7,7 +7,7 @@ import { showFacts } from './details.js';
 import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
 import { QUANTITIES } from './chart.js';
-import { hideControl, listAgents, showControl } from './control.js';
+import { endControl, listAgents, showControl } from './control.js';
 import { beginSpace } from './space_controls.js';
 import { courseSeconds } from '../data/motion.js';
 import { $, ofModes, put } from '../text.js';
@@ -98,7 +98,7 @@ export const livePage = {
   },
   controlled: showControl,
   ended(run, text) {
-    hideControl();
+    endControl();
     const at = S.following ? undefined : S.t;
     if (run) showRecord(run, at);
     this.lost('');

@@ -52,6 +52,8 @@ export const mapState = () => ({
   focus: focusOf(),
   inSpace: inSpace(),
   slices: S.slices,
+  // What each agent commands now, by its number; of a time before, it is not known.
+  commands: (S.live && S.following && S.facts?.state?.commands_mps) || null,
 });
 
 export const startTail = run => (run.tracks.length > 12 ? TAILS.indexOf(60) : TAILS.length - 1);

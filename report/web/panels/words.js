@@ -36,6 +36,10 @@ const MAP = {
   Course:
     'The thin line from an agent ends where its present velocity leads in that time. ' +
     'The velocity of a point is its mean of the last second. An agent that stands has no line.',
+  'dashed arrow':
+    'Where an agent’s present command leads in the time of Course: the velocity that its program sends to ' +
+    'its vehicle now, with what bodies, edges and zones leave of it. A point’s is the mean of the last second. ' +
+    'In a team of more than 12 only chosen agents have it. Records do not have it.',
   Distance:
     'A ring around each agent, to scale. Its radius is half the distance that agents keep: ' +
     'where two rings touch, the distance is reached. In a team of more than 12 only chosen agents have it.',
@@ -138,6 +142,7 @@ function isShown(label) {
     Distance: mission.body_radius_m > 0,
     'thick arrow': mission.body_radius_m > 0,
     'no-entry sign': mission.body_radius_m > 0 || mission.walls?.length > 0,
+    'dashed arrow': S.live,
     pin: true,
     amendment: S.run.targets.length > 1,
     'New target': S.live,
