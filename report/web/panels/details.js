@@ -3,6 +3,7 @@
 import { S } from './state.js';
 import { NOTABLE, lateCommands, lateText } from './notices.js';
 import { $, duration, element, grouped, ofModes, readable } from '../text.js';
+import { foundBy, foundFacts } from './found.js';
 import { meaningOf } from './words.js';
 
 function list(pairs, css) {
@@ -39,6 +40,7 @@ export function showFacts(live) {
         ['messages per second', readable(live.rate)],
         ['messages lost', grouped(live.lost)],
         ['late commands', lateText(late)],
+        ...foundFacts(run),
         ['authenticated', live.authenticated ? 'yes' : 'no'],
         ['ticks', `${grouped(run.tickCount)} × ${mission.dt_s} s`],
         ['modes', mission.modes.join(' × ')],
@@ -52,7 +54,7 @@ export function showFacts(live) {
         ['φ² last', readable(phi[phi.length - 1])],
         ['slope, last decade', slopeText(run)],
         ...present([
-          ['objects found', said(summary, 'detection.probability')],
+          ['objects found', foundBy(summary)],
           ['half of them after [s]', said(summary, 'detection.time_to_half_s')],
           ['80 % after [s]', said(summary, 'detection.time_to_four_fifths_s')],
           ['left alone at most [s]', said(summary, 'greatest_age_s')],
