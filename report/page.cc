@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/law/half_life.h"
+#include "core/measure/detection.h"
 #include "core/mission/end_schedule.h"
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
@@ -129,6 +130,8 @@ Json conventions(const Mission& mission, bool free_domain) {
   if (keeps_distance(mission)) {
     add("distance", readable(mission.separation.distance_m) + " m between any two bodies");
   }
+  add("sensor", "finds an object within " + readable(sensor_radius_m(mission)) + " m at the rate " +
+                    readable(mission.sensor.detections_per_s) + " /s, through walls");
   add("time step", readable(mission.timing.dt_s) + " s");
   add("maps", "Σ cₖ fₖ with f of unit norm, in multiples of the uniform density");
   return list;
@@ -161,20 +164,31 @@ Json encoded_density(const Field& density) {
 Json metrics(const RunData& run) {
   constexpr std::size_t kFirst = 500, kMost = 4000;
   const std::size_t every = run.metrics.size() / kMost + 1;
-  Json t = Json::array(), phi = Json::array(), spread = Json::array(), age = Json::array(),
-       received = Json::array(), lost = Json::array();
+  Json t = Json::array(), phi = Json::array(), found = Json::array(), spread = Json::array(),
+       age = Json::array(), received = Json::array(), lost = Json::array();
   for (std::size_t i = 0; i < run.metrics.size(); ++i) {
     if (i > kFirst && i % every != 0 && i + 1 != run.metrics.size()) continue;
     const MetricsRow& row = run.metrics[i];
     t.push_back(page_number(row.t_s, 9));
     phi.push_back(page_number(row.ergodic_metric));
+    found.push_back(page_number(row.detection_probability));
     spread.push_back(page_number(row.spread, 3));
     age.push_back(page_number(row.max_staleness_s, 4));
     received.push_back(row.received);
     lost.push_back(row.lost);
   }
-  return {{"t", std::move(t)},     {"phi", std::move(phi)},           {"spread", std::move(spread)},
-          {"age", std::move(age)}, {"received", std::move(received)}, {"lost", std::move(lost)}};
+  return {{"t", std::move(t)},           {"phi", std::move(phi)}, {"found", std::move(found)},
+          {"spread", std::move(spread)}, {"age", std::move(age)}, {"received", std::move(received)},
+          {"lost", std::move(lost)}};
+}
+
+/// How the page computes what is found, core/measure/detection.h.
+Json sensor(const Mission& mission) {
+  const Cells cells = measure_cells(mission);
+  return {{"radius_m", sensor_radius_m(mission)},
+          {"detections_per_s", mission.sensor.detections_per_s},
+          {"cells", {cells.count.x(), cells.count.y(), cells.count.z()}},
+          {"ticks_per_look", ticks_per_look(mission, cells)}};
 }
 
 /// The values that a position of each kind adds to the sums: quality and q g.
@@ -350,6 +364,7 @@ Json page_mission(const Mission& flown, const Field& density) {
                {"u_max_mps", page_number(fastest_command_mps(mission))},
                {"radio_range_m", mission.radio_range_m},
                {"goal", mission.goal_ergodic_metric},
+               {"sensor", sensor(mission)},
                {"free_domain", flown.basis.free_domain},
                {"conventions", conventions(mission, flown.basis.free_domain)},
                {"density", encoded_density(density)}};

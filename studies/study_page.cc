@@ -25,8 +25,12 @@ Json interval(const Estimate& estimate) {
   return Json::array({number(estimate.value), number(estimate.low), number(estimate.high)});
 }
 
-/// "never" if most agents do not escape.
+/// "never" if most do not get there.
 Json time_or_never(double t_s) { return std::isinf(t_s) ? Json("never") : number(t_s); }
+
+Json times_or_never(const Estimate& estimate) {
+  return {time_or_never(estimate.value), time_or_never(estimate.low), time_or_never(estimate.high)};
+}
 
 /// [t, share of the agents that have escaped by then], ascending, up to the end of the mission.
 Json shares(const std::vector<double>& times_s, double end_s) {
@@ -61,6 +65,8 @@ Json point_json(const StudyPoint& point, const std::string& command, const Point
   json["metric"] = interval(summary.metric);
   if (summary.ratio) json["ratio"] = interval(*summary.ratio);
   if (summary.slope) json["slope"] = number(*summary.slope);
+  if (summary.found) json["found"] = interval(*summary.found);
+  if (summary.half_time_s) json["half_found_s"] = times_or_never(*summary.half_time_s);
   json["over_time"] = Json::array();
   for (const auto& [t_s, median] : summary.metric_over_time) {
     json["over_time"].push_back(

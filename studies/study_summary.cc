@@ -33,6 +33,13 @@ std::vector<double> values_of(const Runs& runs, const auto& value) {
   return values;
 }
 
+/// The median of the values that are not nan.
+std::optional<Estimate> median_of_known(const Runs& runs, double StudyFigures::*value) {
+  const auto known = values_of(runs, [&](const StudyFigures& figures) { return figures.*value; });
+  if (known.empty()) return std::nullopt;
+  return median_of(known);
+}
+
 double metric_of(const StudyFigures& figures) { return figures.metric; }
 
 /// Whether a ratio can have this value.
@@ -81,6 +88,8 @@ PointSummary summary_of(const Runs& runs, const Runs& first, double duration_s) 
   summary.metric_over_time = over_time(runs, duration_s);
   const auto slopes = values_of(runs, [](const StudyFigures& f) { return f.slope; });
   if (!slopes.empty()) summary.slope = median_of(slopes).value;
+  summary.found = median_of_known(runs, &StudyFigures::detection_probability);
+  summary.half_time_s = median_of_known(runs, &StudyFigures::half_time_s);
   summary.escape_times_s = escape_times_of(runs);
   summary.offset2_mean_m2 = mean_of(runs, [](const StudyFigures& f) { return f.offset2_mean_m2; });
   for (const auto& [seed, figures] : runs) {

@@ -21,6 +21,9 @@ struct PointSummary {
   /// t [s] and the median of φ², at the times that all runs have; the end is last.
   std::vector<std::pair<double, Estimate>> metric_over_time;
   std::optional<double> slope;  ///< median
+  /// Medians of the probability that the team has found an object at the end, and of the time after
+  /// which it was ½ [s]; infinite if most runs never get there.
+  std::optional<Estimate> found, half_time_s;
   /// One for each agent of each run that starts on a manifold, ascending; infinite at the end.
   std::vector<double> escape_times_s;
   double offset2_mean_m2 = 0;                               ///< mean over the runs

@@ -135,6 +135,7 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
   SOURCES
     page/amendment_test.cc
     page/drawing_test.cc
+    page/found_test.cc
     page/layout_test.cc
     page/map_test.cc
     page/control_test.cc

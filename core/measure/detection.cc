@@ -24,16 +24,6 @@ double least_side_m(const Box& domain) {
                   domain.planar() ? 1.0 / 2 : 1.0 / 3);
 }
 
-/// In how many ticks the fastest agent moves by kCellsPerLook cells.
-Tick ticks_per_look(const Mission& mission, const Cells& cells) {
-  double u_max_mps = mission.law.u_max_mps;
-  for (const AgentKind& kind : mission.kinds) u_max_mps = std::max(u_max_mps, kind.u_max_mps);
-  const double side_m =
-      mission.domain.planar() ? cells.size_m.head<2>().minCoeff() : cells.size_m.minCoeff();
-  const double look_s = std::min(kLongestLook_s, kCellsPerLook * side_m / u_max_mps);
-  return std::max<Tick>(1, static_cast<Tick>(look_s / mission.timing.dt_s));
-}
-
 }  // namespace
 
 double sensor_radius_m(const Mission& mission) {
@@ -47,11 +37,20 @@ Cells measure_cells(const Mission& mission) {
   return {mission.domain, sensor_radius_m(mission) / kCellsPerRadius};
 }
 
+Tick ticks_per_look(const Mission& mission, const Cells& cells) {
+  double u_max_mps = mission.law.u_max_mps;
+  for (const AgentKind& kind : mission.kinds) u_max_mps = std::max(u_max_mps, kind.u_max_mps);
+  const double side_m =
+      mission.domain.planar() ? cells.size_m.head<2>().minCoeff() : cells.size_m.minCoeff();
+  const double look_s = std::min(kLongestLook_s, kCellsPerLook * side_m / u_max_mps);
+  return std::max<Tick>(1, static_cast<Tick>(look_s / mission.timing.dt_s));
+}
+
 Detection::Detection(const Mission& mission)
     : cells_(measure_cells(mission)),
       dt_s_(mission.timing.dt_s),
       radius_m_(sensor_radius_m(mission)),
-      ticks_per_look_(ticks_per_look(mission, cells_)),
+      ticks_per_look_(ergocast::ticks_per_look(mission, cells_)),
       missed_in_look_(std::exp(-mission.sensor.detections_per_s * mission.timing.dt_s *
                                static_cast<double>(ticks_per_look_))),
       mass_(cells_.total(), 0),

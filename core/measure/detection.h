@@ -32,6 +32,10 @@ double sensor_radius_m(const Mission& mission);
 /// The cells of a mission's measures: three to a radius, if kMaxMeasureCells allows it.
 Cells measure_cells(const Mission& mission);
 
+/// In how many ticks the sensors of a mission look once: the fastest agent then moves by half of
+/// one of its measure_cells() at most.
+Tick ticks_per_look(const Mission& mission, const Cells& cells);
+
 class Detection {
  public:
   Detection() = default;

@@ -100,6 +100,12 @@ window.ergocast = {
     readPixels();
     return performance.now() - begin;
   },
+  // The greatest difference between the probability of detection of the record and of the positions.
+  worstFound() {
+    const { run } = S,
+      found = run.metrics.t.map(t => run.detection.probability(run.rowAt(t)));
+    return Math.max(...found.map((p, i) => Math.abs(p - run.metrics.found[i])));
+  },
   // The greatest relative difference between φ² of the record and of the positions in the page.
   worstMetric() {
     const { run } = S;

@@ -54,5 +54,8 @@ export function duration(s) {
 // 0.125 → 12.5 %.
 export const share = v => (typeof v === 'number' ? `${+(100 * v).toFixed(1)}\u00a0%` : '–');
 
+// A probability; one near 1 is not rounded to it.
+export const chance = v => (v > 0.999 && v < 1 ? `>\u202f99.9\u00a0%` : isFinite(v) ? share(v) : '–');
+
 // A time, or that it never comes.
 export const seconds = s => (s === Infinity ? 'never' : `${readable(s)}\u00a0s`);

@@ -270,6 +270,17 @@ agents { starts { x_m: 50 y_m: 20 } random_count: 1 })";
             true);
   screenshot("study");
 
+  // The probability of detection is one of its quantities; the more, the better.
+  js("ergocast.set({ quantity: 'found' })");
+  wait_for_frame();
+  EXPECT_NE(text("best").find(". Objects found "), std::string::npos) << text("best");
+  EXPECT_EQ(js("const { points, best } = ergocast.shown();"
+               "return points.every(p => p.found[0] <= best.found[0])"),
+            true);
+  EXPECT_EQ(js("return ergocast.S.study.quantities.includes('halfFound')"), true);
+  js("ergocast.set({ quantity: 'metric' })");
+  wait_for_frame();
+
   browser_->click("#heads th:nth-child(1) button");  // sorted by number, not by letters
   EXPECT_EQ(rows()[0].get<std::string>().substr(0, 4), "0.1,");
   EXPECT_EQ(rows()[2].get<std::string>().substr(0, 2), "3,");

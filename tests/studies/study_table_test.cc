@@ -121,6 +121,23 @@ TEST(Summarize, CountsEscapesByAgents) {
   EXPECT_NEAR(summary.escaped_share(1e9), 2.0 / 3, 1e-15);
 }
 
+TEST(Summarize, HasTheMedianOfWhatIsFound) {
+  const Study study = two_by_two();
+  std::vector<StudyRow> rows;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    StudyFigures figures = figures_of(seed, 1);
+    figures.detection_probability = 0.2 * static_cast<double>(seed);
+    figures.half_time_s = seed < 3 ? kNever : 7;
+    rows.push_back({0, figures});
+  }
+  const PointSummary summary = summarize(study, rows)[0];
+  EXPECT_NEAR(summary.found->value, 0.4, 1e-12);
+  EXPECT_NEAR(summary.found->low, 0.2, 1e-12);
+  EXPECT_NEAR(summary.found->high, 0.6, 1e-12);
+  EXPECT_EQ(summary.half_time_s->value, kNever);
+  EXPECT_EQ(summary.half_time_s->low, 7);
+}
+
 /// The data of a page.
 nlohmann::json data_of(const std::string& page) {
   const std::string begin = "id=\"data\">";
@@ -154,11 +171,15 @@ TEST(StudyPage, HasWhatThePointsAreLike) {
   const Study study = two_by_two();
   StudyFigures second = figures_of(2, 0.25);
   second.escape_time_s[1] = 3;
+  second.detection_probability = 0.5;
+  second.half_time_s = kNever;
   const auto data = data_of(study_page({study, "1.2.3", "", std::vector<std::string>(4)},
                                        summarize(study, {{0, figures_of(1, 0.5)}, {0, second}})));
   const auto point = data["study"]["points"][0];
   EXPECT_EQ(point["values"], nlohmann::json::parse(R"(["0.1", "ABSOLUTE"])"));
   EXPECT_EQ(point["metric"], nlohmann::json::parse("[0.375, 0.25, 0.5]"));
+  EXPECT_EQ(point["found"], nlohmann::json::parse("[0.25, 0.0, 0.5]"));
+  EXPECT_EQ(point["half_found_s"], nlohmann::json::parse(R"(["never", 0.0, "never"])"));
   EXPECT_EQ(point["over_time"][0], nlohmann::json::parse("[1, 1.875, 1.25, 2.5]"));
   EXPECT_EQ(point["escapes"]["within_15_s"], 0.3333);
   EXPECT_EQ(point["escapes"]["late_s"], "never");

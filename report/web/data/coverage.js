@@ -69,10 +69,11 @@ export class Coverage {
     if (kept !== 1) for (const numbers of [sum, counted]) numbers.forEach((n, i) => (numbers[i] = n * kept));
     cz[0] = 1;
     for (const track of run.tracks) {
-      const sensor = this.sensorOf(track.id);
+      const sensor = this.sensorOf(track.id),
+        rest = run.firstRest(track.id);
       for (const [begin, until] of track.member) {
         const { p, z } = track,
-          end = Math.min(to, until, track.last + 1);
+          end = Math.min(to, until, rest, track.last + 1);
         let holds = 0; // which target
         for (let k = Math.max(from, begin, track.first); k < end; k++) {
           const px = p[2 * k],

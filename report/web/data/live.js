@@ -71,6 +71,7 @@ function addMetrics(run) {
       !run.tracks.some(track => track.hasGaps);
   if (!whole) {
     run.metrics = told;
+    addFound(run);
     return;
   }
   if (run.metrics === told) {
@@ -89,6 +90,13 @@ function addMetrics(run) {
     }
     run.nextMetric = row + every;
   }
+  addFound(run);
+}
+
+// How likely an object has been found, unless the page lacks places of the beginning.
+function addFound(run) {
+  const whole = run.tracks.some(track => track.first === 0);
+  run.metrics.found = run.metrics.t.map(t => (whole ? run.foundCurve.at(run.rowAt(t)) : NaN));
 }
 
 const OF_STATUSES = ['spread', 'age', 'received', 'lost'];
@@ -107,7 +115,8 @@ function addTold(told, { agents, t_s: t, ergodic_metric: phi }) {
     received: sum(agents, 'contributions_received'),
     lost: sum(agents, 'contributions_lost'),
   };
-  for (const [key, list] of Object.entries(told)) {
+  for (const key of Object.keys(now)) {
+    const list = told[key];
     list.push(now[key]);
     if (list.length > MOST_STATUSES) told[key] = list.filter((_, i) => i % 2 === 0);
   }

@@ -56,6 +56,7 @@ export function projected(run, name) {
     },
     picture: (layer, row, width, height) =>
       picture(averageOf(run.coefficients(layer, row), modes, hidden), modes[a], modes[b], width, height),
+    missed: row => run.missed(row, hidden),
   });
   Object.defineProperty(seen, 'tracks', {
     get: () =>

@@ -2,9 +2,10 @@
 // Holds a mission as the page shows it, from a record or as it grows, without any drawing.
 import { picture } from './cosine_sums.js';
 import { Coverage } from './coverage.js';
+import { Detection, FoundCurve } from './detection.js';
 import { vehicleOf } from './motion.js';
 import { amendedTarget, firstDifference, plannedTarget } from './targets.js';
-import { Track, addTracks } from './tracks.js';
+import { Track, addTracks, firstRowOf } from './tracks.js';
 
 const TOLERANCE_S = 1e-6;
 const LONG_BLOCK_S = 1; // bodies that pass each other have shorter ones
@@ -35,7 +36,7 @@ export class Run {
     this.rows = 0;
     this.tracks = []; // ascending by id
     this.byId = new Map();
-    this.metrics = { t: [], phi: [], spread: [], age: [], received: [], lost: [] };
+    this.metrics = { t: [], phi: [], found: [], spread: [], age: [], received: [], lost: [] };
     this.incidents = []; // {t, kind, sign, text, agent, until}, ascending
     this.holds = []; // [first tick that does not count, first that counts again or null]
     this.standing = new Set(); // agents that stand at the end, also if they moved up to it
@@ -52,6 +53,8 @@ export class Run {
     this.received = new Map(); // coefficients of new targets, by hash
     this.targets = [plannedTarget(mission)]; // ascending by row
     this.coverage = new Coverage(this);
+    this.detection = new Detection(this); // at the row that the page shows
+    this.foundCurve = new FoundCurve(this);
   }
   get end() {
     return Math.max(0, this.rows - 1) * this.step;
@@ -65,7 +68,13 @@ export class Run {
     if (JSON.stringify(pairs) === JSON.stringify(this.holds)) return;
     this.holds = pairs;
     this.noteEnds();
-    this.coverage.reset(0);
+    this.forget(0);
+  }
+  // What was computed from rows since `row` is wrong now.
+  forget(row) {
+    this.coverage.reset(row);
+    this.detection.reset();
+    this.foundCurve.reset(row);
   }
   // What has changed since the plan, the coefficients of targets that are new to the page, by hash, and all
   // zones.
@@ -81,7 +90,7 @@ export class Run {
     this.noteEnds();
     this.targets = [before[0], ...list.filter(one => one.kind === 'target').map(targetOf)];
     const changed = firstDifference(before, this.targets);
-    if (changed < this.rows) this.coverage.reset(changed);
+    if (changed < this.rows) this.forget(changed);
   }
   // How many ticks count, by the newest end.
   get tickCount() {
@@ -145,10 +154,23 @@ export class Run {
     );
   }
   rests(id, row) {
-    return (
-      row * this.stride >= (this.recalledFrom.get(id) ?? Infinity) ||
-      Math.round(this.counted(row * this.step) / this.mission.dt_s) >= (this.restFrom.get(id) ?? Infinity)
-    );
+    return this.restsAt(id, row * this.stride, Math.round(this.counted(row * this.step) / this.mission.dt_s));
+  }
+  // The same at a tick, which has that number among those that count.
+  restsAt(id, tick, counted) {
+    return tick >= (this.recalledFrom.get(id) ?? Infinity) || counted >= (this.restFrom.get(id) ?? Infinity);
+  }
+  // The first row at which an agent rests; it rests at all later ones.
+  firstRest(id) {
+    if (!this.recalledFrom.has(id) && !this.restFrom.has(id)) return Infinity;
+    let low = 0,
+      high = this.rows;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.rests(id, middle)) high = middle;
+      else low = middle + 1;
+    }
+    return low;
   }
   goesHome(id, row) {
     return row * this.stride >= (this.homeFrom.get(id) ?? Infinity);
@@ -167,6 +189,7 @@ export class Run {
     return track;
   }
   add(block) {
+    for (const measure of [this.detection, this.foundCurve]) measure.rewind(firstRowOf(block));
     const first = addTracks(this, block);
     if (first < this.coverage.upto || first < (this.coverage.sums.length - 1) * 128)
       this.coverage.reset(first);
@@ -183,9 +206,18 @@ export class Run {
   picture(layer, row, width, height) {
     return picture(this.coefficients(layer, row), this.coverage.M, this.coverage.N, width, height);
   }
+  // Where an object may be that has not been found, in a picture (detection.js).
+  missed(row, axis = 2, share = null) {
+    return this.detection.missed(row, axis, share);
+  }
   metricAt(t) {
     const i = indexAt(this.metrics.t, t);
     return i < 0 ? NaN : this.metrics.phi[i];
+  }
+  // How likely an object had been found by then.
+  foundAt(t) {
+    const i = indexAt(this.metrics.t, t);
+    return i < 0 ? NaN : this.metrics.found[i];
   }
   // What the agents' statuses reported last before `t`; null: nothing is known of them.
   teamAt(t) {
@@ -229,7 +261,7 @@ export class Run {
       );
       track.member = list;
     }
-    if (changed < this.rows) this.coverage.reset(changed);
+    if (changed < this.rows) this.forget(changed);
   }
 }
 

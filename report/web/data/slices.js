@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes slices through a box: pictures of target, coverage or difference in planes across its axes.
+// Makes slices through a box: pictures of a layer of the map in planes across its axes.
 import { ACROSS_AND_UP, picture, planeOf } from './cosine_sums.js';
 import { fullOf } from './targets.js';
 import { clamp } from '../text.js';
@@ -41,16 +41,23 @@ export function sliceImage(run, { layer, row, colours }, axis, share) {
     [a, b] = ACROSS_AND_UP[axis],
     { full } = rangeOf(run, run.targetAt(row)),
     difference = layer === 'difference';
-  const values = picture(
-    planeOf(run.coefficients(layer, row), modes, axis, share),
-    modes[a],
-    modes[b],
-    CELLS,
-    CELLS,
-  );
+  const { width, height, values } =
+    layer === 'missed'
+      ? run.missed(row, axis, share)
+      : {
+          width: CELLS,
+          height: CELLS,
+          values: picture(
+            planeOf(run.coefficients(layer, row), modes, axis, share),
+            modes[a],
+            modes[b],
+            CELLS,
+            CELLS,
+          ),
+        };
   const table = difference ? colours.difference : colours.amount,
     zero = difference ? 127.5 : 0;
-  const image = new ImageData(CELLS, CELLS),
+  const image = new ImageData(width, height),
     pixels = new Uint32Array(image.data.buffer);
   for (let i = 0; i < pixels.length; i++) {
     const level = clamp(zero + (255 * values[i]) / full, 0, 255);

@@ -78,6 +78,9 @@ export class Track {
 const coordinateOf = (track, axis) =>
   axis < 2 ? (k, v) => (track.p[2 * k + axis] = v) : (k, v) => (track.z[k] = v);
 
+// The first row that a block adds or changes.
+export const firstRowOf = ({ agents }) => Math.min(...agents.map(({ runs }) => runs[0] ?? Infinity));
+
 // Adds a block of rows to the run's tracks. Returns the first row that it changed.
 export function addTracks(run, block) {
   const bytes = bytesOf(block.data),

@@ -62,8 +62,29 @@ function nowhereOf(density, [lx, ly]) {
   return { rectangles, outline: contour(density, [lx, ly], 1, k => (cells[k] ? 1 : 0), 0.5) };
 }
 
-// The shading as a picture: target, achieved or difference.
+function canvasOf(image) {
+  const canvas = document.createElement('canvas');
+  canvas.width = image.width;
+  canvas.height = image.height;
+  canvas.getContext('2d').putImageData(image, 0, 0);
+  return canvas;
+}
+
+// What may have been missed, on the scale of the target.
+function missedShading(run, row, colours) {
+  const { width, height, values } = run.missed(row),
+    { full } = run.targetAt(row).density,
+    image = new ImageData(width, height),
+    pixels = new Uint32Array(image.data.buffer);
+  values.forEach((v, i) => {
+    pixels[i] = colours.amount[clamp((255 * v) / full, 0, 255) | 0];
+  });
+  return canvasOf(image);
+}
+
+// The shading as a picture.
 function shading(run, layer, row, colours) {
+  if (layer === 'missed') return missedShading(run, row, colours);
   const { density } = run.targetAt(row),
     { size } = run,
     achieved = layer !== 'target';
@@ -85,11 +106,7 @@ function shading(run, layer, row, colours) {
   } else {
     for (let i = 0; i < pixels.length; i++) pixels[i] = colours.amount[density.cells[i]];
   }
-  const canvas = document.createElement('canvas');
-  canvas.width = width;
-  canvas.height = height;
-  canvas.getContext('2d').putImageData(image, 0, 0);
-  return canvas;
+  return canvasOf(image);
 }
 
 function hatch(g, rectangles, view, colours) {

@@ -2,7 +2,7 @@
 // Paints the map over its ground: trails and markers.
 // Each draws on a canvas, or on anything with the same methods (svg.js).
 import { clamp } from '../text.js';
-import { many, paintAgents } from './markers.js';
+import { many, oval, paintAgents } from './markers.js';
 import { axisName } from './box_axes.js';
 import { farthestFirst, paintSpaceMarks } from './space_marks.js';
 import { paintZoneMarks } from './zones_layer.js';
@@ -175,6 +175,30 @@ function paintRadio(g, run, view, { row, colours, focus }) {
   g.globalAlpha = 1;
 }
 
+// Dotted lines within which sensors find objects: of the chosen agents, or beside what was missed of all of a
+// few.
+function paintSensors(g, run, view, { row, colours, focus, layer }) {
+  const radius = run.mission.sensor.radius_m;
+  g.setLineDash([1.5, 3]);
+  g.lineWidth = 1.6;
+  for (const track of run.tracks) {
+    if (focus ? !focus(track.id) : layer !== 'missed' || many(run)) continue;
+    const at = track.rowAt(row);
+    if (at < 0) continue;
+    const reach = radius * view.scaleAt(track, at),
+      [x, y] = view.at(track, at);
+    g.strokeStyle = colours.agent(track.id);
+    oval(
+      g,
+      x,
+      y,
+      view.stretchOf(run).map(factor => factor * reach),
+    );
+    g.stroke();
+  }
+  g.setLineDash([]);
+}
+
 export function paintMarkers(g, run, view, state) {
   const { row, tail, colours, focus, radio } = state;
   if (state.inSpace) paintSpaceMarks(g, run, view, state);
@@ -194,5 +218,6 @@ export function paintMarkers(g, run, view, state) {
   }
   if (radio && run.mission.radio_range_m > 0) paintRadio(g, run, view, state);
   paintZoneMarks(g, run, view, state);
+  paintSensors(g, run, view, state);
   paintAgents(g, run, view, state, state.inSpace ? farthestFirst(run, view, row) : run.tracks);
 }

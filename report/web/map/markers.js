@@ -76,7 +76,7 @@ export function markersOf(run, view, { row, focus, distance }) {
   return markers;
 }
 
-function oval(g, x, y, [rx, ry]) {
+export function oval(g, x, y, [rx, ry]) {
   g.beginPath();
   if (rx === ry) {
     g.arc(x, y, rx, 0, 2 * Math.PI);

@@ -2,7 +2,7 @@
 // Paints the chart of a run: one quantity over time.
 // It draws on a canvas, or on anything with the same methods (svg.js).
 import { paintColumns, paintRows, rangeOf, scalesFor, segment } from '../axes.js';
-import { readable } from '../text.js';
+import { chance, readable } from '../text.js';
 import { indexAt } from '../data/run.js';
 
 // Messages per second of mission time, between rows ten apart: single rows would be a comb.
@@ -15,15 +15,24 @@ function ratePerSecond({ t, received }) {
 
 export const QUANTITIES = {
   phi: { title: 'Ergodic metric φ²', log: true, of: m => m.phi, text: readable },
+  found: {
+    title: 'Objects found [%]',
+    log: false,
+    most: 100,
+    of: m => m.found.map(p => 100 * p),
+    text: v => chance(v / 100),
+  },
   spread: { title: 'Disagreement on φ²', log: true, of: m => m.spread, text: readable },
   age: { title: 'Oldest update', log: false, of: m => m.age, text: v => `${readable(v)} s` },
   rate: { title: 'Messages per second', log: false, of: ratePerSecond, text: v => `${readable(v)} /s` },
 };
 
+const OF_TARGET = ['phi', 'found']; // they compare with the target that holds
+
 // The scales of a chart of that size.
 export function scalesOf(run, { quantity, axis }, width, height) {
   const { t } = run.metrics,
-    { of, log } = QUANTITIES[quantity],
+    { of, log, most } = QUANTITIES[quantity],
     values = of(run.metrics),
     logT = axis === 'log';
   const end = Math.max(t[t.length - 1] ?? 1, run.step * 2),
@@ -32,7 +41,7 @@ export function scalesOf(run, { quantity, axis }, width, height) {
     values.filter((_, i) => t[i] >= begin * 0.999),
     log,
   );
-  if (!log) Object.assign(up, { low: 0, high: up.high > 0 ? up.high * 1.08 : 1 });
+  if (!log) Object.assign(up, { low: 0, high: most ?? (up.high > 0 ? up.high * 1.08 : 1) });
   const s = scalesFor(width, height, { low: begin, high: end, log: logT }, up),
     { x } = s;
   return Object.assign(s, { values, begin, end, x: at => x(Math.max(at, begin)) });
@@ -90,7 +99,7 @@ function curve(g, s, t, from, to) {
   g.stroke();
 }
 
-// Vertical lines where φ² begins to compare with another target.
+// Vertical lines where another target begins.
 function paintTargets(g, s, run, colours) {
   g.strokeStyle = colours.accent;
   g.lineWidth = 1;
@@ -110,7 +119,7 @@ export function paintChart(g, run, { t: now, quantity, axis, colours, guide, poi
   paintRows(g, s, colours);
   paintColumns(g, s, colours, ' s');
   if (quantity === 'phi' && guide) paintGuide(g, s, run, colours);
-  if (quantity === 'phi') paintTargets(g, s, run, colours);
+  if (OF_TARGET.includes(quantity)) paintTargets(g, s, run, colours);
   const goal = run.mission.goal;
   if (quantity === 'phi' && goal > s.up.low && goal < s.up.high) {
     g.strokeStyle = colours.ok;

@@ -4,6 +4,7 @@ import { S } from './state.js';
 import { NOTABLE, lateCommands, lateText } from './notices.js';
 import { $, duration, element, grouped, ofModes, readable } from '../text.js';
 import { openDialog } from './dialogs.js';
+import { foundBy, foundFacts } from './found.js';
 import { meaningOf } from './words.js';
 
 function list(pairs, css) {
@@ -40,6 +41,7 @@ export function showFacts(live) {
         ['messages per second', readable(live.rate)],
         ['messages lost', grouped(live.lost)],
         ['late commands', lateText(late)],
+        ...foundFacts(run),
         ['authenticated', live.authenticated ? 'yes' : 'no'],
         ['ticks', `${grouped(run.tickCount)} × ${mission.dt_s} s`],
         ['modes', mission.modes.join(' × ')],
@@ -53,7 +55,7 @@ export function showFacts(live) {
         ['φ² last', readable(phi[phi.length - 1])],
         ['slope, last decade', slopeText(run)],
         ...present([
-          ['objects found', said(summary, 'detection.probability')],
+          ['objects found', foundBy(summary)],
           ['half of them after [s]', said(summary, 'detection.time_to_half_s')],
           ['80 % after [s]', said(summary, 'detection.time_to_four_fifths_s')],
           ['left alone at most [s]', said(summary, 'greatest_age_s')],

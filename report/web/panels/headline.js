@@ -4,7 +4,7 @@ import { S } from './state.js';
 import { QUANTITIES, readingAt } from './chart.js';
 import { showTeam } from './team.js';
 import { showNotices } from './notices.js';
-import { $, ofModes, put, readable } from '../text.js';
+import { $, chance, ofModes, put, readable } from '../text.js';
 
 let textAt = 0;
 
@@ -26,6 +26,7 @@ export function drawHeadline(now) {
   const { run, t } = S;
   put($('nowTime'), run.counted(t).toFixed(1));
   put($('nowMetric'), readable(run.metricAt(t)));
+  put($('nowFound'), chance(run.foundAt(t)));
   $('slider').value = run.rowAt(t);
   if (S.playing && now - textAt < 150) return;
   textAt = now;
@@ -39,7 +40,7 @@ export function drawHeadline(now) {
   $('markers').setAttribute(
     'aria-label',
     `Map of ${run.mission.name} at ${t.toFixed(1)} s: ${alive} of ${all.length} agents alive, ` +
-      `φ²${ofModes(run.mission)} ${readable(run.metricAt(t))}`,
+      `φ²${ofModes(run.mission)} ${readable(run.metricAt(t))}, found ${chance(run.foundAt(t))}`,
   );
   $('chart').setAttribute('aria-label', `${QUANTITIES[S.quantity].title}: ${readingAt(run, S.quantity, t)}`);
   put(

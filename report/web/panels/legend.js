@@ -37,8 +37,13 @@ export function showLegend() {
     row = S.run?.rowAt(S.t) ?? 0,
     full = S.run ? fullAt(row) : 2,
     times = v => `${v.toFixed(v < 10 ? 1 : 0)}×`;
-  put($('scaleLow'), difference ? `too little −${times(full / 2)}` : '0');
-  put($('scaleHigh'), difference ? `+${times(full / 2)} too much` : `≥ ${times(full)} average`);
+  const [low, high] = {
+    difference: [`too little −${times(full / 2)}`, `+${times(full / 2)} too much`],
+    missed: ['unlikely', 'may still be here'],
+  }[S.layer] ?? ['0', `≥ ${times(full)} average`];
+  put($('scaleLow'), low);
+  put($('scaleHigh'), high);
+  $('scale').title = meaningOf('MAP', S.layer === 'missed' ? 'Missed' : 'scale');
   if (S.run) {
     const target = S.run.targetAt(row);
     written = target.id;
@@ -66,6 +71,7 @@ export function showLegend() {
     'CHART',
     {
       phi: 'Ergodic metric φ²',
+      found: 'Objects found [%]',
       spread: 'Disagreement on φ²',
       age: 'Oldest update',
       rate: 'Messages per second',

@@ -6,6 +6,7 @@ import { coordinate, nameOf } from '../data/places.js';
 import { stateOf } from '../data/run.js';
 import { hover, pin } from './team.js';
 import { redraw, view } from './screen.js';
+import { missedText } from './found.js';
 import { $, put } from '../text.js';
 
 const PER_PIXEL = 0.008; // radians
@@ -60,13 +61,15 @@ function groundText(run, x, y) {
   if (inSpace()) return null;
   const [mx, my] = view.metres(x, y),
     [lx, ly] = run.size,
-    { width, height, cells, full } = run.targetAt(S.run.rowAt(S.t)).density;
+    row = S.run.rowAt(S.t),
+    { width, height, cells, full } = run.targetAt(row).density;
   if (!(mx >= 0 && my >= 0 && mx <= lx && my <= ly)) return null;
   const i = Math.min(width - 1, Math.floor((mx / lx) * width)),
     j = Math.min(height - 1, Math.floor((1 - my / ly) * height));
   const place = [mx, my].map((v, k) => v / run.stretch[k] + run.mission.origin_m[k]),
     names = run.inBox ? `${run.axes.map(nameOf).join(', ')}: ` : '';
-  return `${names}${placeText(place)} · target ${((cells[j * width + i] / 255) * full).toFixed(2)}×`;
+  const target = `${names}${placeText(place)} · target ${((cells[j * width + i] / 255) * full).toFixed(2)}×`;
+  return S.layer === 'missed' ? target + missedText(run, row, mx, my) : target;
 }
 
 function showTip(x, y, agent) {

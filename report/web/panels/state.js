@@ -4,7 +4,7 @@ import { TAILS } from '../map/map.js';
 import { projected } from '../data/projection.js';
 
 export const SPEEDS = [0.5, 1, 2, 5, 10, 20, 50, 100];
-export const LAYERS = ['target', 'achieved', 'difference'];
+export const LAYERS = ['target', 'achieved', 'difference', 'missed'];
 
 export const S = {
   run: null,

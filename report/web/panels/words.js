@@ -11,6 +11,9 @@ const TOP = {
   state: 'What the mission does at the chosen time.',
   time: 'Mission time. Ticks of a pause do not count.',
   'φ²': `The ergodic metric. ${PHI}`,
+  found:
+    'How likely the team has found, by the chosen time, an object that stands still somewhere in the ' +
+    'target. It begins again with each new target.',
   agents: 'Agents that report, of those that the mission has.',
 };
 const MAP = {
@@ -31,6 +34,9 @@ const MAP = {
     'Each moment counts against the target of its time.',
   Achieved: 'Where the team has spent its time up to the chosen time.',
   Difference: 'Where the team has been too little or too much: this is what φ² adds up.',
+  Missed:
+    'Where an object may be that has not been found up to the chosen time: the stronger a colour, ' +
+    'the likelier. At the start this is the target.',
   scale: 'A colour shows how many times denser a place is than the average of the domain.',
   Trail: 'How much of its way is drawn behind each agent.',
   Course:
@@ -44,6 +50,8 @@ const MAP = {
     'A ring around each agent, to scale. Its radius is half the distance that agents keep: ' +
     'where two rings touch, the distance is reached. In a team of more than 12 only chosen agents have it.',
   'Radio range': 'Teammates inside an agent’s circle receive what the agent sends.',
+  'dotted circle':
+    'An agent finds objects inside it. Chosen agents have it, and beside “Missed” all of a small team.',
   pin: 'Its tip is an agent’s place, and the arrow there shows its direction. Its size means nothing.',
   disc: 'An agent’s body, to scale. Its radius is half the distance that bodies keep.',
   'thick arrow': 'From an agent that has been blocked for a second or more to the one that blocks it.',
@@ -54,6 +62,9 @@ const MAP = {
 };
 const CHART = {
   'Ergodic metric φ²': PHI,
+  'Objects found [%]':
+    'How likely the team has found an object that stands still somewhere in the target. ' +
+    'It begins again with each new target.',
   'Disagreement on φ²':
     'The largest minus the smallest φ² that agents compute of what each of them knows. 0: all know the same.',
   'Oldest update': 'The time since the worst informed agent last received coverage of one of its teammates.',
@@ -90,8 +101,9 @@ const FIGURES = {
   'objects found':
     'How likely the team has found an object that stands still somewhere in the target. ' +
     'The scenario’s sensor says how near an agent must be, and at which rate it then finds the object.',
-  'half of them after [s]': 'The mission time after which an object had been found with a probability of ½.',
-  '80 % after [s]': 'The mission time after which an object had been found with a probability of 0.8.',
+  'half of them after [s]':
+    'The time from the newest target on after which an object had been found with a probability of ½.',
+  '80 % after [s]': 'The same with a probability of 0.8.',
   'left alone at most [s]':
     'Places with 95 % of the target were never left alone for longer: an agent’s sensor was near them.',
   'distance to the target [m]':

@@ -97,7 +97,7 @@ export function paintFieldChart(g, cells, { across, up, quantity, best, hot, col
       const bounds = q.bounds(cell.point),
         strong = cell.list.includes(best) || cell.list.some(hot);
       g.lineWidth = 2.4;
-      if (bounds) segment(g, x(cell), s.y(bounds[0]), x(cell), s.y(bounds[1]));
+      if (bounds) segment(g, x(cell), s.y(bounds[0]), x(cell), s.y(Math.min(bounds[1], s.up.high)));
       g.beginPath();
       g.arc(x(cell), s.y(q.value(cell.point)), strong ? 5.5 : 3.6, 0, 2 * Math.PI);
       g.fill();

@@ -27,6 +27,23 @@ export const QUANTITIES = {
     text: readable,
     ...estimate('ratio'),
   },
+  found: {
+    title: 'Objects found',
+    means: 'How likely an object in the target has been found at the end: median, and its 95 % interval',
+    log: false,
+    better: 1,
+    text: share,
+    ...estimate('found'),
+  },
+  halfFound: {
+    title: 'Half found after',
+    means:
+      'The time after which an object has been found with a probability of ½: median, and its 95 % interval',
+    log: false,
+    better: -1,
+    text: seconds,
+    ...estimate('half_found_s'),
+  },
   slope: {
     title: 'Slope of φ² in cosines',
     means: 'The power of t that fits φ² over the last tenfold of time; −1 falls like 1/t',
@@ -126,8 +143,12 @@ export class Study {
     this.points.forEach((point, index) =>
       Object.assign(point, { index, all: [point.scenario, ...point.values] }),
     );
-    for (const { escapes } of this.points)
+    for (const { escapes, half_found_s: half = [] } of this.points) {
       for (const key of ['median_s', 'late_s']) if (escapes?.[key] === 'never') escapes[key] = Infinity;
+      half.forEach((v, i) => {
+        if (v === 'never') half[i] = Infinity;
+      });
+    }
     // What tells the points apart; the scenario is number 0.
     this.dimensions = ['scenario', ...data.fields].map((name, number) => ({
       name,
@@ -156,11 +177,13 @@ export class Study {
           parts.every(part => this.nameOf(point).toLowerCase().replaceAll(' = ', '=').includes(part))),
     );
   }
+  // Null if more is neither better nor worse, and if all wait for ever.
   best(points, key) {
     const { value, better } = QUANTITIES[key];
     let best = null;
     for (const point of points)
-      if (isKnown(value(point)) && (!best || better * value(point) > better * value(best))) best = point;
+      if (Number.isFinite(value(point)) && (!best || better * value(point) > better * value(best)))
+        best = point;
     return better ? best : null;
   }
   // Those whose intervals overlap with that of the best.
@@ -211,7 +234,7 @@ export function intervalText(point, key) {
     v = value(point),
     range = bounds(point);
   if (!isKnown(v)) return '–';
-  if (!range) return text(v);
+  if (!range || (v === Infinity && range[0] === v)) return text(v);
   if (!log || !(v > 0) || v >= 0.01) return `${text(v)} [${text(range[0])}, ${text(range[1])}]`;
   const exponent = Math.floor(Math.log10(v)),
     part = x => readable(x / 10 ** exponent);

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Puts into words what the team has found, and what it may have missed.
+import { chance, readable } from '../text.js';
+
+// At the end, by a summary, which may say anything.
+export function foundBy(summary) {
+  const probability = summary?.detection?.probability;
+  return typeof probability === 'number' ? chance(probability) : undefined;
+}
+
+// Those of a running team at the newest time: [label, text] of each figure that is known.
+export function foundFacts(run) {
+  const probability = run.foundAt(run.end);
+  if (!isFinite(probability)) return [];
+  const [half, fourFifths] = run.foundCurve.detection.times;
+  return [
+    ['objects found', chance(probability)],
+    ...(half === null ? [] : [['half of them after [s]', readable(half)]]),
+    ...(fourFifths === null ? [] : [['80 % after [s]', readable(fourFifths)]]),
+  ];
+}
+
+// How much was missed at a place of the map; nothing where the map is a view of a box.
+export function missedText(run, row, x, y) {
+  return run.inBox ? '' : ` · missed ${chance(run.detection.missedAt(row, x, y))}`;
+}

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page computes from positions what the record says the team has found, and shows where an
+// object may still be.
+#include "tests/page/page_in_a_browser.h"
+
+namespace ergocast::test {
+namespace {
+
+/// Between a probability by the record's positions and one by the page's, which are rounded to 14
+/// bits. Few cells are that near to the rim of a sensor's circle, and each has little mass.
+constexpr double kTolerance = 5e-4;
+
+class FoundInABrowser : public PageInABrowser {
+ protected:
+  double worst() { return js("return ergocast.worstFound()"); }
+  /// The same number after times in any order.
+  bool depends_on_the_way() {
+    return js(
+        "const { run } = ergocast.S, at = row => run.detection.probability(row);"
+        "const rows = [0.9, 0.2, 0.6, 0.61, 0.59, 0.1, 0.9].map(u => Math.round(u * run.rows));"
+        "const first = new Map(rows.map(row => [row, at(row)]));"
+        "return rows.reverse().some(row => Math.abs(at(row) - first.get(row)) > 1e-12)");
+  }
+  double recorded(const char* key) { return summary()["detection"][key]; }
+};
+
+TEST_F(FoundInABrowser, IsThatOfTheRecord) {
+  open_report({});
+  EXPECT_GT(recorded("probability"), 0.8);
+  EXPECT_LT(worst(), kTolerance);
+  EXPECT_FALSE(depends_on_the_way());
+  // A look, four ticks, more or less.
+  const auto times = js("const { run } = ergocast.S; return run.detection.at(run.rows - 1).times");
+  EXPECT_NEAR(times[0].get<double>(), recorded("time_to_half_s"), 0.5);
+  EXPECT_NEAR(times[1].get<double>(), recorded("time_to_four_fifths_s"), 0.5);
+  expect_no_errors();
+}
+
+TEST_F(FoundInABrowser, IsThatOfTheRecordInRoomsWithModesOfTheFreeDomain) {
+  open_report({"--duration", "120", "--set", "basis.free_domain=true", "--set", "basis.modes_x=6",
+               "--set", "basis.modes_y=6"},
+              "", "two_rooms");
+  EXPECT_GT(recorded("probability"), 0.1);
+  EXPECT_LT(worst(), kTolerance);
+  expect_no_errors();
+}
+
+TEST_F(FoundInABrowser, IsThatOfTheRecordInABox) {
+  open_report({"--duration", "120", "--set", "sensor.radius_m=80"}, "#view=xz&layer=missed",
+              "cube_corners");
+  EXPECT_GT(recorded("probability"), 0.2);
+  EXPECT_LT(worst(), kTolerance);
+  EXPECT_FALSE(depends_on_the_way());
+  // What is left has the same mass in the average along any axis, and over all slices.
+  const auto sums =
+      js("const { run } = ergocast.S, row = run.rows - 1;"
+         "const mean = values => values.reduce((sum, v) => sum + v, 0) / values.length;"
+         "const slices = Array.from({ length: run.mission.sensor.cells[2] }, (_, l, n) =>"
+         "  mean(run.missed(row, 2, (l + 0.5) / run.mission.sensor.cells[2]).values));"
+         "return [0, 1, 2].map(axis => mean(run.missed(row, axis).values)).concat(mean(slices))");
+  for (const auto& sum : sums) EXPECT_NEAR(sum.get<double>(), 1, 1e-4);
+  screenshot("missed_in_a_box");
+  expect_no_errors();
+}
+
+/// Agents that rest at their stations find nothing, and cover nothing.
+TEST_F(FoundInABrowser, IsThatOfTheRecordWhereAgentsRest) {
+  open_report({}, "", "home_by_dusk");
+  EXPECT_LT(worst(), kTolerance);
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
+  EXPECT_GT(js("const { run } = ergocast.S, at = row => run.detection.probability(row);"
+               "const rested = at(run.rows - 1); run.restFrom.clear(); run.forget(0);"
+               "return at(run.rows - 1) - rested")
+                .get<double>(),
+            1e-4)
+      << "at their stations they would have found more";
+  expect_no_errors();
+}
+
+/// The page has every second tick. Agents hardly find anything in a look, so that much is left.
+TEST_F(FoundInABrowser, IsNearThatOfTheRecordOnAPageWithFewerTicks) {
+  open_report({"--duration", "4000", "--set", "time.dt_s=0.02", "--set", "law.u_max_mps=5", "--set",
+               "sensor.detections_per_s=0.02", "--set", "basis.modes_x=4", "--set",
+               "basis.modes_y=4"});
+  ASSERT_GT(js("return ergocast.S.run.stride").get<int>(), 1);
+  EXPECT_LT(recorded("probability"), 0.95);
+  EXPECT_LT(worst(), 5e-3);
+  expect_no_errors();
+}
+
+TEST_F(FoundInABrowser, BeginsAgainWithANewTarget) {
+  std::ofstream(folder_ / "middle.textproto")
+      << "target { gaussians { mean_x_m: 1000 mean_y_m: 1000 sigma_m: 150 } }";
+  open_report({"--duration", "120", "--amend", "40:" + (folder_ / "middle.textproto").string()},
+              "#theme=light&layer=missed&quantity=found");
+  const auto found = js("return [39, 41, 119].map(t => ergocast.S.run.foundAt(t))");
+  EXPECT_GT(found[0], 0.05);
+  EXPECT_LT(found[1], 0.01);
+  EXPECT_GT(found[2], 0.1);
+  EXPECT_LT(worst(), kTolerance);
+  EXPECT_FALSE(depends_on_the_way());
+  // The chart has a line at the change, as that of φ².
+  EXPECT_EQ(js("return ergocast.svgText().split('stroke-dasharray=\"6 3\"').length - 1"), 1);
+  screenshot("missed_amended");
+  // A target that the page never received has no probability.
+  js("const { run } = ergocast.S; run.received.clear(); run.setAmendments(run.amendments)");
+  EXPECT_EQ(js("return String(ergocast.S.run.detection.probability(1000))"), "NaN");
+  EXPECT_GT(js("return ergocast.S.run.detection.probability(390)"), 0.05);
+  expect_no_errors();
+}
+
+TEST_F(FoundInABrowser, TheMapShowsWhereAnObjectMayStillBe) {
+  open_report({"--duration", "60"}, "#theme=light&tail=0&quantity=found");
+  // The strength of the shading at a place over that of an empty one.
+  const std::string strength =
+      "const { view, S } = ergocast, g = document.getElementById('shading').getContext('2d');"
+      "const pixel = (x, y) => [...g.getImageData(Math.round(view.px(x) * devicePixelRatio),"
+      "  Math.round(view.py(y) * devicePixelRatio), 1, 1).data];"
+      "const strength = (x, y) => Math.hypot(...pixel(x, y).map((v, i) => v - pixel(1000, "
+      "1990)[i]));";
+  // At the start this is the target.
+  EXPECT_LT(
+      js(strength + "const both = ['target', 'missed'].map(layer => { ergocast.set('layer', layer);"
+                    "  ergocast.draw(0); return strength(500, 500); });"
+                    "return Math.abs(both[1] - both[0])")
+          .get<double>(),
+      12);
+  // The place of the target where agent 0 has been longest, and one that no agent was near.
+  js("ergocast.set('layer', 'missed'); ergocast.draw(ergocast.S.run.end)");
+  const auto seen = js(strength +
+                       "const { run } = S, row = run.rows - 1; let least = null, most = null;"
+                       "for (let x = 350; x <= 650; x += 10) for (let y = 350; y <= 650; y += 10) {"
+                       "  const p = run.detection.missedAt(row, x, y);"
+                       "  if (!least || p < least.p) least = { p, x, y };"
+                       "  if (p === 1 && (!most || Math.hypot(x - 500, y - 500) < "
+                       "      Math.hypot(most.x - 500, most.y - 500))) most = { p, x, y }; }"
+                       "return [least, most].flatMap(({ p, x, y }) => [p, strength(x, y)])");
+  EXPECT_LT(seen[0], 0.3);
+  EXPECT_LT(seen[1], 60) << seen;
+  EXPECT_EQ(seen[2], 1);
+  EXPECT_GT(seen[3], 150) << seen;
+  // In words, and in figures.
+  EXPECT_EQ(text("scaleHigh"), "may still be here");
+  EXPECT_NE(js("return document.getElementById('scale').title").get<std::string>().find("may be"),
+            std::string::npos);
+  std::string percent = text("nowFound");
+  EXPECT_NEAR(std::stod(percent), 100 * recorded("probability"), 0.1) << percent;
+  EXPECT_TRUE(percent.ends_with("%")) << percent;
+  EXPECT_NE(text("facts").find("objects found" + percent), std::string::npos) << text("facts");
+  EXPECT_NE(js("return document.getElementById('chart').getAttribute('aria-label')")
+                .get<std::string>()
+                .find(percent),
+            std::string::npos);
+  js("ergocast.draw(0)");
+  EXPECT_EQ(std::stod(text("nowFound")), 0);
+  EXPECT_EQ(js("return document.querySelectorAll('parsererror').length"), 0);
+  screenshot("missed");
+  expect_no_errors();
+}
+
+TEST_F(FoundInABrowser, ARunningTeamHasTheProbabilityOfItsRecord) {
+  Child mission = launch_endless(scenario("pace: REALTIME realtime_factor: 10"),
+                                 {"--watch", "--port", "8819", "--lcm-url", kUrl});
+  browser_->open("http://127.0.0.1:8819/");
+  ASSERT_TRUE(browser_->becomes("return window.ergocast?.S.run?.end > 60"));
+  // Ticks of a pause find nothing.
+  ASSERT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.holds.length === 1"));
+  ASSERT_EQ(ergocast({"resume", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_TRUE(
+      browser_->becomes("const { run } = ergocast.S; return run.counted(run.end) > 120 && "
+                        "run.foundAt(run.end) > 0.1"));
+  js("ergocast.set('layer', 'missed'); ergocast.set('quantity', 'found')");
+  screenshot("missed_live");
+  EXPECT_NE(text("facts").find("objects found"), std::string::npos);
+  expect_no_errors();
+  js("window.live = ergocast.S.run");
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  // While it ran, the page computed what the record has. It may have lost some messages.
+  const auto compared =
+      js("const { t, found } = ergocast.S.run.metrics, known = t.filter(at => at <= live.end);"
+         "return [known.length, Math.max(...known.map((at, i) => "
+         "  Math.abs(live.foundCurve.at(live.rowAt(at)) - found[i])))]");
+  EXPECT_GT(compared[0].get<int>(), 100);
+  EXPECT_LT(compared[1].get<double>(), 2e-3);
+  EXPECT_LT(worst(), kTolerance);
+  expect_no_errors();
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
+}
+
+}  // namespace
+}  // namespace ergocast::test
