@@ -19,7 +19,7 @@ constexpr std::chrono::seconds kSecond{1};
 
 /// No page has this number: the act was given elsewhere.
 constexpr std::uint32_t kElsewhere = 0;
-constexpr const char* kAnother = "another operator, on another page or by a command";
+constexpr const char* kOnAnotherPage = ", on another page or by a command";
 
 std::string called(const ControlRequest& request) {
   return request.name.empty() ? "an operator without a name" : request.name;
@@ -200,9 +200,10 @@ void ControlDesk::note_changes(const MonitoredRun& team) {
       ours->named = true;
       continue;
     }
-    note(change.what + " by " + kAnother + ": " + change.text);
+    const std::string by = (change.by.empty() ? "another operator" : change.by) + kOnAnotherPage;
+    note(change.what + " by " + by + ": " + change.text);
     make_room();
-    ControlRequest request{.operator_id = kElsewhere, .name = kAnother, .number = ++elsewhere_};
+    ControlRequest request{.operator_id = kElsewhere, .name = by, .number = ++elsewhere_};
     acts_.push_back({std::move(request),
                      std::move(change.what),
                      team.mission_time(team.tick()),

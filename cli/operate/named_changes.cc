@@ -20,7 +20,7 @@ void NamedChanges::take_amendments(const MonitoredRun& team,
   for (const Amendment& amendment : team.amendments().recent) {
     if (amendment.number < *named_) continue;
     changes.push_back({to_string(amendment.kind), kUnassigned, what(amendment.kind),
-                       "from " + team.mission_time(amendment.from)});
+                       "from " + team.mission_time(amendment.from), amendment.by});
   }
 }
 

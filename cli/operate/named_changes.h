@@ -20,6 +20,7 @@ struct NamedChange {
   AgentId agent = kUnassigned;  ///< of a recall
   std::string what;             ///< "pause", "agent 2 home"
   std::string text;             ///< "from tick 65, t = 6.5 s"
+  std::string by{};             ///< its operator; empty: not known
 };
 
 class NamedChanges {
