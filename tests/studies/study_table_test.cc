@@ -167,6 +167,26 @@ TEST(StudyPage, IsWholeForAnyStudyAlsoAnEmptyOne) {
   }
 }
 
+TEST(StudySummary, HasTheMedianOfAQuantityAndItsRatioIfAllValuesAreFactors) {
+  const Study study = two_by_two();
+  StudyFigures slow = figures_of(1, 0.5), fast = slow, never = slow;
+  slow.half_time_s = 40;
+  fast.half_time_s = 10;
+  never.half_time_s = kNever;
+  const Quantity half_time{"time_to_half_s", &StudyFigures::half_time_s};
+  const auto summaries = summarize(study, {{0, slow}, {1, fast}, {2, never}}, half_time);
+  ASSERT_EQ(summaries.size(), 4U);
+  EXPECT_EQ(summaries[0].value.value, 40);
+  EXPECT_EQ(summaries[1].ratio.value().value, 0.25);
+  EXPECT_EQ(summaries[2].value.value, kNever);
+  EXPECT_FALSE(summaries[2].ratio);
+  EXPECT_EQ(summaries[3].runs, 0U);
+  const std::string text = quantity_text(study, half_time.column, summaries);
+  EXPECT_NE(text.find("time_to_half_s [95 %]"), std::string::npos) << text;
+  EXPECT_NE(text.find("never"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.25 [0.25, 0.25]"), std::string::npos) << text;
+}
+
 TEST(StudyPage, HasWhatThePointsAreLike) {
   const Study study = two_by_two();
   StudyFigures second = figures_of(2, 0.25);

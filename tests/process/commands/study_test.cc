@@ -107,6 +107,20 @@ TEST_F(Study, ARunIsTheMissionThatSimulateRuns) {
   ASSERT_EQ(rows.size(), 2U);
   // The logger adds up in another order.
   EXPECT_NEAR(std::stod(rows[0][5]) / metric, 1, 1e-9);
+  EXPECT_EQ(std::stod(rows[0][6]), summary["detection"]["probability"].get<double>());
+  EXPECT_GT(std::stod(rows[0][6]), 0);
+}
+
+TEST_F(Study, PrintsTheColumnsThatAreAskedFor) {
+  auto words = arguments("1:3", out());
+  words.insert(words.end(), {"--measure", "path_m", "--measure", "time_to_half_s"});
+  ASSERT_EQ(ergocast(words), 0) << output();
+  EXPECT_TRUE(printed("path_m [95 %]")) << output();
+  EXPECT_TRUE(printed("time_to_half_s [95 %]")) << output();
+  EXPECT_FALSE(printed("detection_probability [95 %]")) << output();
+  words.back() = "nonsense";
+  EXPECT_EQ(ergocast(words), 2);
+  EXPECT_TRUE(printed("nonsense")) << output();
 }
 
 TEST_F(Study, SetsFieldsOfEveryPointAndNamesTheCommandOfEachRow) {
