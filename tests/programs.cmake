@@ -116,6 +116,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/commands/watch_test.cc
     process/world_safety_test.cc
     process/law_test.cc
+    process/mow_test.cc
     process/zone_test.cc
     support/http.cc
     support/tls.cc
