@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "core/law/control.h"
+#include "core/law/law.h"
 #include "core/motion/separation.h"
 #include "core/motion/vehicle.h"
 #include "core/motion/way_home.h"
@@ -16,7 +17,7 @@
 namespace ergocast {
 
 // clang-format off
-WRAPPED(Eigen::Vector3d, command, "_ZN8ergocast10Controller7commandEilRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_7BasisAtE", Controller*, AgentId, Tick, const Eigen::Vector3d&, const BasisAt&)
+WRAPPED(std::unique_ptr<Law>, make_law, "_ZN8ergocast8make_lawERKNS_7MissionEi", const Mission&, int)
 WRAPPED(double, ergodic_metric, "_ZN8ergocast14ergodic_metricERKN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEES4_S4_", const Coefficients&, const Coefficients&, const Coefficients&)
 WRAPPED(Eigen::Vector3d, reflect, "_ZN8ergocast7reflectERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_3BoxE", const Eigen::Vector3d&, const Box&)
 WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
@@ -47,10 +48,30 @@ void bug_set_zones(SeparationFilter* self, std::span<const Zone> zones) {
   real_set_zones(self, known);
 }
 
-Eigen::Vector3d bug_command(Controller* self, AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
-                            const BasisAt& at) {
-  const Eigen::Vector3d v_mps = real_command(self, agent, tick, x_m, at);
-  return bug("the input is not cut") ? 20 * v_mps : v_mps;
+namespace {
+
+/// A law that wants twenty times the velocity of another.
+class Uncut final : public Law {
+ public:
+  explicit Uncut(std::unique_ptr<Law> law) : law_(std::move(law)) {}
+  LawNeeds needs() const override { return law_->needs(); }
+  void set_coverage(const Coefficients& coverage) override { law_->set_coverage(coverage); }
+  void set_target(const Coefficients& target) override { law_->set_target(target); }
+  void set_law(const LawNumbers& numbers) override { law_->set_law(numbers); }
+  Eigen::Vector3d wanted_mps(const LawInput& input) override {
+    return 20 * law_->wanted_mps(input);
+  }
+
+ private:
+  std::unique_ptr<Law> law_;
+};
+
+}  // namespace
+
+std::unique_ptr<Law> bug_make_law(const Mission& mission, int kind) {
+  auto law = real_make_law(mission, kind);
+  if (bug("the input is not cut")) law = std::make_unique<Uncut>(std::move(law));
+  return law;
 }
 
 double bug_ergodic_metric(const Coefficients& coverage, const Coefficients& target,
