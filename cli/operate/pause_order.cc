@@ -64,8 +64,9 @@ void PauseOrder::send(const MonitoredRun& team, Instant now, Outbox& out) {
 OrderReport PauseOrder::report(const MonitoredRun& team, Instant now) const {
   if (!number_) return waiting_for_mission(team, now - since_);
   // A mission that goes on may end before the next look at it.
-  if (!pauses_ && was_named_ && is_named(team) && team.tick() >= team.holds().back().until)
-    return resumed(team);
+  const bool goes_on =
+      is_named(team) && (team.holds().empty() || team.tick() >= team.holds().back().until);
+  if (!pauses_ && was_named_ && goes_on) return resumed(team);
   if (team.over()) return {State::kFailed, "the mission has ended: " + team.reason()};
   if (!is_named(team) && was_named_)
     return {State::kDone, pauses_ ? "the mission was resumed" : "the mission was paused again"};

@@ -41,6 +41,13 @@ class Paused : public ::testing::Test {
   std::int64_t revision_ = -1;
 };
 
+TEST_F(Paused, NothingIsResumedWhereThereWasNoPause) {
+  list({});
+  PauseOrder order(false, now_);
+  EXPECT_EQ(report(order).state, State::kDone);
+  EXPECT_EQ(report(order).text, "the mission is not paused");
+}
+
 TEST_F(Paused, AResumptionIsDoneAtItsTick) {
   PauseOrder order(false, now_);
   EXPECT_EQ(report(order).state, State::kSent);

@@ -151,11 +151,12 @@ TEST_F(EndCommand, TargetsAreCancelledWhileTheyHoldAndWhileTheyWait) {
   ASSERT_TRUE(logs("coordinator", "amendment 3")) << log_of("coordinator");
   Child cancels = start("ergocast", {"amend", "--cancel", "3", "--lcm-url", kUrl});
   ASSERT_TRUE(logs("coordinator", "amendment 4")) << log_of("coordinator");
-  ASSERT_EQ(send_command("resume"), 0) << output();
+  Child resumes = start("ergocast", {"resume", "--lcm-url", kUrl});
   EXPECT_EQ(wait_for(waits), 4);
   EXPECT_NE(text_of(waits_log).find("never holds: amendment 4 replaced it"), std::string::npos)
       << text_of(waits_log);
   EXPECT_EQ(wait_for(cancels), 0);
+  EXPECT_EQ(wait_for(resumes), 0);
   EXPECT_EQ(amend({"--cancel", "3"}), 4) << output();
   EXPECT_TRUE(answered("a later amendment has replaced amendment 3")) << output();
   EXPECT_EQ(amend({"--list"}), 0) << output();
