@@ -16,8 +16,7 @@ Guidance::Guidance(const Mission& mission, const RosterEntry& self)
       dead_reckons_(looks_ahead(mission) && mission.dead_reckoning),
       law_(make_law(mission, self.kind)),
       needs_(law_->needs()),
-      target_(mission.target_coefficients),
-      weights_(sobolev_weights(mission.basis, mission.domain)),
+      metric_(mission),
       foreseen_(Coefficients::Zero(mission.basis.mode_count())) {
   if (looks_ahead(mission)) forecast_.emplace(mission, self.author);
 }
@@ -95,8 +94,7 @@ void Guidance::foresee(const CoverageTable& table, const std::vector<RosterEntry
 double Guidance::metric(const Coefficients& coverage, const TargetShift& shift,
                         Tick counted) const {
   const TargetShift::Change* const present = shift.of_coverage(counted);
-  if (present == nullptr) return ergodic_metric(coverage, target_, weights_);
-  return ergodic_metric(coverage - present->by_mode, target_, weights_);
+  return metric_.of(present != nullptr ? coverage - present->by_mode : coverage);
 }
 
 }  // namespace ergocast

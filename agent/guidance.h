@@ -16,6 +16,7 @@
 #include "core/law/forecast.h"
 #include "core/law/law.h"
 #include "core/law/target_shift.h"
+#include "core/law/team_metric.h"
 #include "core/mission/end_schedule.h"
 #include "core/mission/law_change.h"
 #include "core/mission/mission.h"
@@ -71,7 +72,7 @@ class Guidance {
   bool dead_reckons_;
   std::unique_ptr<Law> law_;
   LawNeeds needs_;
-  Coefficients target_, weights_;  // of φ²
+  TeamMetric metric_;
   std::int32_t newest_target_ = -1;
   std::vector<AgentId> team_;
   std::optional<Forecast> forecast_;

@@ -32,7 +32,7 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
       earlier_(static_cast<std::size_t>(mission_.basis.mode_count())),
       shift_(in_basis_order(mission_)),
       sensors_(mission_),
-      weights_(sobolev_weights(mission_.basis, mission_.domain)) {
+      metric_(mission_) {
   table_.set_half_life(HalfLife(mission_));
   for (std::size_t kind = 0; kind < std::max<std::size_t>(1, mission_.kinds.size()); ++kind)
     laws_.push_back(make_law(mission_, static_cast<int>(kind)));

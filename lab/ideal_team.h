@@ -15,6 +15,7 @@
 #include "core/law/law.h"
 #include "core/law/look_ahead.h"
 #include "core/law/target_shift.h"
+#include "core/law/team_metric.h"
 #include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
@@ -65,9 +66,7 @@ class IdealTeam {
   /// c_k of the last step, and its φ². With amendments each moment counts against the target of its
   /// own time (core/law/target_shift.h).
   Coefficients coverage() const;
-  double metric() const {
-    return ergodic_metric(coverage(), mission_.target_coefficients, weights_);
-  }
+  double metric() const { return metric_.of(coverage()); }
   /// Steps of single agents that a teammate or an edge has blocked, and the longest run of such
   /// steps of one agent.
   std::int64_t blocked_steps() const { return blocked_steps_; }
@@ -115,7 +114,7 @@ class IdealTeam {
   std::vector<TargetChange> targets_;
   std::int32_t newest_target_ = -1;
   Sensors sensors_;
-  Coefficients weights_;  // of φ²
+  TeamMetric metric_;
   /// One for each kind, or one for each agent if the law has a memory of its own.
   std::vector<std::unique_ptr<Law>> laws_;
   LawNeeds needs_;
