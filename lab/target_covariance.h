@@ -9,7 +9,7 @@
 
 namespace ergocast::lab {
 
-/// Of the plan's target, along the axes of the domain; 0 along z in a plane.
+/// That of the plan's target, along the axes of the domain; 0 along z in a plane.
 Eigen::Matrix3d target_covariance_m2(const Mission& mission);
 
 }  // namespace ergocast::lab

@@ -17,7 +17,7 @@
 
 namespace ergocast {
 
-/// Of which share of the target's mass the greatest age is reported.
+/// The share of the target's mass of which the greatest age is reported.
 inline constexpr double kWatchedShare = 0.95;
 
 struct TeamFigures {

@@ -148,7 +148,7 @@ const AMENDMENT_COLUMNS = [
   ['t [s]', 't', 'Mission time at that tick'],
   ['ticks', 'tick_count', 'Another end: how many ticks the mission has by it'],
   ['law', 'law', 'Another law: which of its numbers differ from the plan'],
-  ['operator', 'by', 'Who asked for it'],
+  ['operator', 'by', 'The operator that asked for it'],
 ];
 const amendmentsOf = run =>
   run.amendments.map(one => ({ ...one, t: +run.counted(one.from * run.mission.dt_s).toFixed(3) }));
