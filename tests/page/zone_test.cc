@@ -24,6 +24,7 @@ class DrawnZoneInABrowser : public DrawingInABrowser {
     browser_->click("#drawZone");
     browser_->press("\uE007");  // Enter
     ASSERT_EQ(drawn(".parts.length"), 1);
+    type("zoneFor", "1000000");  // on a slow machine, too, it lasts longer than the test
     send();
   }
   /// The record's newest amendment.
