@@ -46,8 +46,8 @@ struct Rule {
 
 // From the bottom up: a folder may include those above it in this list, and only those that it
 // names.
-inline const std::set<std::string_view> kCore = {"core/base", "core/basis", "core/mission",
-                                                 "core/law", "core/measure", "core/motion"};
+inline const std::set<std::string_view> kCore = {"core/base", "core/basis",   "core/mission",
+                                                 "core/law",  "core/measure", "core/motion"};
 inline const std::vector<Rule> kRules = {
     // The method. Law and motion do not see each other.
     {"core/base", {}, {kGenerator, kExpected}},

@@ -256,8 +256,8 @@ TEST_F(Report, MalformedLineIsNamedAndNothingIsWritten) {
 TEST_F(Report, CountsOfContributionsThatCannotBeAreNamed) {
   for (const char* counts : {"-1,0", "0.5,0", "1e30,0", "0,1e30"}) {
     record(1, 2);
-    write(dir / "metrics.csv",
-          std::string(kMetricsHeader) + "\n0,0,0.5,0,0,0,4711,0,0\n1,0.1,0.5,0,0,0," + counts + ",0\n");
+    write(dir / "metrics.csv", std::string(kMetricsHeader) +
+                                   "\n0,0,0.5,0,0,0,4711,0,0\n1,0.1,0.5,0,0,0," + counts + ",0\n");
     const auto problem = report();
     ASSERT_TRUE(problem) << counts;
     EXPECT_NE(problem->find("metrics.csv:3: the contributions"), std::string::npos) << *problem;
