@@ -44,7 +44,8 @@ const MAP = {
     'The velocity of a point is its mean of the last second. An agent that stands has no line.',
   'dashed arrow':
     'Where an agent’s present command leads in the time of Course: the velocity that its program sends to ' +
-    'its vehicle now, with what bodies, edges and zones leave of it. A point’s is the mean of the last second. ' +
+    'its vehicle now, with what bodies, edges and zones leave of it. ' +
+    'A point’s is the mean of the last second. ' +
     'In a team of more than 12 only chosen agents have it. Records do not have it.',
   Distance:
     'A ring around each agent, to scale. Its radius is half the distance that agents keep: ' +
