@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Computes how likely the team has found an object, and where it may still be, for any row.
 // The rules are those of core/measure/detection.h; the cells and the ticks between two looks come with the
-// mission. Each cell counts the looks of sensors near it since the newest target began. Going back in time takes
-// looks away again, so that a step of the slider costs only the looks in between. Where the page has not
-// every tick, agents move straight between two rows.
+// mission. Each cell counts the looks of sensors near it since the newest target began. Going back in time
+// takes looks away again, so that a step of the slider costs only the looks in between. Where the page has
+// not every tick, agents move straight between two rows.
 import { ACROSS_AND_UP, picture, planeOf } from './cosine_sums.js';
 
 const MOST_LOOKS = 8; // between two rows

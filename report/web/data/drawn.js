@@ -180,8 +180,8 @@ export function placing({ size_m: size, origin_m: origin }) {
   };
 }
 
-// What the page sends: {peaks: [[x, y, σ]], polygons: [[[x, y]]], uniform} in the scenario's coordinates. In a
-// box peaks are [x, y, z, σ], and heights_m has [low, high] of each polygon.
+// What the page sends: {peaks: [[x, y, σ]], polygons: [[[x, y]]], uniform} in the scenario's coordinates. In
+// a box peaks are [x, y, z, σ], and heights_m has [low, high] of each polygon.
 export function requestOf(parts, uniform, mission) {
   const { rounded, placed, height } = placing(mission),
     inBox = mission.size_m.length > 2,

@@ -70,8 +70,8 @@ function toNearestEdge(ring, size, [x, y]) {
 }
 
 // The agents that are inside at a row, the one with the longest way out first: {id, metres}. A vehicle goes
-// at least as far; walls, other zones and its own size make its way longer. An agent that keeps to an edge may
-// seem to be inside, because the page's places are rounded: it does not count.
+// at least as far; walls, other zones and its own size make its way longer. An agent that keeps to an edge
+// may seem to be inside, because the page's places are rounded: it does not count.
 export function insideAt(run, row, corners, heights) {
   const found = [],
     { size_m: size } = run.mission,
