@@ -35,18 +35,16 @@ int best_cut(const RangeSums& mass, const CellRange& range, bool along_x, double
 }  // namespace
 
 RangeSums::RangeSums(const Cells& cells, const std::vector<double>& values)
-    : rows_(cells.count.y() + 1),
-      below_(static_cast<std::size_t>(cells.count.x() + 1) * static_cast<std::size_t>(rows_), 0) {
+    : rows_(static_cast<std::size_t>(cells.count.y()) + 1),
+      below_((static_cast<std::size_t>(cells.count.x()) + 1) * rows_, 0) {
   for (int i = 0; i < cells.count.x(); ++i) {
     double column = 0;
     for (int j = 0; j < cells.count.y(); ++j) {
       column += values[cells.column(i, 0) + static_cast<std::size_t>(j)];
-      below_[static_cast<std::size_t>((i + 1) * rows_ + j + 1)] = at(i, j + 1) + column;
+      below_[index(i + 1, j + 1)] = at(i, j + 1) + column;
     }
   }
 }
-
-double RangeSums::at(int i, int j) const { return below_[static_cast<std::size_t>(i * rows_ + j)]; }
 
 double RangeSums::of(const CellRange& range) const {
   return at(range.last_i, range.last_j) - at(range.first_i, range.last_j) -

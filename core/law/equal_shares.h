@@ -2,6 +2,7 @@
 // Divides the cells of a plane into rectangles of equal mass, one for each agent of a team.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/measure/cells.h"
@@ -24,9 +25,12 @@ class RangeSums {
   double of(const CellRange& range) const;
 
  private:
-  double at(int i, int j) const;
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(i) * rows_ + static_cast<std::size_t>(j);
+  }
+  double at(int i, int j) const { return below_[index(i, j)]; }
 
-  int rows_ = 0;
+  std::size_t rows_ = 0;
   std::vector<double> below_;  // over the cells before (i, j) along both axes
 };
 
