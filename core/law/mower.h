@@ -8,8 +8,8 @@
 // back through all lanes. If an agent joins, leaves or is forgotten, the rest divides the domain
 // anew. It has no noise, and no feedback from what has been covered.
 //
-// A corner that an agent does not reach in three times the time that it should take, for example
-// behind a wall, is left out.
+// A corner that an agent does not reach in three times the time that it should take and 100 ticks
+// more, for example behind a wall, is left out.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the closing lines name of targets, ends and zones, and when a record's mission ends.
+// What the closing lines name of targets, ends, laws and zones, and when a record's mission ends.
 #include "cli/record/amendment_lines.h"
 
 #include <gtest/gtest.h>

@@ -54,6 +54,7 @@ TEST(PlannedLaws, AnyNumberOfThemHoldsOneAfterTheOther) {
   for (int i = 1; i <= 5; ++i) plan_law(list, 40 * i, slower(mission, 1.0 / (1 + i)));
   const Simulated changed(mission, list);
   EXPECT_EQ(changed.simulation.recorder().amendments().list(), list);
+  EXPECT_NE(changed.trajectory.str(), Simulated(mission, {}).trajectory.str());
 }
 
 TEST(PlannedLaws, AgentsAreHomeInTimeHoweverSlowTheyCover) {
@@ -67,6 +68,8 @@ TEST(PlannedLaws, AgentsAreHomeInTimeHoweverSlowTheyCover) {
       most_m = std::max(most_m, away_m);
     return most_m;
   };
+  EXPECT_NE(slow.trajectory.str(), planned.trajectory.str());
+  EXPECT_FALSE(planned.simulation.recorder().facts().from_home_m.empty());
   EXPECT_EQ(slow.simulation.recorder().facts().from_home_m.size(),
             planned.simulation.recorder().facts().from_home_m.size());
   EXPECT_LE(farthest_m(slow), farthest_m(planned) + 1);

@@ -10,10 +10,12 @@ namespace {
 class ControlledPage : public PageInABrowser {
  protected:
   /// Starts a real-time team, and opens its page with the token that permits orders.
-  void control(const std::vector<std::string>& more = {}, const std::string& vehicle = "") {
+  void control(const std::vector<std::string>& more = {}, const std::string& vehicle = "",
+               int realtime_factor = 10) {
     std::vector<std::string> options{"--watch", "--control", "--port", "8820"};
     options.insert(options.end(), more.begin(), more.end());
-    const auto file = scenario("pace: REALTIME realtime_factor: 10");
+    const auto file =
+        scenario("pace: REALTIME realtime_factor: " + std::to_string(realtime_factor));
     std::ofstream(file, std::ios::app) << vehicle;
     mission_ = launch_endless(file, options);
     browser_->resize(400, 800);
@@ -250,19 +252,21 @@ TEST_F(ControlledPage, ShowsEachOrderThatFailedOrIsUnfinishedAndSpeaksItOnce) {
      "window.act = (number, what, state, over, text) =>"
      " ({ operator: 5, name: 'bert', number, what, at: '', state, over, text });"
      "window.show = acts => ergocast.showControl({ operator: null, acts, refused: null })");
-  js("show([act(1, 'agent 3 home', 'failed', true, 'agent 3 does not report it'),"
-     " act(2, 'pause', 'done', true, 'paused'), act(3, 'agent 1 home', 'obeyed', false, 'leaves'),"
-     " act(4, 'resume', 'sent', false, 'no answer yet')])");
-  EXPECT_EQ(text("controlText"), "resume by bert: no answer yet");
-  EXPECT_EQ(js("return [...document.querySelectorAll('#controlActs li')].map(li => li.textContent)"
-               ".join('|')"),
-            "agent 1 home by bert: leaves|agent 3 home by bert: agent 3 does not report it");
+  // Shown and read in one script: the next message of the real team shows its own orders.
+  js("window.texts = acts => { show(acts);"
+     " const acted = [...document.querySelectorAll('#controlActs li')].map(li => li.textContent);"
+     " return [document.getElementById('controlText').textContent, ...acted].join('|'); }");
+  EXPECT_EQ(js("return texts([act(1, 'agent 3 home', 'failed', true, 'agent 3 does not report it'),"
+               " act(2, 'pause', 'done', true, 'paused'),"
+               " act(3, 'agent 1 home', 'obeyed', false, 'leaves'),"
+               " act(4, 'resume', 'sent', false, 'no answer yet')])"),
+            "resume by bert: no answer yet|agent 1 home by bert: leaves|"
+            "agent 3 home by bert: agent 3 does not report it");
   screenshot("control_acts");
-  js("show([act(1, 'agent 3 home', 'failed', true, 'agent 3 does not report it'),"
-     " act(4, 'resume', 'sent', false, 'still no answer'),"
-     " act(5, 'agent 3 home', 'done', true, 'agent 3 rests')])");
-  EXPECT_EQ(text("controlActs"), "resume by bert: still no answer");
-  EXPECT_EQ(text("controlText"), "agent 3 home by bert: agent 3 rests");
+  EXPECT_EQ(js("return texts([act(1, 'agent 3 home', 'failed', true, 'agent 3 does not report it'),"
+               " act(4, 'resume', 'sent', false, 'still no answer'),"
+               " act(5, 'agent 3 home', 'done', true, 'agent 3 rests')])"),
+            "agent 3 home by bert: agent 3 rests|resume by bert: still no answer");
   EXPECT_EQ(js("return spoken.filter(text => text.includes('no answer')).length"), 1);
   EXPECT_EQ(js("return spoken.filter(text => text.includes('agent 3')).length"), 2);
   browser_->click("#stopNow");
@@ -296,10 +300,11 @@ TEST_F(ControlledPage, SignsOfTheBrowserAreNoOrders) {
      "window.notices = []; const node = document.getElementById('controlNotice');"
      "new MutationObserver(() => notices.push(node.textContent))"
      ".observe(node, { childList: true, characterData: true, subtree: true })");
-  EXPECT_TRUE(browser_->becomes("return notices.length === 2"));
+  // A slow machine may cause a notice of its own before.
   EXPECT_TRUE(
-      js("return notices[0]").get<std::string>().starts_with("The server does not receive"));
-  EXPECT_EQ(js("return notices[1]"), "");
+      browser_->becomes("const lost = notices.findIndex(text => text.startsWith("
+                        "'The server does not receive')); return lost >= 0 && "
+                        "notices.indexOf('', lost) > lost"));
   EXPECT_EQ(text("controlSpoken"), spoken);
   browser_->click("#stopNow");
   end_with_the_mission();
@@ -329,10 +334,12 @@ TEST_F(ControlledPage, ShowsWhatWasOrderedElsewhere) {
 TEST_F(ControlledPage, ShowsCommandsAndWhatStillMovesInAPause) {
   control(
       {},
-      "world { speed_limit_mps: 25 }\nvehicle { kind: ACCELERATION max_acceleration_mps2: 0.7 }\n");
+      "world { speed_limit_mps: 25 }\nvehicle { kind: ACCELERATION max_acceleration_mps2: 0.7 }\n",
+      2);  // vehicles brake for a quarter of a minute, in which a slow browser sees them
   take_control();
-  EXPECT_TRUE(browser_->becomes(
-      "return ergocast.S.run.tracks.every(({ id }) => ergocast.command(id)?.long > 0)"));
+  EXPECT_TRUE(
+      browser_->becomes("const { tracks } = ergocast.S.run; return tracks.length === 4 && "
+                        "tracks.every(({ id }) => ergocast.command(id)?.long > 0)"));
   screenshot("control_commands");
   js("window.moving = false; const rows = document.getElementById('rows');"
      "new MutationObserver(() => { moving ||= rows.textContent.includes('paused: still moves'); })"

@@ -183,7 +183,9 @@ TEST_F(FoundInABrowser, ARunningTeamHasTheProbabilityOfItsRecord) {
          "return [known.length, Math.max(...known.map((at, i) => "
          "  Math.abs(live.foundCurve.at(live.rowAt(at)) - found[i])))]");
   EXPECT_GT(compared[0].get<int>(), 100);
-  EXPECT_LT(compared[1].get<double>(), 2e-3);
+  // Each position that did not arrive is a look that the page lacks.
+  const bool lacks = js("return live.tracks.some(({ hasGaps }) => hasGaps)").get<bool>();
+  EXPECT_LT(compared[1].get<double>(), lacks ? 0.1 : 2e-3);
   EXPECT_LT(worst(), kTolerance);
   expect_no_errors();
   ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();

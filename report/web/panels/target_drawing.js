@@ -75,7 +75,7 @@ export const targetDrawing = {
   command: () =>
     `cat > target.textproto <<'END'\n${textOf(request())}END\n` +
     `ergocast amend --run-id ${S.facts.run} --target target.textproto`,
-  newest: () => S.run.targets.length,
+  newest: () => Math.max(-1, ...S.run.targets.map(target => target.number ?? -1)),
 };
 
 export function connectTarget(again) {

@@ -10,6 +10,7 @@ const COLOUR = {
   ok: 'var(--ok)',
   paused: 'var(--muted)',
   target: 'var(--accent)',
+  end: 'var(--muted)',
   zone: 'var(--bad)',
   law: 'var(--muted)',
 };
@@ -81,7 +82,7 @@ function amendmentAt(kind, t) {
 // "amendment 0: new target at 20.0 s, by anna@base".
 function phrase(amendment, text, t) {
   const law = amendment?.law ? ` (${amendment.law})` : '',
-    words = `${text}${law} at ${t.toFixed(1)} s`;
+    words = `${text}${law} at ${S.run.counted(t).toFixed(1)} s`;
   if (!amendment) return words;
   return `amendment ${amendment.number}: ${words}${amendment.by ? `, by ${amendment.by}` : ''}`;
 }
