@@ -22,7 +22,7 @@ constexpr double kLead_s = 60;
 /// Limit (Time): lead of a contribution over the receiver [steps]. Beyond it: a contribution that
 /// is beyond both limits is refused with `range`.
 constexpr Tick kLeadTicks = 64;
-/// An agent that gets no new tick broadcasts what it has, this often.
+/// How often an agent broadcasts what it has while it gets no new tick.
 constexpr auto kStallPeriod = 1s;
 
 /// How many messages of members were lost on the swarm bus.
@@ -138,8 +138,7 @@ void MissionRun::on(const WorldState& world, const Arrival& arrival, Participant
   motion_.on(world);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     if (vehicle.id != me.id()) continue;
-    // The world repeats for the logger a state from before our admission. Our predecessor drove
-    // then.
+    // The world may repeat an old state for the logger. Before our admission our predecessor drove.
     if (tick < active_from_ && vehicle.answered_tick > answered_) return;
     if (!motion_.filters() && !me.mission().domain.contains(vehicle.position_m)) {
       return me.count_refused(Refusal::kRange);
@@ -272,7 +271,7 @@ void MissionRun::help(Participant& me, Instant now, Outbox& out) {
 }
 
 void MissionRun::report_position(Participant& me, Outbox& out) {
-  // Only agents still know where the vehicles of departed agents stand.
+  // The vehicles of departed agents stand somewhere, and only agents still know where.
   for (const WorldState& state : motion_.bodies().states()) out.push_back({Bus::kCommand, state});
   for (Command command : {command_before_, last_command_}) {
     command.asked_by = *asking_world_;

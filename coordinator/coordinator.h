@@ -38,7 +38,9 @@ enum class MemberState { kAlive, kSilent, kGone };
 const char* to_string(MemberState member_state);
 
 struct CoordinatorIdentity {
-  RunId run = 0;  ///< of its mission; 0, unless kNever: the run that is found, else `incarnation`
+  /// The run of its mission. 0: the run that it finds, or `incarnation` if it finds none. With
+  /// kNever it is not 0.
+  RunId run = 0;
   Incarnation incarnation = 0;
   std::string host;
   std::string version;
@@ -59,7 +61,8 @@ class Coordinator {
   /// Ends the mission in order; `failed` makes it a failure with that reason.
   void end(bool failed, std::string reason, Instant now);
 
-  /// Plans amendments of the mission from its beginning on. A simulation repeats recorded ones so.
+  /// Plans amendments of the mission from its beginning on. A simulation repeats a
+  /// recorded mission in this way.
   /// @pre are_amendments(list), and it has not advanced
   void plan_amendments(Amendments list) { amending_.plan(std::move(list)); }
   const Amendments& amendments() const { return amending_.list(); }
@@ -76,8 +79,8 @@ class Coordinator {
   bool looking() const { return search_.looking(); }
   /// Whether it took the mission over from a predecessor.
   bool took_over() const { return taken_over_; }
-  /// Whether it has finished silently because another coordinator leads the mission or it cannot be
-  /// taken over; see reason().
+  /// Whether it has finished without ending the mission: another coordinator leads the mission, or
+  /// the mission cannot be taken over. reason() has which.
   bool left() const { return ending_.left(); }
   MissionState state() const { return state_; }
   const std::string& reason() const { return ending_.reason(); }
@@ -135,7 +138,7 @@ class Coordinator {
   Participant me_;
   std::string host_;
   std::vector<std::byte> plan_;     // as encoded
-  std::optional<Mission> mission_;  // that it leads or will lead
+  std::optional<Mission> mission_;  // the one that it leads or will lead
   MissionState state_ = MissionState::kWaiting;
   bool taken_over_ = false;
   MissionSearch search_;

@@ -16,7 +16,8 @@ namespace ergocast {
 
 class TeamPlaces {
  public:
-  /// A large team's state has several parts. Until all have arrived, the one before counts.
+  /// A large team's state has several parts. Until all of them have arrived, the state before them
+  /// counts.
   void note_world(const WorldState& part) {
     if (part.header.tick < parts_.tick()) return;
     if (parts_.same(part)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The two tables of a run record, and what they amount to: a tick's rows in trajectory.csv, the due
-// rows of metrics.csv, and the facts of the summary.
+// The two tables of a run record, and the results that follow from them: the rows of each tick in
+// trajectory.csv, the due rows of metrics.csv, and the facts of the summary.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +23,12 @@
 
 namespace ergocast {
 
-/// What the team made of a target.
+/// How well the team covered a target.
 struct TargetFacts {
   std::optional<Amendment> amendment;  ///< nothing: the plan's target
   Tick from = 0, until = 0;            ///< the world's ticks; `until` is the first one after it
-  /// φ² of its time alone, against it: in the mission's basis, and in cosines if basis.free_domain.
-  /// NaN: nothing was covered in its time.
+  /// φ² against this target, of what was covered while it held. In the mission's basis, and with
+  /// basis.free_domain also in cosines. NaN: nothing was covered in that time.
   double ergodic_metric = std::numeric_limits<double>::quiet_NaN(), cosine_metric = ergodic_metric;
 };
 
@@ -41,7 +41,7 @@ struct RunFacts {
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
   /// With basis.free_domain: φ² in cosines at the last row of the metrics; NaN: there is none.
   double cosine_metric_last = std::numeric_limits<double>::quiet_NaN();
-  /// If the target has changed: each of the targets that held in a row, ascending by time.
+  /// All targets in the order in which they held, if the target has changed; else empty.
   std::vector<TargetFacts> targets;
   /// The tick of the first row whose φ² is not a number: from there on the record has no coverage.
   std::optional<Tick> no_metric_from;
@@ -63,8 +63,8 @@ struct RunFacts {
 /// Which tick a row is of.
 struct RowTick {
   Tick tick = 0;
-  Tick uncounted = 0;  ///< ticks before it that do not count, …
-  bool counts = true;  ///< … and whether it counts itself, both from the world
+  Tick uncounted = 0;  ///< ticks before it that do not count, by the world
+  bool counts = true;  ///< whether it counts itself, by the world
 
   /// Its number among the ticks that count.
   Tick counted() const { return tick - uncounted; }
@@ -105,14 +105,14 @@ class RecordTables {
   /// The same without a mission, if none has begun.
   void begin_without_mission();
   bool begun() const { return observer_.begun(); }
-  /// Adds a former process's rows to the sums again. Returns which row is next: the last one of
-  /// those again if it may lack agents. @pre begun(), and no row has been written
+  /// Adds a former process's rows to the sums again. Returns which row is next. That is the last of
+  /// those rows again if it may lack agents. @pre begun(), and no row has been written
   RowTick replay(const RunData& past, const MissionKnowledge& known);
 
-  /// Writes the row of a tick that has come to `now` and has led to `next`.
+  /// Writes the row of a tick whose state is `now`; `next` is the state after it.
   void write(const RowTick& row, const TickState& now, const TickState& next,
              const MissionKnowledge& known);
-  /// The rows before `tick`, from `row` on, will be missing.
+  /// The rows from `row` on will be missing, up to the one before `tick`.
   void skip(const RowTick& row, Tick tick);
 
   const RunFacts& facts() const { return facts_; }

@@ -58,14 +58,16 @@ class Filter {
     code_.push_back(BPF_STMT(static_cast<std::uint16_t>(what), from));
   }
   void end(std::uint32_t keep) { load(BPF_RET | BPF_K, keep); }
-  /// A datagram of ours whose message begins there: kept, unless repeats must be searched for.
+  /// Keeps a datagram whose message begins at `message_at`. If repeats are to be dropped, it goes
+  /// to the search for them instead.
   void keep(std::uint32_t message_at) {
     if (!to_repeats_) return end(kKeepAll);
     load(BPF_LDX | BPF_IMM, message_at);
     keeps_.push_back(code_.size());
     load(BPF_JMP | BPF_JA, 0);
   }
-  /// Continues if the loaded value compares so with `value`; otherwise ends with kReject.
+  /// Continues if the comparison of the loaded value with `value` holds; otherwise ends with
+  /// kReject.
   void pass_if(int compare, std::uint32_t value) {
     code_.push_back(BPF_JUMP(static_cast<std::uint16_t>(BPF_JMP | compare | BPF_K), value, 1, 0));
     end(kReject);
@@ -123,7 +125,7 @@ class Filter {
       code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
     load(BPF_LD | BPF_W | BPF_IND, kSequenceAt);
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0));
-    end(kKeepAll);  // no sender has reached so high a sequence
+    end(kKeepAll);  // above 32 bits, which no sender has reached
     load(BPF_LD | BPF_W | BPF_IND, kSequenceAt + 4);
     load(BPF_ST, 0);
     load(BPF_LD | BPF_W | BPF_IND, kLifeAt + 4);

@@ -10,14 +10,15 @@
 namespace ergocast {
 
 /// Waking a process costs more than reading a message. In real time no process waits for a single
-/// contribution or command. The next tick needs it, and the world's state of that tick wakes all.
+/// contribution or command. They are needed at the next tick, and the world's state of that tick
+/// wakes all processes.
 struct Gathering {
   std::chrono::nanoseconds at_most{0};  ///< 0: each message wakes its receivers
-  std::size_t datagrams = 0;            ///< that may come together on one bus
+  std::size_t datagrams = 0;            ///< how many may gather on one bus
 };
 
-/// Half a tick, at most 50 ms, because answers to requests wait as well. 0 in lockstep, where each
-/// process waits for others, and where less than 1 ms would be gained.
+/// The time is half a tick, and at most 50 ms, because answers to requests wait as well. It is 0 in
+/// lockstep, where processes wait for each other, and where it would be below 1 ms.
 /// @param members  entries of the roster, former members included
 Gathering gathering_of(const Mission& mission, std::size_t members);
 

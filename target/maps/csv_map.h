@@ -9,12 +9,12 @@
 
 namespace ergocast {
 
-/// Reads the file once to count. Blanks around a number and empty lines are ignored; an empty cell
-/// is 0.
+/// Reads the whole file once to count its rows and columns. Blanks around a number and empty lines
+/// are ignored; an empty cell is 0.
 OpenedMap open_csv_map(const std::filesystem::path& file);
 
-/// `grid`, row i along x and column j along y from the lower left corner, as such a table with the
-/// north first; four significant digits.
+/// The text of such a table, the north first, with four significant digits. Row i of `grid` is
+/// along x and column j along y, from the lower left corner.
 std::string csv_text(const Eigen::MatrixXd& grid);
 
 }  // namespace ergocast

@@ -78,8 +78,8 @@ class InvariantsTest : public ::testing::Test {
     return view;
   }
   std::string violated() const { return violated_by(team_); }
-  /// What a ĉ that is wrong by `off` violates, after two blocks of a teammate and then its place
-  /// have arrived.
+  /// The invariant that a ĉ violates which is wrong by `off`. Before, two blocks of a teammate have
+  /// arrived, and then its place.
   /// @param later  the roster from the admission on
   std::string violated_by_forecast(double off, const std::vector<RosterEntry>& later) {
     Invariants team(mission_);
@@ -129,9 +129,9 @@ class InvariantsTest : public ::testing::Test {
   Coefficients c_one_, c_two_;
 };
 
-/// What the last state of a mission violates in which agent 0 is at `x_m`, and has its station at
-/// (10, 10). The other agents are at `others_m`; if `sent_out`, their vehicles stand there for
-/// good.
+/// The invariant that the last state of a mission violates. In this state agent 0 is at `x_m`, and
+/// its station is at (10, 10). The other agents are at `others_m`. If `sent_out`, they have left
+/// the mission, and their vehicles stand there for good.
 std::string violated_at_home(const Eigen::Vector2d& x_m,
                              const std::vector<Eigen::Vector2d>& others_m, bool sent_out = true) {
   const int agents = 1 + static_cast<int>(others_m.size());

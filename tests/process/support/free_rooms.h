@@ -8,7 +8,9 @@
 
 namespace ergocast::test {
 
-/// Writes the scenario into a folder, with more fields, and more agents at places from the seed.
+/// Writes the scenario into `folder`.
+/// @param more         further fields, as text
+/// @param more_agents  the number of further agents, which begin at random places
 inline std::filesystem::path free_rooms(const std::filesystem::path& folder,
                                         const std::string& more = "", int more_agents = 0) {
   const auto file = folder / "rooms.textproto";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks the children of this process without reaping them. The test does not know of the end of a
-// child that it has not reaped.
+// Checks whether children of this process have ended, without reaping them: the test reaps its
+// children itself.
 #include "tests/process/support/waiting.h"
 
 #include <gtest/gtest.h>
@@ -94,8 +94,8 @@ bool in_vain(pid_t awaited, bool quiet) {
   return true;
 }
 
-/// A command that a condition runs still answers in the last check, because no wait within a wait
-/// ends early.
+/// How many waits are within each other. Only the outermost ends early. So a command that a
+/// condition runs still answers in the last check.
 struct Depth {
   Depth() { ++now; }
   ~Depth() { --now; }
