@@ -117,7 +117,7 @@ class RecordTables {
 
   const RunFacts& facts() const { return facts_; }
   RunFacts& facts() { return facts_; }
-  /// What the team has achieved so far; takes some milliseconds. @pre begun()
+  /// What the team has achieved so far; costs a pass over all cells. @pre begun()
   TeamFigures team_figures() const { return measures_.figures(); }
 
  private:

@@ -74,7 +74,7 @@ class Recorder {
   const char* result() const;
   const std::string& reason() const { return ending_.reason; }
   const RunFacts& facts() const { return tables_.facts(); }
-  /// What the team has achieved so far, once the mission is known; takes some milliseconds.
+  /// What the team has achieved so far, once the mission is known; costs a pass over all cells.
   std::optional<TeamFigures> team_figures() const {
     return tables_.begun() ? std::optional(tables_.team_figures()) : std::nullopt;
   }

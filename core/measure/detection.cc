@@ -18,23 +18,27 @@ constexpr double kLongestLook_s = 1;
 constexpr double kLeastRadiusPerCell = 1.5;
 constexpr std::array kShares{0.5, 0.8};
 
-/// The side of cells if kMaxMeasureCells of them fill the domain.
-double least_side_m(const Box& domain) {
-  return std::pow(domain.content() / static_cast<double>(kMaxMeasureCells),
-                  domain.planar() ? 1.0 / 2 : 1.0 / 3);
+/// The plan's, or the default.
+double wanted_radius_m(const Mission& mission) {
+  return mission.sensor.radius_m > 0
+             ? mission.sensor.radius_m
+             : kDefaultRadiusPerSide * mission.domain.size_m.head<2>().minCoeff();
+}
+
+/// The longest side of a cell, along the axes that are divided.
+double longest_side_m(const Cells& cells) {
+  return (cells.count > 1).select(cells.size_m.array(), 0).maxCoeff();
 }
 
 }  // namespace
 
 double sensor_radius_m(const Mission& mission) {
-  const double radius_m = mission.sensor.radius_m > 0
-                              ? mission.sensor.radius_m
-                              : kDefaultRadiusPerSide * mission.domain.size_m.head<2>().minCoeff();
-  return std::max(radius_m, kLeastRadiusPerCell * least_side_m(mission.domain));
+  const double side_m = longest_side_m(measure_cells(mission));
+  return std::max(wanted_radius_m(mission), kLeastRadiusPerCell * side_m);
 }
 
 Cells measure_cells(const Mission& mission) {
-  return {mission.domain, sensor_radius_m(mission) / kCellsPerRadius};
+  return {mission.domain, wanted_radius_m(mission) / kCellsPerRadius};
 }
 
 Tick ticks_per_look(const Mission& mission, const Cells& cells) {
@@ -102,7 +106,7 @@ void Detection::see(Tick counted, const Eigen::Vector3d& x_m) {
 
 void Detection::pass(Tick counted) {
   for (std::size_t i = 0; i < kShares.size(); ++i) {
-    if (!times_s_[i] && found_ >= kShares[i])
+    if (!times_s_[i] && probability() >= kShares[i])
       times_s_[i] = static_cast<double>(counted + 1 - begun_) * dt_s_;
   }
 }

@@ -10,11 +10,12 @@
 // The age of a place is the time since a sensor was last within r of it, or since the mission's
 // start.
 //
-// The sum over cells is exact up to the cells' size, a third of r. Sensors look once in several
-// ticks, each time for all of them: in between an agent moves by half a cell at most, up to its
-// noise.
+// The sum over cells is exact up to the cells' size, a third of r or a little more than that if r
+// is small. Sensors look once in several ticks, each time for all of them: in between an agent
+// moves by half a cell at most, up to its noise.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -25,11 +26,12 @@
 
 namespace ergocast {
 
-/// r [m]: the plan's, or 2.5 % of the shorter side in the plane. It is at least 1.5 times the side
-/// of the cells that kMaxMeasureCells allows.
+/// r [m]: the plan's, or 2.5 % of the shorter side in the plane. It is at least 1.5 times the
+/// longest side of a measure_cell, along the axes that are divided.
 double sensor_radius_m(const Mission& mission);
 
-/// The cells of a mission's measures: three to a radius, if kMaxMeasureCells allows it.
+/// The cells of a mission's measures: three to the radius that is wanted, if kMaxMeasureCells
+/// allows it, else larger ones.
 Cells measure_cells(const Mission& mission);
 
 /// In how many ticks the sensors of a mission look once: the fastest agent then moves by half of
@@ -50,7 +52,7 @@ class Detection {
   void pass(Tick counted);
 
   /// P of an object of the newest target.
-  double probability() const { return found_; }
+  double probability() const { return std::min(found_, 1.0); }
   /// The time from the newest target on until P was at least ½, or ⅘ [s]; nothing: it never was.
   std::optional<double> half_time_s() const { return times_s_[0]; }
   std::optional<double> four_fifths_time_s() const { return times_s_[1]; }
@@ -79,8 +81,8 @@ class Detection {
   std::vector<double> mass_, missed_;
   // In looks: after the last one with a sensor near, and the longest time between two such looks.
   std::vector<Tick> seen_, longest_;
-  double found_ = 0;
-  Tick begun_ = 0;  // of the newest target
+  double found_ = 0;  // a sum of many shares: rounding may lead above 1
+  Tick begun_ = 0;    // of the newest target
   std::array<std::optional<double>, 2> times_s_;
 };
 

@@ -26,7 +26,7 @@ struct TeamFigures {
   std::optional<double> half_time_s, four_fifths_time_s;
   double greatest_age_s = 0;  ///< over kWatchedShare of the mass
   double wasserstein_m = 0;   ///< between the time spent and the target; nan: none was spent
-  double path_m = 0;          ///< of all agents together
+  double path_m = 0;          ///< of all bodies together, also in pauses and at rest
 };
 
 class TeamMeasures {
@@ -43,7 +43,7 @@ class TeamMeasures {
   /// Tick `counted` is over.
   void pass(Tick counted);
 
-  /// All figures; takes some milliseconds.
+  /// All figures; costs a pass over all cells.
   TeamFigures figures() const;
   const Detection& detection() const { return detection_; }
 

@@ -116,6 +116,42 @@ TEST(Detection, OfASensorInABoxIsTheShareOfItsSphere) {
   EXPECT_NEAR(mean, share * (1 - std::exp(-0.5 * 5)), 0.02 * share);
 }
 
+// An elongated box has one layer of long cells.
+TEST(Detection, ReachesACellFromEachPlace) {
+  for (const Vector3d& size_m : {Vector3d(1e5, 1, 1e-2), Vector3d(1e6, 1, 0), Vector3d(900, 7, 2),
+                                 Vector3d(1000, 1000, 2), Vector3d(30, 20, 10)}) {
+    Mission mission = square();
+    mission.domain.size_m = size_m;
+    mission.basis.modes_z = mission.domain.planar() ? 1 : 2;
+    mission.target_coefficients = Coefficients::Zero(mission.basis.mode_count());
+    mission.target_coefficients[0] = 1;
+    mission.sensor.radius_m = 1e-3;
+    const Detection fresh(mission);
+    constexpr int kPlaces = 23;
+    for (int place = 0; place < kPlaces; ++place) {
+      Detection detection = fresh;
+      detection.begin_target(std::vector<double>(fresh.cells().total(), 1e-6), 0);
+      for (Tick tick = 0; tick < ticks_per_look(mission, fresh.cells()); ++tick)
+        detection.see(tick, (place + 0.5) / kPlaces * size_m);
+      EXPECT_GT(detection.probability(), 0) << size_m.transpose() << ", place " << place;
+    }
+  }
+}
+
+TEST(Detection, IsCertainAtMost) {
+  Mission mission = square();
+  for (int i = 1; i < 8; ++i) mission.target_coefficients[i] = 0.1;
+  for (const double radius_m : {2.0, 3.0, 5.0, 8.0}) {
+    mission.sensor = {.radius_m = radius_m, .detections_per_s = 1e6};
+    TeamMeasures team(mission);
+    Tick tick = 0;
+    for (double x_m = 0.5; x_m < 100; ++x_m)
+      for (double y_m = 0.5; y_m < 100; ++y_m) team.see(0, tick++, {x_m, y_m, 0}, true);
+    EXPECT_LE(team.figures().detection_probability, 1);
+    EXPECT_NEAR(team.figures().detection_probability, 1, 1e-12);
+  }
+}
+
 TEST(Detection, AddsUpOverSensorsAndNamesTheTimesOfShares) {
   Mission mission = square();
   mission.sensor = {.radius_m = 200, .detections_per_s = 0.25};  // sees everything
