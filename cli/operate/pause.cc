@@ -45,7 +45,7 @@ class Pausing : public TeamCommand {
     for (int turns = 1;; ++turns) {
       const OrderReport report = turn(order);
       if (report.state != State::kObeyed) return report;
-      if (braking.is_stuck(runs_.begin()->second.standing().speed_mps))
+      if (braking.is_stuck(runs_.begin()->second.standing()))
         return OrderReport{State::kFailed, report.text + ", and none of them has slowed down for " +
                                                std::to_string(kPatience.count()) + " s"};
       if (turns % (kShowPeriod / kTurnTime) == 0 && report.text != shown) {

@@ -15,11 +15,12 @@ using State = OrderReport::State;
 
 }  // namespace
 
-bool BrakingWatch::is_stuck(double speed_mps) {
+bool BrakingWatch::is_stuck(const MonitoredRun::Standing& vehicles) {
   constexpr double kSlower = 0.999;  // a vehicle that brakes is soon slower by more
+  if (vehicles.leaves_zone) return false;
   ++idle_;
-  if (speed_mps < kSlower * least_mps_) {
-    least_mps_ = speed_mps;
+  if (vehicles.speed_mps < kSlower * least_mps_) {
+    least_mps_ = vehicles.speed_mps;
     idle_ = 0;
   }
   return idle_ >= patience_;

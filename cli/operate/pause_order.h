@@ -13,14 +13,13 @@
 namespace ergocast::cli {
 
 /// Finds out whether vehicles that still move have stopped slowing down. It counts looks, not time:
-/// the process may have been stopped.
+/// the process may have been stopped. Looks while a vehicle leaves a zone do not count.
 class BrakingWatch {
  public:
   /// The looks without a lower speed after which they have.
   explicit BrakingWatch(int patience) : patience_(patience) {}
 
-  /// @param speed_mps  of all that still move, added up
-  bool is_stuck(double speed_mps);
+  bool is_stuck(const MonitoredRun::Standing& vehicles);
 
  private:
   int patience_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/motion/vehicle.h"
+#include "core/motion/zones.h"
 
 namespace ergocast::cli {
 namespace {
@@ -113,7 +114,11 @@ MonitoredRun::Standing MonitoredRun::standing() const {
   found.all = static_cast<int>(vehicles_.size());
   for (const auto& [id, vehicle] : vehicles_) {
     const Motion motion = knows_mission() ? motion_of(me_.mission(), id) : Motion{};
-    const bool circles = motion.vehicle.min_speed_mps > 0 && me_.is_held(tick_);
+    const bool leaves_zone =
+        knows_mission() &&
+        must_leave(amendments().zones, tick_, mission(), motion,
+                   holding_way(motion, vehicle.position_m, vehicle.velocity_mps));
+    const bool circles = motion.vehicle.min_speed_mps > 0 && me_.is_held(tick_) && !leaves_zone;
     if (stands(motion, vehicle.velocity_mps)) {
       ++found.standing;
     } else if (circles) {
@@ -121,6 +126,7 @@ MonitoredRun::Standing MonitoredRun::standing() const {
     } else {
       found.moving.push_back(name_of(id));
       found.speed_mps += vehicle.velocity_mps.norm();
+      found.leaves_zone = found.leaves_zone || leaves_zone;
     }
   }
   return found;

@@ -88,6 +88,7 @@ class MonitoredRun {
     int circling = 0;                 ///< in a pause: fixed wings, which cannot stand
     std::vector<std::string> moving;  ///< the others: "agent 2"
     double speed_mps = 0;             ///< of the others, added up
+    bool leaves_zone = false;         ///< one of the others leaves a zone, and brakes only then
   };
   Standing standing() const;
   /// Where each vehicle is in the newest state that names it [m].

@@ -39,6 +39,7 @@ class Paused : public ::testing::Test {
   Instant now_ = at(1s);
   MonitoredRun team_{kRun, at(0s)};
   std::int64_t revision_ = -1;
+  Tick tick_ = 30;
 };
 
 TEST_F(Paused, NothingIsResumedWhereThereWasNoPause) {
@@ -81,12 +82,33 @@ TEST_F(Paused, AResumptionBesideAnotherOneWaitsForItsTick) {
   EXPECT_EQ(report(order).text, "the mission is not paused");
 }
 
+// It moves on in a pause, as fast as before.
+TEST_F(Paused, AVehicleThatLeavesAZoneIsNotStuck) {
+  BrakingWatch watch(10);
+  Amendments paused = only_pauses({{20, -1}});
+  name_zone(paused, 20, 25, 100,
+            {.until = 200, .corners_m = {{100, 100}, {900, 100}, {900, 900}, {100, 900}}});
+  list(paused);
+  const auto is_stuck_at = [&](double x_m) {
+    WorldState world = world_state(++tick_, {{x_m, 500, 0}});
+    world.vehicles[0].velocity_mps = {5, 0, 0};
+    give(team_, world, now_);
+    return watch.is_stuck(team_.standing());
+  };
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(is_stuck_at(899)) << i;
+  for (int i = 0; i < 9; ++i) EXPECT_FALSE(is_stuck_at(1000)) << i;
+  EXPECT_TRUE(is_stuck_at(1000));
+}
+
 TEST(Braking, IsStuckOnceNoVehicleHasSlowedDownForLong) {
   BrakingWatch watch(10);
-  for (int i = 0; i < 100; ++i) EXPECT_FALSE(watch.is_stuck(20 - 0.1 * i));
-  for (int i = 0; i < 9; ++i) EXPECT_FALSE(watch.is_stuck(11 + i % 2)) << i;
-  EXPECT_TRUE(watch.is_stuck(11));
-  EXPECT_FALSE(watch.is_stuck(5)) << "one of them stands now";
+  const auto is_stuck_at = [&watch](double speed_mps) {
+    return watch.is_stuck({.moving = {"agent 0"}, .speed_mps = speed_mps});
+  };
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(is_stuck_at(20 - 0.1 * i));
+  for (int i = 0; i < 9; ++i) EXPECT_FALSE(is_stuck_at(11 + i % 2)) << i;
+  EXPECT_TRUE(is_stuck_at(11));
+  EXPECT_FALSE(is_stuck_at(5)) << "one of them stands now";
 }
 
 }  // namespace
