@@ -77,7 +77,11 @@ void Amending::plan(Amendments list) {
 void Amending::adopt(const Amendments& known) {
   if (known.named <= list_.named) return;
   replace(known);
-  // A wish that waits for its tick does not follow that list. Its operator repeats it.
+  // It names more only once it lists all that was planned. A wish that waits for its tick does not
+  // follow that list. Its operator repeats it.
+  planned_.clear();
+  planned_zones_.clear();
+  planned_laws_.clear();
   wish_.reset();
   stand_by_revision_ = -1;
 }
@@ -151,7 +155,10 @@ void Amending::obey(const Amend& amend, const Mission& mission, const TickWatch&
 /// What an AMEND wants, once its content is whole; nothing if that is not possible.
 std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Mission& mission,
                                                 Tick now) {
-  Wish wish{.kind = amend.kind, .delay_ticks = amend.delay_ticks, .by = amend.by};
+  Wish wish{.kind = amend.kind,
+            .delay_ticks = amend.delay_ticks,
+            .by = amend.by,
+            .ordered_by = amend.header.incarnation};
   const bool has_content = wish.kind >= AmendmentKind::kTarget;
   const auto content = has_content ? completed(amend) : std::nullopt;
   if (has_content && !content) return std::nullopt;
@@ -245,8 +252,10 @@ void Amending::list_next(Tick now, Announcement& announcement) {
 void Amending::name(Tick now, Tick tick, Wish wish, Announcement& announcement) {
   stand_by_revision_ = -1;
   std::string by = std::move(wish.by);
+  const Incarnation ordered_by = wish.ordered_by;
   list_wish(now, tick, std::move(wish));
   list_.recent.back().by = std::move(by);
+  list_.recent.back().ordered_by = ordered_by;
   bytes_ = encode_amendments(list_);
   announcement.change();
 }

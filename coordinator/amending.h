@@ -70,6 +70,7 @@ class Amending {
     Zone zone{};            // of kZone
     LawChange law{};        // of kLaw
     std::string by{};       // its operator
+    Incarnation ordered_by = 0;
   };
   /// The parts of one AMEND that have arrived.
   struct Collected {

@@ -96,6 +96,7 @@ void list_fields(auto& io, auto& amendments) {
     wire.value(one.from);
     wire.value(one.hash);
     wire.list(one.by, kNumber);
+    wire.value(one.ordered_by);
   });
   io.list(amendments.holds, [](auto& wire, auto& hold) {
     wire.value(hold.from);

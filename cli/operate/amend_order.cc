@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Repeats all parts of AMEND until MISSION names an amendment of its number, then compares hashes.
+// Repeats all parts of AMEND until MISSION names an amendment of its number, then looks whose it
+// is.
 #include "cli/operate/amend_order.h"
 
 #include <algorithm>
@@ -306,8 +307,8 @@ OrderReport AmendOrder::unnamed(const MonitoredRun& team, Instant now) const {
 
 OrderReport AmendOrder::named(const MonitoredRun& team) const {
   const std::string text = amendment_text(team, *amendment_);
-  if (amendment_->kind != wish_.kind || amendment_->hash != wish_.hash)
-    return {State::kFailed, "another operator was first: " + text +
+  if (amendment_->ordered_by != header_.incarnation)
+    return {State::kFailed, "another order was first: " + text +
                                 ". This order had no effect: repeat it if it is still wanted"};
   if (never_holds(team, *amendment_)) return {State::kFailed, text};
   if (team.tick() >= amendment_->from) return {State::kDone, text};

@@ -42,6 +42,8 @@ struct Amendment {
   /// 0
   std::uint64_t hash = 0;
   std::string by{};  ///< its operator, as is_operator_name() allows; empty: not known
+  /// The incarnation that sent its AMEND; 0: not known. One operator may send two alike.
+  Incarnation ordered_by = 0;
 
   bool operator==(const Amendment&) const = default;
 };

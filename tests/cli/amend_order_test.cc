@@ -43,6 +43,13 @@ class Amended : public ::testing::Test {
     return report;
   }
 
+  /// The newest amendment is the one that was sent last.
+  void name_as_sent() { list_.recent.back().ordered_by = sent_.back().header.incarnation; }
+  static void expect_report(const OrderReport& report, State state, const std::string& text) {
+    EXPECT_EQ(report.state, state) << report.text;
+    EXPECT_NE(report.text.find(text), std::string::npos) << report.text;
+  }
+
   Mission mission_ = small_mission(2);
   Instant now_ = at(1s);
   MonitoredRun team_{kRun, at(0s)};
@@ -65,13 +72,12 @@ TEST_F(Amended, IsAskedForUntilItIsNamedAndDoneWhenItHolds) {
   EXPECT_EQ(sent_[0].header.tick, 10);
   EXPECT_EQ(decode_target(sent_[0].content, mission_), target(0.5));
   name_target(list_, 30, target(0.5));
+  name_as_sent();
   announce_list();
   EXPECT_EQ(turn(order, 1s).state, State::kAnswered);
   EXPECT_EQ(sent_.size(), 5U);
   move_to(30);
-  const OrderReport report = turn(order, 1s);
-  EXPECT_EQ(report.state, State::kDone);
-  EXPECT_NE(report.text.find("holds since tick 30, t = 3.0 s"), std::string::npos) << report.text;
+  expect_report(turn(order, 1s), State::kDone, "holds since tick 30, t = 3.0 s");
 }
 
 TEST_F(Amended, GoesInPartsThatMakeUpTheTarget) {
@@ -97,60 +103,59 @@ TEST_F(Amended, FailsIfItsNumberWasTaken) {
   turn(order, 100ms);
   name_target(list_, 5, target(-0.5));
   announce_list();
-  OrderReport report = turn(order, 1s);
-  EXPECT_EQ(report.state, State::kFailed);
-  EXPECT_NE(report.text.find("another operator was first: amendment 0, target "), std::string::npos)
-      << report.text;
+  expect_report(turn(order, 1s), State::kFailed, "another order was first: amendment 0, target ");
 
   AmendOrder later(target(0.5), 0, now_);
   turn(later, 100ms);
   name_pause(list_, 20);
   announce_list();
-  report = turn(later, 1s);
-  EXPECT_EQ(report.state, State::kFailed);
-  EXPECT_NE(report.text.find("another operator was first: amendment 1, a pause"), std::string::npos)
-      << report.text;
+  expect_report(turn(later, 1s), State::kFailed, "another order was first: amendment 1, a pause");
+}
+
+// As two terminals of one operator do it.
+TEST_F(Amended, FailsIfAnotherOrderHasAskedForTheSame) {
+  announce_list();
+  AmendOrder one(wish_of_end(70), 0, now_, "anna@base"),
+      other(wish_of_end(70), 0, now_, "anna@base");
+  turn(other, 20ms);
+  turn(one, 20ms);
+  name_end(list_, 30, 70);
+  list_.recent.back().by = "anna@base";
+  name_as_sent();
+  announce_list();
+  move_to(30);
+  expect_report(turn(one, 1s), State::kDone, "amendment 0, the end at t = 7.0 s, holds since");
+  expect_report(turn(other, 1s), State::kFailed,
+                "another order was first: amendment 0, the end at t = 7.0 s, holds since");
 }
 
 TEST_F(Amended, FailsWithTheCauseIfNoTickIsNamed) {
   announce_list();
   AmendOrder order(target(0.5), 0, now_);
-  OrderReport report = turn(order, 20s);
-  EXPECT_EQ(report.state, State::kFailed);
-  EXPECT_NE(report.text.find("no coordinator answers"), std::string::npos) << report.text;
+  expect_report(turn(order, 20s), State::kFailed, "no coordinator answers");
 
   TeamStatus status;
   status.header = {kRun, kCoordinator, kCoordinatorLife, next_sequence(), 0};
   give(team_, status, now_);
   AmendOrder first(target(0.5), 0, now_);
-  report = turn(first, 20s);
-  EXPECT_EQ(report.state, State::kFailed);
-  EXPECT_NE(report.text.find("the coordinator names no tick"), std::string::npos) << report.text;
+  expect_report(turn(first, 20s), State::kFailed, "the coordinator names no tick");
 
   name_target(list_, 50, target(0.1));
   announce_list();
   AmendOrder second(target(0.5), 0, now_);
-  report = turn(second, 20s);
-  EXPECT_EQ(report.state, State::kFailed);
-  EXPECT_NE(report.text.find("another target, amendment 0, waits for tick 50, t = 5.0 s"),
-            std::string::npos)
-      << report.text;
+  expect_report(turn(second, 20s), State::kFailed,
+                "another target, amendment 0, waits for tick 50, t = 5.0 s");
 }
 
 TEST_F(Amended, IsNotSentIfItCannotHold) {
   announce_list();
   move_to(10);
   AmendOrder order(target(0.5), 90, now_);
-  OrderReport report = turn(order, 1s);
-  EXPECT_EQ(report.state, State::kFailed);
-  EXPECT_NE(report.text.find("the mission ends before that, at tick 100"), std::string::npos)
-      << report.text;
+  expect_report(turn(order, 1s), State::kFailed, "the mission ends before that, at tick 100");
   list_.named = kMaxAmendments;
   announce_list();
   AmendOrder one_too_many(target(0.5), 0, now_);
-  report = turn(one_too_many, 1s);
-  EXPECT_EQ(report.state, State::kFailed);
-  EXPECT_NE(report.text.find("can be amended 1000000 times"), std::string::npos) << report.text;
+  expect_report(turn(one_too_many, 1s), State::kFailed, "can be amended 1000000 times");
   EXPECT_TRUE(sent_.empty());
 }
 
@@ -163,23 +168,19 @@ TEST_F(Amended, AnEndIsAskedForUntilItIsNamed) {
   EXPECT_EQ(sent_[0].kind, AmendmentKind::kEnd);
   EXPECT_EQ(decode_end(sent_[0].content, mission_), 70);
   name_end(list_, 30, 70);
+  name_as_sent();
   announce_list();
   EXPECT_EQ(turn(order, 1s).state, State::kAnswered);
   move_to(30);
-  const OrderReport report = turn(order, 1s);
-  EXPECT_EQ(report.state, State::kDone);
-  EXPECT_NE(report.text.find("amendment 0, the end at t = 7.0 s, holds since tick 30"),
-            std::string::npos)
-      << report.text;
+  expect_report(turn(order, 1s), State::kDone,
+                "amendment 0, the end at t = 7.0 s, holds since tick 30");
 }
 
 TEST_F(Amended, AnEndThatIsImpossibleIsNotSent) {
   const auto refused = [&](Tick tick_count, const std::string& why) {
     announce_list();
     AmendOrder order(wish_of_end(tick_count), 0, now_);
-    const OrderReport report = turn(order, 1s);
-    EXPECT_EQ(report.state, State::kFailed);
-    EXPECT_NE(report.text.find(why), std::string::npos) << report.text;
+    expect_report(turn(order, 1s), State::kFailed, why);
   };
   announce_list();
   move_to(10);
@@ -238,16 +239,14 @@ TEST_F(Amended, AWaitingTargetThatIsReplacedFailsAndNamesItsSuccessor) {
   AmendOrder order(target(0.5), 0, now_);
   turn(order, 20ms);
   name_target(list_, 50, target(0.5));
+  name_as_sent();
   announce_list();
   move_to(10);
   EXPECT_EQ(turn(order, 1s).state, State::kAnswered);
   replace_target(list_, {.target = mission_.target_coefficients});
   announce_list();
-  const OrderReport report = turn(order, 1s);
-  EXPECT_EQ(report.state, State::kFailed);
-  EXPECT_NE(report.text.find("never holds: amendment 1 replaced it before tick 50, t = 5.0 s"),
-            std::string::npos)
-      << report.text;
+  expect_report(turn(order, 1s), State::kFailed,
+                "never holds: amendment 1 replaced it before tick 50, t = 5.0 s");
 }
 
 TEST_F(Amended, IsDoneIfItHeldAlthoughAnotherOneHoldsNow) {
@@ -255,14 +254,12 @@ TEST_F(Amended, IsDoneIfItHeldAlthoughAnotherOneHoldsNow) {
   AmendOrder order(target(0.5), 0, now_);
   turn(order, 20ms);
   name_target(list_, 20, target(0.5));
+  name_as_sent();
   name_target(list_, 30, target(0.25));
   announce_list();
   move_to(40);
-  const OrderReport report = turn(order, 1s);
-  EXPECT_EQ(report.state, State::kDone);
-  EXPECT_NE(report.text.find("held from tick 20, t = 2.0 s, until tick 30, t = 3.0 s: amendment 1"),
-            std::string::npos)
-      << report.text;
+  expect_report(turn(order, 1s), State::kDone,
+                "held from tick 20, t = 2.0 s, until tick 30, t = 3.0 s: amendment 1");
 }
 
 TEST_F(Amended, TheListNamesWhatHoldsAndWhatHeld) {
@@ -344,6 +341,7 @@ TEST_F(Amended, ALawIsAskedForWithItsOperatorAndCancelled) {
   EXPECT_EQ(decode_law(sent_[0].content, mission_), slow);
   name_law(list_, 5, slow);
   list_.recent.back().by = "anna@base";
+  name_as_sent();
   announce_list();
   move_to(10);
   const OrderReport report = turn(order, 1s);

@@ -89,6 +89,7 @@ TEST(Amending, PartsOfTwoOperatorsDoNotMix) {
   let_world_stand_by(coordinator, 11);
   ASSERT_EQ(coordinator.amendments().named, 1);
   EXPECT_EQ(coordinator.amendments().recent[0].hash, target_hash(target(0.75)));
+  EXPECT_EQ(coordinator.amendments().recent[0].ordered_by, 2U);
 }
 
 TEST(Amending, RefusesWhatIsNoTargetOfTheMission) {
@@ -153,12 +154,14 @@ TEST(Amending, ATargetThatWaitsIsReplacedByTheOneThatHolds) {
   EXPECT_EQ(coordinator.amendments().targets[0].target, wide_mission().target_coefficients);
 }
 
+/// An AMEND of one part.
+Amend one_part(Amend wish, const std::vector<std::byte>& content, Incarnation by = 1) {
+  wish.header = {kRun, kOperator, by, next_sequence(), 0};
+  return in_parts(wish, content).at(0);
+}
+
 Amend wish_of_end(Tick tick_count, std::int32_t number, Incarnation by = 1) {
-  return in_parts({.header = {kRun, kOperator, by, next_sequence(), 0},
-                   .number = number,
-                   .kind = AmendmentKind::kEnd},
-                  encode_end(tick_count))
-      .at(0);
+  return one_part({.number = number, .kind = AmendmentKind::kEnd}, encode_end(tick_count), by);
 }
 
 TEST(Amending, NamesAnEnd) {
@@ -261,6 +264,32 @@ TEST(Amending, ASuccessorKnowsTheTargets) {
   EXPECT_EQ(coordinator.amendments(), list);
 }
 
+// Another coordinator has listed and named more than this one.
+TEST(Amending, APlanIsForgottenForANewerList) {
+  const Mission mission = wide_mission();
+  const Zone zone{.until = 50, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  Amendments planned;
+  for (int i = 0; i < 4; ++i) add_target(planned, 10 + 10 * i, target(0.1 * i));
+  for (std::size_t i = 0; i < kMaxZones + 1; ++i) add_zone(planned, 5, 3, zone);
+  Amending amending;
+  amending.plan(planned);
+  Amendments known = planned;
+  known.targets.erase(known.targets.begin(), known.targets.end() - 2);
+  known.zones.clear();
+  name_end(known, 100, 500);
+  amending.adopt(known);
+  const Participant me(Role::kCoordinator, {kRun, kCoordinator, kCoordinatorLife});
+  const SignsOfLife signs{me, at(1s)};
+  const TeamPlaces places;
+  const std::vector<RosterEntry> roster;
+  TickWatch ticks;
+  ticks.receive(world_where(200, {199, 199}), at(1s));
+  Announcement announcement;
+  amending.note_world(mission, ticks, {signs, places, roster}, announcement);
+  EXPECT_LT(amending.stand_by_revision(), 0) << "it would list what has been listed";
+  EXPECT_EQ(amending.list(), known);
+}
+
 // ---- zones ----
 
 /// An AMEND that asks for a square zone.
@@ -269,12 +298,8 @@ Amend zone_wish(double x_m, std::int32_t number, double size_m = 200, Tick lasts
   zone.until = lasts;
   const double y_m = std::min(x_m, 100.0), far_x_m = x_m + size_m, far_y_m = y_m + size_m;
   zone.corners_m = {{x_m, y_m}, {far_x_m, y_m}, {far_x_m, far_y_m}, {x_m, far_y_m}};
-  return in_parts({.header = {kRun, kOperator, 1, next_sequence(), 0},
-                   .number = number,
-                   .kind = AmendmentKind::kZone,
-                   .delay_ticks = 50},
-                  encode_zone(zone))
-      .front();
+  return one_part({.number = number, .kind = AmendmentKind::kZone, .delay_ticks = 50},
+                  encode_zone(zone));
 }
 
 TEST(Amending, ClosesAZoneAtOnceAndFreesItLater) {
@@ -329,13 +354,9 @@ TEST(Amending, NamesNoNinthZoneUntilOneHasEnded) {
 Amend law_wish(double share, std::int32_t number, Tick delay = 0) {
   LawChange law = plans_law(wide_mission());
   law.kinds[0].u_max_mps *= share;
-  return in_parts({.header = {kRun, kOperator, 1, next_sequence(), 0},
-                   .number = number,
-                   .kind = AmendmentKind::kLaw,
-                   .delay_ticks = delay,
-                   .by = "anna@base"},
-                  encode_law(law))
-      .front();
+  return one_part(
+      {.number = number, .kind = AmendmentKind::kLaw, .delay_ticks = delay, .by = "anna@base"},
+      encode_law(law));
 }
 
 TEST(Amending, NamesALawAndItsOperator) {

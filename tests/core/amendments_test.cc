@@ -248,6 +248,7 @@ TEST(Amendments, KeepTheLawThatHoldsAndTheNext) {
   EXPECT_EQ(list.laws[1].from, 41);
   EXPECT_EQ(list.laws[1].number, 5);
   list.recent.back().by = "anna@base";
+  list.recent.back().ordered_by = 7;
   EXPECT_TRUE(are_amendments(list, mission));
   EXPECT_EQ(decode_amendments(encode_amendments(list), mission), list);
 }
