@@ -189,12 +189,14 @@ void ControlDesk::give(const ControlRequest& request, const MonitoredRun& team, 
       {request, what(request), team.mission_time(team.tick()), order_for(request, team, now)});
 }
 
-/// A change is ours if one of our orders of its kind has not been named yet.
+/// A change is ours if one of our orders of its kind and operator has not been named yet. MISSION
+/// does not name who has recalled an agent.
 void ControlDesk::note_changes(const MonitoredRun& team) {
   for (NamedChange& change : changes_.take(team)) {
     const auto ours = std::ranges::find_if(acts_, [&change](const Act& act) {
       return !act.named && !act.report.ended() && act.request.act != ControlAct::kStopNow &&
-             to_string(act.request.act) == change.act && act.request.agent == change.agent;
+             to_string(act.request.act) == change.act && act.request.agent == change.agent &&
+             (recalls(act.request.act) || change.by == operator_name_of(called(act.request)));
     });
     if (ours != acts_.end()) {
       ours->named = true;

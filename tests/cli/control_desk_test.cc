@@ -28,9 +28,11 @@ class Desk : public ::testing::Test {
     give(team_, state, now_);
     advance();
   }
-  void pause_from(Tick tick) {
+  void pause_from(Tick tick, const std::string& by = {}) {
     MissionPart part = mission_part(1, MissionState::kRunning, roster_of(2));
-    part.amendments = pauses({{tick, -1}});
+    Amendments list = only_pauses({{tick, -1}});
+    list.recent.back().by = by;
+    part.amendments = encode_amendments(list);
     part.content_hash = hash_of(part);
     give(team_, part, now_);
   }
@@ -125,7 +127,7 @@ TEST_F(Desk, TheTokenSufficesToStopTheTeamAtOnceAtAnyTick) {
 TEST_F(Desk, APauseIsDoneOnceAllVehiclesStandAndNamesThoseThatMove) {
   ask(ControlAct::kTake);
   ask(ControlAct::kPause);
-  pause_from(110);
+  pause_from(110, "anna");
   advance();
   EXPECT_EQ(state()["acts"][0]["state"], "answered");
   move(110, 1);
@@ -293,10 +295,20 @@ TEST_F(Desk, ShowsWhatWasOrderedElsewhere) {
 TEST_F(Desk, ItsOwnOrderIsNoOrderFromElsewhere) {
   ask(ControlAct::kTake);
   ask(ControlAct::kPause);
-  pause_from(110);
+  pause_from(110, "anna");
   move(110, 0);
   ASSERT_EQ(state()["acts"].size(), 1U);
   EXPECT_EQ(state()["acts"][0]["name"], "anna");
+}
+
+TEST_F(Desk, TheSameOrderOfAnotherOperatorIsFromElsewhere) {
+  ask(ControlAct::kTake);
+  ask(ControlAct::kPause);
+  pause_from(110, "bert@base");
+  move(110, 0);
+  ASSERT_EQ(state()["acts"].size(), 2U);
+  EXPECT_EQ(state()["acts"][0]["name"], "anna");
+  EXPECT_EQ(state()["acts"][1]["name"], "bert@base, on another page or by a command");
 }
 
 TEST_F(Desk, TheLastStateHasWhatTheOrdersHaveAchieved) {
@@ -313,7 +325,7 @@ TEST_F(Desk, TheLastStateHasWhatTheOrdersHaveAchieved) {
 TEST_F(Desk, AResumptionEndsAPauseThatStillWaits) {
   ask(ControlAct::kTake);
   ask(ControlAct::kPause);
-  pause_from(110);
+  pause_from(110, "anna");
   move(110, 1);
   ask(ControlAct::kResume);
   const auto found = std::find_if(lines_.begin(), lines_.end(), [](const std::string& line) {
