@@ -15,6 +15,7 @@ Guidance::Guidance(const Mission& mission, const RosterEntry& self)
       active_from_(self.active_from),
       dead_reckons_(looks_ahead(mission) && mission.dead_reckoning),
       law_(make_law(mission, self.kind)),
+      law_numbers_(law_numbers(mission, self.kind, nullptr)),
       needs_(law_->needs()),
       metric_(mission),
       foreseen_(Coefficients::Zero(mission.basis.mode_count())) {
@@ -45,7 +46,8 @@ void Guidance::on(const WorldState& world, const RadioRange& radio, const Partic
 }
 
 void Guidance::note_amendments(const Mission& mission, const Amendments& list, Tick tick) {
-  law_->set_law(law_numbers(mission, kind_, law_at(list.laws, tick)));
+  const LawNumbers numbers = law_numbers(mission, kind_, law_at(list.laws, tick));
+  if (numbers != law_numbers_) law_->set_law(law_numbers_ = numbers);
   const TargetChange* const change = target_at(list.targets, tick);
   const std::int32_t number = change != nullptr ? change->number : -1;
   if (number == newest_target_) return;

@@ -71,6 +71,7 @@ class Guidance {
   Tick active_from_;
   bool dead_reckons_;
   std::unique_ptr<Law> law_;
+  LawNumbers law_numbers_;  // of law_
   LawNeeds needs_;
   TeamMetric metric_;
   std::int32_t newest_target_ = -1;
