@@ -20,6 +20,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kShortGap_s = 1;
 /// As the page averages the velocity of a point (report/web/data/motion.js).
 constexpr double kMeanOfCommands_s = 1;
+/// The most commands of an agent in this mean.
+constexpr std::size_t kMostCommands = 256;
 constexpr std::int64_t kPositionsPerFrame = 20'000;
 
 std::string event(const char* name, const Json& data) {
@@ -50,24 +52,42 @@ void LiveTeam::receive(const Message& message, Bus bus, AgentId transmitter, Ins
 }
 
 void LiveTeam::on(const WorldState& world) {
+  world_tick_ = std::max(world_tick_, world.header.tick);
+  if (world.roster_revision > used_revision_) {
+    used_revision_ = world.roster_revision;
+    used_since_ = world.header.tick;
+    note_recalls();
+  }
   if (!grid_) return;
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     grid_->put(vehicle.id, world.header.tick, vehicle.position_m, vehicle.velocity_mps);
   }
 }
 
+/// A command for a tick far ahead of the world would be the newest one for long.
 void LiveTeam::on(const Command& command) {
-  if (!me_.knows_mission() || command.header.sender < 0 || command.header.tick < 0) return;
+  const Tick tick = command.header.tick;
+  if (!me_.knows_mission() || command.header.sender < 0 || tick < 0) return;
+  const Tick second = std::max<Tick>(1, std::llround(kMeanOfCommands_s / me_.timing().dt_s));
+  if (tick > world_tick_ + second) return;
   auto& commands = commands_mps_[command.header.sender];
-  commands[command.header.tick] = command.velocity_mps;
-  const auto second = std::llround(kMeanOfCommands_s / me_.timing().dt_s);
-  const Tick newest = commands.rbegin()->first;
-  commands.erase(commands.begin(),
-                 commands.upper_bound(newest - std::max<Tick>(1, static_cast<Tick>(second))));
+  commands[tick] = command.velocity_mps;
+  commands.erase(commands.begin(), commands.upper_bound(commands.rbegin()->first - second));
+  while (commands.size() > kMostCommands) commands.erase(commands.begin());
 }
 
 void LiveTeam::on(const MissionPart&) {
   if (me_.knows_mission()) amendments_.note(me_.follower().amendments());
+  note_recalls();
+}
+
+/// An agent rests from when the world uses the revision that recalls it.
+void LiveTeam::note_recalls() {
+  for (const RosterEntry& entry : me_.follower().roster()) {
+    if (entry.recalled_at(used_revision_) &&
+        recalled_from_.try_emplace(entry.author.agent, used_since_).second)
+      ++rosters_;
+  }
 }
 
 void LiveTeam::log(std::string line) {
@@ -207,6 +227,8 @@ Json LiveTeam::roster_json() const {
   for (const RosterEntry& entry : me_.follower().roster()) {
     Json json = {{"id", entry.author.agent}, {"active_from", entry.active_from}};
     if (entry.active_until >= 0) json["active_until"] = entry.active_until;
+    if (const auto recall = recalled_from_.find(entry.author.agent); recall != recalled_from_.end())
+      json["recalled_from"] = recall->second;
     list.push_back(std::move(json));
   }
   return list;

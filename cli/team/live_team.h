@@ -88,6 +88,7 @@ class LiveTeam {
   void on(const Command& command);
   void on(const MissionPart& part);
   bool joined_late(const Author& author) const;
+  void note_recalls();
   void note_holds(Tick tick, double dt_s);
   void compare(const AgentRow& row, double t_s, double dt_s);
   void compare(const ProcessRow& row, double t_s);
@@ -104,6 +105,10 @@ class LiveTeam {
   TeamHistory history_;
   AgentHistory agents_;
   AmendmentHistory amendments_;
+  Tick world_tick_ = -1;             // the newest
+  std::int64_t used_revision_ = -1;  // of the roster, the newest that the world has used, …
+  Tick used_since_ = 0;              // … from this tick on
+  std::map<AgentId, Tick> recalled_from_;
   /// Each agent's newest commands by tick: those of a second of mission time, or the newest one.
   std::map<AgentId, std::map<Tick, Eigen::Vector3d>> commands_mps_;
   std::map<AgentId, LastLook> last_looks_;

@@ -15,7 +15,7 @@ namespace ergocast::cli {
 
 struct DrawnZone {
   std::vector<std::array<double, 2>> corners_m;
-  double lasts_s = 0;                              ///< mission time, above 0
+  double lasts_s = 0;                              ///< of the world's time, above 0
   std::optional<std::array<double, 2>> heights_m;  ///< low and high; without: the whole height
 
   /// The zone of {"corners_m": [[x_m, y_m], …], "lasts_s": …} and, in a box, "heights_m": [low,

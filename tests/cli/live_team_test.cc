@@ -92,11 +92,15 @@ TEST_F(LiveTeamFrames, HaveTheMeanOfAPointsCommandsOfTheNewestSecond) {
   LiveTeam live_team(test::kRun, kListening, false);
   test::give(live_team, test::mission_part(1, MissionState::kRunning, test::roster_of(2)),
              kListening);
-  for (Tick tick = 0; tick < 30; ++tick) {
-    Command command;
-    command.header = {test::kRun, 0, test::incarnation_of(0), test::next_sequence(), tick};
-    command.velocity_mps = {tick < 20 ? 100.0 : tick % 2, 2, 0};
+  const auto answer = [&](Tick tick, const Eigen::Vector3d& velocity_mps) {
+    Command command = test::command_of(0, tick, velocity_mps);
+    command.header.sequence = test::next_sequence();
     live_team.receive(command, Bus::kCommand, 0, kListening);
+  };
+  answer(1'000'000, {7, 7, 0});  // it would be the newest one for long
+  for (Tick tick = 0; tick < 30; ++tick) {
+    test::give(live_team, test::world_state(tick, {{1, 1, 0}}), kListening);
+    answer(tick, {tick < 20 ? 100.0 : static_cast<double>(tick % 2), 2, 0});
   }
   live_team.look(kListening);
   LiveTeam::Cursor cursor;
@@ -169,6 +173,38 @@ TEST_F(LiveTeamFrames, KeepAllTargetsAndSendEachOnce) {
   const auto frame = frame_of(late);
   EXPECT_EQ(frame["targets"].size(), 3);
   EXPECT_EQ(frame["amendments"].size(), 3);
+}
+
+// An agent rests from the tick at which the world uses the roster that recalls it, however late
+// MISSION comes.
+TEST_F(LiveTeamFrames, HaveTheTickFromWhichARecalledAgentRests) {
+  test::announce(test::small_mission(2));
+  for (const bool late : {false, true}) {
+    LiveTeam live_team(test::kRun, kListening, false);
+    const auto know = [&](std::int64_t revision) {
+      auto roster = test::roster_of(2);
+      if (revision == 2) roster[1].recall_revision = 2;
+      test::give(live_team, test::mission_part(revision, MissionState::kRunning, roster),
+                 kListening);
+    };
+    const auto move = [&](Tick tick, std::int64_t revision) {
+      WorldState world = test::world_state(tick, {{1, 1, 0}, {2, 2, 0}});
+      world.roster_revision = revision;
+      test::give(live_team, world, kListening);
+    };
+    know(1);
+    if (!late) know(2);
+    move(5, 1);
+    for (const Tick tick : {6, 7}) move(tick, 2);
+    if (late) know(2);
+    live_team.look(kListening);
+    LiveTeam::Cursor cursor;
+    bool more = false;
+    const std::string text = live_team.frame(cursor, more);
+    EXPECT_NE(text.find(R"({"id":1,"active_from":0,"recalled_from":6})"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find(R"({"id":0,"active_from":0})"), std::string::npos) << text;
+  }
 }
 
 TEST_F(LiveTeamFrames, OfOtherRunsShowNothing) {

@@ -34,6 +34,7 @@ export class Run {
     this.step = mission.dt_s * stride; // mission time between rows
     this.capacity = capacity;
     this.rows = 0;
+    this.isCurrent = false; // whether all rows of a running team up to its newest status have come
     this.tracks = []; // ascending by id
     this.byId = new Map();
     this.metrics = { t: [], phi: [], found: [], spread: [], age: [], received: [], lost: [] };
@@ -217,7 +218,7 @@ export class Run {
   // How likely an object had been found by then.
   foundAt(t) {
     const i = indexAt(this.metrics.t, t);
-    return i < 0 ? NaN : this.metrics.found[i];
+    return this.metrics.found[i] ?? NaN;
   }
   // What the agents' statuses reported last before `t`; null: nothing is known of them.
   teamAt(t) {
@@ -238,16 +239,20 @@ export class Run {
     if (n < 1 || !track.has(row) || !track.has(row - n)) return null;
     return track.between(row - n, row) / (n * this.step);
   }
-  // Agents are members in these ticks: [{id, active_from, active_until, …}], all their incarnations.
+  // Agents are members in these ticks: [{id, active_from, active_until, recalled_from, …}], all their
+  // incarnations.
   setRoster(entries) {
     const intervals = new Map(),
       row = tick => Math.ceil(tick / this.stride);
-    for (const { id, active_from: from, active_until: until } of entries) {
+    let changed = Infinity;
+    for (const { id, active_from: from, active_until: until, recalled_from: recalled } of entries) {
       if (typeof id !== 'number' || typeof from !== 'number') continue;
       if (!intervals.has(id)) intervals.set(id, []);
       intervals.get(id).push([row(from), typeof until === 'number' ? row(until) : Infinity]);
+      if (typeof recalled !== 'number' || this.recalledFrom.get(id) === recalled) continue;
+      this.recalledFrom.set(id, recalled);
+      changed = Math.min(changed, row(recalled));
     }
-    let changed = Infinity;
     for (const [id, list] of intervals) {
       list.sort((a, b) => a[0] - b[0]);
       const track = this.byId.get(id);
