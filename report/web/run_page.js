@@ -96,6 +96,7 @@ window.ergocast = {
   draw(t) {
     const begin = performance.now();
     seek(t);
+    if (S.layer === 'missed') S.run.detection.at(S.run.rowAt(t));
     frame(begin);
     readPixels();
     return performance.now() - begin;

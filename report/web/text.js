@@ -15,6 +15,11 @@ export function put(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+export const capital = text => text.replace(/^./, first => first.toUpperCase());
+
+// Whether keys are text in an element.
+export const isTyped = ({ tagName, type }) => tagName === 'INPUT' && !['range', 'checkbox'].includes(type);
+
 const SUPERSCRIPT = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 export const superscript = n => String(n).replace(/./g, c => (c === '-' ? '⁻' : SUPERSCRIPT[c]));
 

@@ -40,6 +40,11 @@ class DrawingInABrowser : public PageInABrowser {
   bool visible(const std::string& selector) {
     return js("return document.querySelector('" + selector + "').checkVisibility()").get<bool>();
   }
+  /// Waits until the page has drawn what it knows now.
+  void draws() {
+    js("ergocast.clearFrames()");
+    EXPECT_TRUE(browser_->becomes("return ergocast.frames().length > 1"));
+  }
   /// Clicks at corners, and on the first one again: pixels to the right of the map's middle, and
   /// below it.
   void click_corners(const std::vector<std::pair<int, int>>& corners) {

@@ -60,6 +60,22 @@ TEST_F(DrawnTargetInABrowser, IsMovedComparedAndSent) {
   end_mission();
 }
 
+TEST_F(DrawnTargetInABrowser, IsShownAsSentUntilTheServerShowsIt) {
+  open_page(Control::kTaken);
+  browser_->click("#drawTarget");
+  browser_->drag("#drawn", 60, 0);
+  EXPECT_EQ(
+      js("const button = document.getElementById('sendDrawn'); button.click(); button.click();"
+         "ergocast.showControl({ operator: null, refused: null, acts: [{ operator: 1, number: "
+         "1,"
+         "  name: 'anna', what: 'pause', over: true, state: 'done', text: 'all stand' }] });"
+         "return document.getElementById('controlText').textContent"),
+      "New target: sent");
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.targets.length === 2"));
+  expect_no_errors();
+  end_mission();
+}
+
 TEST_F(DrawnTargetInABrowser, IsRefusedWithTheWordsOfTheCommand) {
   open_page(Control::kTaken);
   browser_->click("#drawTarget");
@@ -72,6 +88,11 @@ TEST_F(DrawnTargetInABrowser, IsRefusedWithTheWordsOfTheCommand) {
   EXPECT_EQ(drawn(".parts.length"), 1);  // it can be mended
   screenshot("drawing_refused");
   EXPECT_EQ(js("return ergocast.S.run.amendments.length"), 0);
+  // Nor does the target of another operator close it.
+  ASSERT_EQ(ergocast({"amend", "--set", "target.uniform_weight=0.3"}), 0) << output();
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.targets.length === 2"));
+  draws();
+  EXPECT_EQ(drawn("?.parts.length"), 1);
   browser_->click("#release");
   EXPECT_TRUE(becomes("whyCommand", "^Take control to send it"));
   expect_no_errors();

@@ -33,6 +33,14 @@ TEST_F(FoundInABrowser, IsThatOfTheRecord) {
   const auto times = js("const { run } = ergocast.S; return run.detection.at(run.rows - 1).times");
   EXPECT_NEAR(times[0].get<double>(), recorded("time_to_half_s"), 0.5);
   EXPECT_NEAR(times[1].get<double>(), recorded("time_to_four_fifths_s"), 0.5);
+  // A long record is counted in slices.
+  EXPECT_EQ(js("const { detection, rows } = ergocast.S.run; detection.reset();"
+               "return detection.build(rows - 1, 0)"),
+            false);
+  js("ergocast.set('layer', 'missed')");
+  EXPECT_TRUE(
+      browser_->becomes("const { run } = ergocast.S; return run.detection.build(run.rows - 1, 0)"));
+  EXPECT_LT(worst(), kTolerance);
   expect_no_errors();
 }
 
@@ -167,6 +175,10 @@ TEST_F(FoundInABrowser, ARunningTeamHasTheProbabilityOfItsRecord) {
   ASSERT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 0) << output();
   EXPECT_TRUE(browser_->becomes("return ergocast.S.run.holds.length === 1"));
   ASSERT_EQ(ergocast({"resume", "--lcm-url", kUrl}), 0) << output();
+  js("window.found = ergocast.S.run.metrics.found");
+  // An agent at rest finds nothing.
+  ASSERT_EQ(ergocast({"recall", "2", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.recalledFrom.has(2)"));
   EXPECT_TRUE(
       browser_->becomes("const { run } = ergocast.S; return run.counted(run.end) > 120 && "
                         "run.foundAt(run.end) > 0.1"));
@@ -186,6 +198,16 @@ TEST_F(FoundInABrowser, ARunningTeamHasTheProbabilityOfItsRecord) {
   // Each position that did not arrive is a look that the page lacks.
   const bool lacks = js("return live.tracks.some(({ hasGaps }) => hasGaps)").get<bool>();
   EXPECT_LT(compared[1].get<double>(), lacks ? 0.1 : 2e-3);
+  const auto recalls =
+      js("return [live, ergocast.S.run].map(({ recalledFrom }) => recalledFrom.get(2))");
+  EXPECT_TRUE(recalls[0] <= recalls[1] || lacks) << "the logger may learn of it later: " << recalls;
+  // It has kept its list, and computed what is new.
+  EXPECT_TRUE(lacks || js("return live.metrics.found === window.found").get<bool>());
+  EXPECT_LT(js("const { t, found } = live.metrics;"
+               "return Math.max(...found.map((p, i) => Math.abs(p - "
+               "live.foundCurve.at(live.rowAt(t[i])))))")
+                .get<double>(),
+            1e-12);
   EXPECT_LT(worst(), kTolerance);
   expect_no_errors();
   ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();

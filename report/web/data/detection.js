@@ -89,13 +89,20 @@ export class Detection {
     this.first = this.done = this.looksIn(this.begun);
     Object.assign(this, { target, found: 0, times: SHARES.map(() => null) });
   }
-  // Counts the looks up to a row.
-  at(row) {
+  // Counts looks up to a row, until `stop` at the latest. Whether all are counted.
+  build(row, stop) {
     const target = this.run.targetAt(row),
       wanted = this.looksUntil(row);
     if (target !== this.target || wanted - this.first < this.done - wanted) this.begin(target);
-    while (this.done < wanted) this.look(this.done++, 1);
-    while (this.done > wanted) this.look(--this.done, -1);
+    while (this.done !== wanted) {
+      if (performance.now() >= stop) return false;
+      if (this.done < wanted) this.look(this.done++, 1);
+      else this.look(--this.done, -1);
+    }
+    return true;
+  }
+  at(row) {
+    this.build(row, Infinity);
     return this;
   }
   // How likely an object of the target that holds at a row has been found by then; NaN if it is not known.
@@ -194,17 +201,37 @@ export class FoundCurve {
   constructor(run) {
     this.detection = new Detection(run);
     this.values = [];
+    this.changed = 0; // the first row whose value takeChanged() has not named
+  }
+  // Computes the values up to a row, until `stop` at the latest. Whether all are there.
+  build(row, stop) {
+    const { values, detection } = this;
+    while (values.length <= row) {
+      if (!detection.build(values.length, stop)) return false;
+      values.push(detection.probability(values.length));
+    }
+    return true;
   }
   at(row) {
-    while (this.values.length <= row) this.values.push(this.detection.probability(this.values.length));
+    this.build(row, Infinity);
     return this.values[row];
   }
-  reset(row) {
+  // The first row that is new or has changed since the last call.
+  takeChanged() {
+    const first = this.changed;
+    this.changed = this.values.length;
+    return first;
+  }
+  forget(row) {
     this.values.length = Math.min(this.values.length, row);
+    this.changed = Math.min(this.changed, row);
+  }
+  reset(row) {
+    this.forget(row);
     this.detection.reset();
   }
   rewind(row) {
-    this.values.length = Math.min(this.values.length, row);
+    this.forget(row);
     this.detection.rewind(row);
   }
 }

@@ -5,7 +5,8 @@ import { $, element } from '../text.js';
 
 const MOST_LINES = 400,
   MOST_STATUSES = 20000,
-  LATELY_MS = 10000;
+  LATELY_MS = 10000,
+  MOST_FOUND_MS = 20; // in a frame
 
 // Messages in the last two seconds of wall time, each second.
 class Rate {
@@ -70,6 +71,7 @@ function addMetrics(run) {
       run.tracks.some(track => track.first === 0) &&
       !run.tracks.some(track => track.hasGaps);
   if (!whole) {
+    if (run.metrics !== told) told.found = [];
     run.metrics = told;
     addFound(run);
     return;
@@ -93,14 +95,25 @@ function addMetrics(run) {
   addFound(run);
 }
 
-// How likely an object has been found, unless the page lacks places of the beginning.
+// How likely an object has been found, unless the page lacks places of the beginning. The list may be shorter
+// than that of times: the next frame goes on where the time for this one was over.
 function addFound(run) {
-  const whole = run.tracks.some(track => track.first === 0);
-  run.metrics.found = run.metrics.t.map(t => (whole ? run.foundCurve.at(run.rowAt(t)) : NaN));
+  const { metrics, foundCurve } = run,
+    { t, found } = metrics,
+    isWhole = run.tracks.some(track => track.first === 0),
+    since = isWhole === run.foundIsWhole ? foundCurve.takeChanged() : 0,
+    stop = performance.now() + MOST_FOUND_MS;
+  run.foundIsWhole = isWhole;
+  while (found.length && run.rowAt(t[found.length - 1]) >= since) found.pop();
+  while (found.length < t.length) {
+    const row = run.rowAt(t[found.length]);
+    if (isWhole && !foundCurve.build(row, stop)) break;
+    found.push(isWhole ? foundCurve.at(row) : NaN);
+  }
 }
 
 const OF_STATUSES = ['spread', 'age', 'received', 'lost'];
-const emptyCurves = () => ({ t: [], phi: [], spread: [], age: [], received: [], lost: [] });
+const emptyCurves = () => ({ t: [], phi: [], found: [], spread: [], age: [], received: [], lost: [] });
 
 // What the statuses report, at most MOST_STATUSES of them: then every second one is kept.
 function addTold(told, { agents, t_s: t, ergodic_metric: phi }) {
@@ -118,13 +131,15 @@ function addTold(told, { agents, t_s: t, ergodic_metric: phi }) {
   for (const key of Object.keys(now)) {
     const list = told[key];
     list.push(now[key]);
-    if (list.length > MOST_STATUSES) told[key] = list.filter((_, i) => i % 2 === 0);
+    if (list.length <= MOST_STATUSES) continue;
+    told[key] = list.filter((_, i) => i % 2 === 0);
+    told.found = [];
   }
 }
 
 // What was told before this browser came: lists of numbers, null where one is not known.
 const toldBefore = past =>
-  Object.fromEntries(Object.keys(emptyCurves()).map(key => [key, past[key].map(v => v ?? NaN)]));
+  Object.fromEntries(Object.keys(emptyCurves()).map(key => [key, (past[key] ?? []).map(v => v ?? NaN)]));
 
 // Connects; `page` has began(run), changed(facts), controlled(state), ended(run, why) and lost(text).
 export function watchLive(page) {
@@ -146,6 +161,7 @@ export function watchLive(page) {
     if (before && facts.run === message.run_id) {
       run.history = before.history;
       run.times = before.times;
+      run.wordsSpoken = before.wordsSpoken;
     } else if (message.team) recordHistory(run, message.team);
     run.told = toldBefore(message.past);
     facts = {
@@ -174,6 +190,7 @@ export function watchLive(page) {
       const { team } = frame,
         { agents } = team,
         t = Math.min(team.t_s ?? 0, Math.max(run.end, 0));
+      run.isCurrent = true;
       team.byId = new Map(agents.map(agent => [agent.id, agent]));
       addTold(run.told, team);
       run.setHolds(team.holds);

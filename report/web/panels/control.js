@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lets an operator give orders to a running team, and shows what the team reports about them.
 import { S } from './state.js';
-import { $, element, put } from '../text.js';
+import { $, capital, element, isTyped, put } from '../text.js';
 
 const CONFIRM_MS = 3000, // time for the second press
   HERE_MS = 3000, // an operator whose browser is silent for 10 s loses control
@@ -16,7 +16,6 @@ const WORDS = {
   'stop-now': 'Stop now',
   target: 'New target',
 };
-const capital = text => text.replace(/^./, first => first.toUpperCase());
 const wordsOf = act => WORDS[act] ?? capital(act);
 
 // The address has, after #, the token that permits orders. Only this page's memory keeps it: not the
@@ -30,7 +29,8 @@ let armed = null, // {button, name, order, timer}: the button that waits for its
   over = false,
   shownRefusal = 0,
   chosenByPin;
-const spokenActs = new Set(); // operator, number, act and state of each that was spoken
+const spokenActs = new Set(), // operator, number, act and state of each that was spoken
+  failures = new Set(); // the numbers of this page's requests that were not sent, refused or have failed
 
 function takeToken() {
   const wishes = new URLSearchParams(location.hash.slice(1)),
@@ -45,7 +45,7 @@ function takeToken() {
 // ---- what is shown and spoken ----
 
 // The newest order.
-export function say(text) {
+function say(text) {
   put($('controlText'), text);
   $('controlText').classList.remove('bad');
 }
@@ -75,6 +75,9 @@ function fitting(name) {
   return letters.join('');
 }
 
+// Whether a request of this page, by its number, has had no effect.
+export const hasFailed = number => failures.has(number);
+
 // Whether this page may give orders now, and whether it may take control.
 export const hasControl = () => me.mine;
 export const mayTakeControl = () => token !== null && !over && !$('control').hidden;
@@ -97,14 +100,16 @@ const post = request =>
   });
 
 // Sends a request; `more` has what only this act needs.
-export async function send(act, more = {}) {
+async function send(act, more = {}) {
   const request = requestOf(act, more);
   notice('');
   try {
     const answer = await post(request);
     if (answer.status === 202) return;
+    failures.add(request.number);
     complain(`${wordsOf(act)}: not sent: ${(await answer.text()).trim()}`);
   } catch {
+    failures.add(request.number);
     complain(
       `${wordsOf(act)}: no answer from the page’s server: the order may not have been sent. Press again.`,
     );
@@ -195,11 +200,13 @@ export function press(button, order, name = button.dataset.label) {
   speak(`Press again within 3 seconds: ${name}`);
 }
 
-function give(act, label, agent) {
+// Sends an order, which is shown as sent until the server shows it. Returns its number.
+export function give(act, label, more = {}) {
   say(`${capital(label)}: sent`);
-  send(act, agent === undefined ? {} : { agent });
+  send(act, more);
   pending = { number: me.number, until: performance.now() + SHOWN_MS };
   setTimeout(() => !over && showActs(last), SHOWN_MS);
+  return me.number;
 }
 
 function pressOrder(button) {
@@ -207,7 +214,7 @@ function pressOrder(button) {
     names = act === 'home' || act === 'out',
     agent = names ? Number($('orderedAgent').value) : undefined,
     name = names ? `agent ${agent} ${act}` : label;
-  press(button, () => give(act, name, agent), name);
+  press(button, () => give(act, name, names ? { agent } : {}), name);
 }
 
 // Another operator loses control by the press, so that needs a second one.
@@ -215,8 +222,6 @@ function pressTake() {
   if (last.operator) press($('take'), () => send('take'));
   else send('take');
 }
-
-const isText = ({ tagName, type }) => tagName === 'INPUT' && !['range', 'checkbox'].includes(type);
 
 // A first press ends with any other act, so the second one confirms only what is still in sight.
 function watchForOthers() {
@@ -243,7 +248,7 @@ function onKey(e) {
     disarm();
     speak('The first press is taken back.');
     ended();
-  } else if (e.key === '!' && plain && !isText(e.target) && mayTakeControl()) {
+  } else if (e.key === '!' && plain && !isTyped(e.target) && mayTakeControl()) {
     if (!e.repeat) stopNow();
     ended();
   } else if (armed && e.target !== armed.button && !['Tab', 'Shift'].includes(e.key)) {
@@ -307,6 +312,7 @@ function showActs({ acts }) {
       i === acts.length - 1 ||
       ((act.state === 'failed' || !act.over) && !acts.slice(i + 1).some(({ what }) => what === act.what)),
   );
+  for (const act of acts) if (act.operator === me.id && act.state === 'failed') failures.add(act.number);
   const spoken = [];
   for (const act of shown) {
     const key = [act.operator, act.number, act.what, act.state].join();
@@ -334,6 +340,7 @@ function showActs({ acts }) {
 function showRefusal(refused) {
   if (refused?.operator !== me.id || refused.number <= shownRefusal) return;
   shownRefusal = refused.number;
+  failures.add(refused.number);
   complain(`${capital(refused.what)}: refused: ${refused.text}`);
 }
 

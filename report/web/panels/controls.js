@@ -12,7 +12,7 @@ import { set, setTheme } from './legend.js';
 import { fit, turn, zoom } from './map_pointer.js';
 import { nextView, toggleSlice } from './space_controls.js';
 import { view } from './screen.js';
-import { $ } from '../text.js';
+import { $, isTyped } from '../text.js';
 import { explainLabels, listWords } from './words.js';
 
 const toggle = (dialog, open) => {
@@ -96,8 +96,6 @@ export function connectChart() {
   };
 }
 
-// Whether keys are text there.
-const isTyped = ({ tagName, type }) => tagName === 'INPUT' && !['range', 'checkbox'].includes(type);
 const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
 const TURN = Math.PI / 24;
 const KEYS = {

@@ -2,7 +2,7 @@
 // Opens the layer on which a new target or a new zone is drawn, and sends or copies what is drawn there.
 import { S, ask } from './state.js';
 import { layout } from './screen.js';
-import { complain, hasControl, mayTakeControl, press, say, send } from './control.js';
+import { complain, give, hasControl, hasFailed, mayTakeControl, press } from './control.js';
 import { connectDrawnPointer, removeChosen } from './drawn_pointer.js';
 import { showView } from './space_controls.js';
 import { connectTarget, targetDrawing } from './target_drawing.js';
@@ -13,7 +13,7 @@ import { $, put } from '../text.js';
 const KINDS = { target: targetDrawing, zone: zoneDrawing };
 const DESCRIBE_MS = 250; // wall time between descriptions while the team moves on
 
-let sent = null, // the newest that the page knew when one was sent
+let sent = null, // {number, newest}: the request, and the newest that the page knew when it was sent
   describedAt = 0,
   viewBefore = null; // of a box
 
@@ -76,9 +76,7 @@ function order() {
     complain(`${kind().name}: not sent: too many corners. Save it as a file and use ergocast amend.`);
     return;
   }
-  say(`${kind().name}: sent`);
-  sent = kind().newest();
-  send(act, content);
+  sent = { newest: kind().newest(), number: give(act, kind().name, content) };
 }
 
 function open(name) {
@@ -142,7 +140,8 @@ export function followDrawing() {
     if ($(button).hidden === possible) $(button).hidden = !possible;
   if (!S.drawing) return;
   showLayer();
-  if (!possible || (sent !== null && kind().newest() > sent)) close();
+  if (sent && hasFailed(sent.number)) sent = null;
+  if (!possible || (sent && kind().newest() > sent.newest)) close();
   else if (performance.now() - describedAt > DESCRIBE_MS) describe();
 }
 

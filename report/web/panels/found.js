@@ -20,7 +20,9 @@ export function foundFacts(run) {
   ];
 }
 
-// How much was missed at a place of the map; nothing where the map is a view of a box.
+// How much was missed at a place of the map; nothing where the map is a view of a box, and as long as looks
+// are counted.
 export function missedText(run, row, x, y) {
-  return run.inBox ? '' : ` · missed ${chance(run.detection.missedAt(row, x, y))}`;
+  const { detection } = run;
+  return run.inBox || !detection.build(row, 0) ? '' : ` · missed ${chance(detection.missedAt(row, x, y))}`;
 }

@@ -13,6 +13,7 @@ import { $, clamp, put } from '../text.js';
 
 const SIDE = 508; // pixels that the table of agents needs
 const LAYERS = ['shading', 'trails', 'markers', 'chart'];
+const MOST_COUNT_MS = 40; // in a frame
 
 const flat = new View(),
   turning = new SpaceView();
@@ -29,6 +30,15 @@ function context(id) {
   return g;
 }
 
+// Where objects were missed is counted in slices, so that the page answers meanwhile. It shows the last
+// picture until then.
+function isCounted() {
+  const { run, layer, t } = S;
+  if (layer !== 'missed' || run.detection.build(run.rowAt(t), performance.now() + MOST_COUNT_MS)) return true;
+  ask();
+  return false;
+}
+
 function drawShading() {
   const row = S.run.rowAt(S.t),
     target = S.run.targetAt(row),
@@ -43,7 +53,7 @@ function drawShading() {
       S.run.id,
       S.view,
     ].join();
-  if (key === shadingKey) return;
+  if (key === shadingKey || !isCounted()) return;
   shadingKey = key;
   paintShading(context('shading'), shown(), view, mapState());
 }
@@ -84,7 +94,8 @@ function drawSpace() {
     S.hover,
     ...S.pins,
   ].join();
-  if (key !== shadingKey) space.paint(S.run, view, mapState(), scale);
+  if (key === shadingKey || !isCounted()) return;
+  space.paint(S.run, view, mapState(), scale);
   shadingKey = key;
 }
 

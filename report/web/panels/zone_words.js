@@ -2,12 +2,10 @@
 // Lists the closed zones for a screen reader, and reads aloud when one of them closes, is free, or ends.
 import { S } from './state.js';
 import { stateOfZone } from '../data/zones.js';
-import { $, element, put } from '../text.js';
+import { $, capital, element, put } from '../text.js';
 
 let known = new Map(), // state of each zone, by number
-  knownRun = null;
-
-const capital = text => text[0].toUpperCase() + text.slice(1);
+  knownRun = null; // its number
 
 function wordsOf({ number, leaving, left, count }) {
   if (leaving) return `Zone ${number} is closed: agents leave it within ${left}.`;
@@ -27,9 +25,11 @@ export function followZones() {
   const row = S.run.rowAt(S.t),
     now = S.run.zonesAt(row).map(zone => stateOfZone(S.run, zone, row)),
     list = $('zoneList');
-  if (S.run !== knownRun) known = new Map();
-  knownRun = S.run;
-  if (S.live && S.following) {
+  if (S.facts && S.facts.run !== knownRun) {
+    known = new Map();
+    knownRun = S.facts.run;
+  }
+  if (S.live && S.following && S.run.isCurrent) {
     announce(now);
     known = new Map(now.map(zone => [zone.number, zone]));
   }
