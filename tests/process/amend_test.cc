@@ -31,11 +31,6 @@ class AmendCommand : public RunningMission {
   }
   std::filesystem::path east() const { return file("east.textproto", gaussian_at(1600)); }
 
-  /// The number after the first "since tick " in the output.
-  Tick tick_said() const {
-    const std::string printed = output();
-    return std::stoll(printed.substr(printed.find("since tick ") + 11));
-  }
   /// The share of rows in the eastern half, from that tick on.
   double share_in_the_east(Tick from) const {
     double all = 0, east = 0;
@@ -54,9 +49,7 @@ class AmendCommand : public RunningMission {
 /// A team in either pace.
 class AmendInEitherPace : public AmendCommand, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, AmendInEitherPace, ::testing::Values("--lockstep", "--realtime=10"),
-                         [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         name_of_pace);
 
 TEST_P(AmendInEitherPace, GivesTheTeamANewTarget) {
   Child mission = launch_endless(west(), {GetParam(), "--lcm-url", kUrl});
@@ -64,7 +57,7 @@ TEST_P(AmendInEitherPace, GivesTheTeamANewTarget) {
   EXPECT_TRUE(answered("no amendments: the mission is as its plan has it")) << output();
   ASSERT_EQ(amend({"--target", east(), "--at", "+3s"}), 0) << output();
   EXPECT_TRUE(answered("amendment 0, target ")) << output();
-  const Tick from = tick_said();
+  const Tick from = since_tick();
   ASSERT_TRUE(logs("coordinator", "amendment 0")) << log_of("coordinator");
   // A mission that has moved on has covered the new target for long.
   ASSERT_TRUE(moves_on(400000)) << printed();
@@ -126,7 +119,7 @@ TEST_F(AmendCommand, LetsOneOfTwoOperatorsWin) {
   ASSERT_EQ(amend({"--target", file("middle.textproto", gaussian_at(1000))}), 0) << output();
   first.send(SIGCONT);
   EXPECT_EQ(wait_for(first), 4) << text_of(first_log);
-  EXPECT_NE(text_of(first_log).find("another operator was first: amendment 0, target "),
+  EXPECT_NE(text_of(first_log).find("another order was first: amendment 0, target "),
             std::string::npos)
       << text_of(first_log);
   mission.send(SIGINT);

@@ -45,9 +45,7 @@ class EndCommand : public RunningMission {
 
 class EndInEitherPace : public EndCommand, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, EndInEitherPace, ::testing::Values("--lockstep", "--realtime=10"),
-                         [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         name_of_pace);
 
 TEST_P(EndInEitherPace, HoldsForAllProcessesAndASuccessorOfTheCoordinator) {
   Child mission = launch_endless(scenario(), {GetParam(), "--lcm-url", kUrl});
@@ -123,15 +121,16 @@ TEST_F(EndCommand, LetsOneOfTwoOperatorsWin) {
   ASSERT_EQ(send_command("pause"), 0) << output();
   const int end_s = mission_s() + 30;
   hold_next("ERGOCAST_AMEND", 0);
+  // Both want the same end, and only one of them gets it.
   Child first =
-      start("ergocast", {"amend", "--end", std::to_string(end_s + 9) + "s", "--lcm-url", kUrl});
+      start("ergocast", {"amend", "--end", std::to_string(end_s) + "s", "--lcm-url", kUrl});
   const auto first_log = log_;
   hold_none();
   ASSERT_TRUE(eventually([&] { return stopped({first.pid()}); })) << text_of(first_log);
   ASSERT_EQ(amend({"--end", std::to_string(end_s) + "s"}), 0) << output();
   first.send(SIGCONT);
   EXPECT_EQ(wait_for(first), 4) << text_of(first_log);
-  EXPECT_NE(text_of(first_log).find("another operator was first: amendment 1, the end at"),
+  EXPECT_NE(text_of(first_log).find("another order was first: amendment 1, the end at"),
             std::string::npos)
       << text_of(first_log);
   let_end(mission, end_s);

@@ -52,9 +52,7 @@ TEST_F(Freeze, InRealTimeTheTeamGoesOnWithoutAnAgentThatThenAgreesAgain) {
 
 struct FreezeInEitherPace : Freeze, ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, FreezeInEitherPace, ::testing::Values("--lockstep", "--realtime=5"),
-                         [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         name_of_pace);
 
 TEST_P(FreezeInEitherPace, AnAgentThatIsForgottenMeanwhileCountsAgainAfterwards) {
   Child mission =

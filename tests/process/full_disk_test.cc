@@ -40,9 +40,7 @@ class FullDisk : public RunningMission {
 /// The team waits at most 5 s for a logger that cannot write.
 class FullDiskInEitherPace : public FullDisk, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, FullDiskInEitherPace,
-                         ::testing::Values("--lockstep", "--realtime=40"), [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         ::testing::Values("--lockstep", "--realtime=40"), name_of_pace);
 
 TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
   // More than any machine writes before the disk is full, or afterwards.

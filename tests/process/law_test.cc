@@ -25,18 +25,9 @@ class LawCommand : public RunningMission, public ::testing::WithParamInterface<c
     }
     return sum_mps / std::max(1, count);
   }
-  /// The tick from which the last order holds.
-  Tick since() const {
-    const std::string text = output(), since = "holds since tick ";
-    const auto at = text.find(since);
-    EXPECT_NE(at, text.npos) << text;
-    return at == text.npos ? 0 : std::stoll(text.substr(at + since.size()));
-  }
 };
 INSTANTIATE_TEST_SUITE_P(Paces, LawCommand, ::testing::Values("--lockstep", "--realtime=10"),
-                         [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         name_of_pace);
 
 TEST_P(LawCommand, SlowsTheTeamDownAndIsCancelled) {
   Child mission = launch_endless(scenario(), {GetParam(), "--lcm-url", kUrl});
@@ -50,7 +41,7 @@ TEST_P(LawCommand, SlowsTheTeamDownAndIsCancelled) {
   ASSERT_EQ(amend({"--law", "u_max_mps=2", "--law", "noise_intensity=0.1"}), 0) << output();
   EXPECT_TRUE(answered("amendment 0, law ")) << output();
   EXPECT_TRUE(answered(", by ")) << output();
-  const Tick slow = since();
+  const Tick slow = since_tick();
   ASSERT_TRUE(moves_on(100000)) << printed();
   ASSERT_EQ(ergocast({"status", "--json", "--lcm-url", kUrl}), 0) << output();
   const auto status = nlohmann::json::parse(output());
@@ -60,7 +51,7 @@ TEST_P(LawCommand, SlowsTheTeamDownAndIsCancelled) {
   EXPECT_TRUE(answered(" (--cancel undoes it)")) << output();
   ASSERT_EQ(amend({"--cancel", "0"}), 0) << output();
   EXPECT_TRUE(answered("(as planned)")) << output();
-  const Tick fast = since();
+  const Tick fast = since_tick();
   ASSERT_TRUE(moves_on(100000)) << printed();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();

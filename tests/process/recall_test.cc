@@ -73,9 +73,7 @@ TEST_F(RecallCommand, SendsAgentsHomeAndOutOfAMissionThatIsDone) {
 class RecallInEitherPace : public RecallCommand,
                            public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, RecallInEitherPace,
-                         ::testing::Values("--lockstep", "--realtime=10"), [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         ::testing::Values("--lockstep", "--realtime=10"), name_of_pace);
 
 TEST_P(RecallInEitherPace, OutlastsCoordinatorAndAgent) {
   Child mission = launch_endless(scenario(), {GetParam(), "--lcm-url", kUrl});

@@ -71,9 +71,7 @@ TEST_F(Restart, KilledAgentIsNamedAndItsSuccessorTakesPart) {
 /// A team whose agents broadcast every five ticks, in either pace.
 class RestartInEitherPace : public Restart, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, RestartInEitherPace,
-                         ::testing::Values("--lockstep", "--realtime=5"), [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         ::testing::Values("--lockstep", "--realtime=5"), name_of_pace);
 
 TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSent) {
   const bool lockstep = std::string(GetParam()) == "--lockstep";

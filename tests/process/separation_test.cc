@@ -39,9 +39,7 @@ double least_recorded_distance_m(const std::string& trajectory) {
 
 class CrowdRun : public OwnHost, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, CrowdRun, ::testing::Values("--lockstep", "--realtime=10"),
-                         [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         name_of_pace);
 
 TEST_P(CrowdRun, KeepsItsDistanceAndReportsWhatThatCost) {
   ASSERT_EQ(ergocast({"run", scenario_file("crowded_team"), GetParam(), "--duration", "20", "--out",

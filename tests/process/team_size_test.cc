@@ -86,9 +86,7 @@ TEST_F(LateAgent, TakesTheFreePlaceInATeamThatBeganWithAQuorum) {
 
 struct LateAgentInEitherPace : LateAgent, ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, LateAgentInEitherPace,
-                         ::testing::Values("--lockstep", "--realtime=5"), [](const auto& pace) {
-                           return pace.index == 0 ? "Lockstep" : "Realtime";
-                         });
+                         ::testing::Values("--lockstep", "--realtime=5"), name_of_pace);
 
 TEST_P(LateAgentInEitherPace, IsWelcomeBeyondThePlanAlsoUnderTheLastNumber) {
   Child mission = launch_endless(scenario(), {"--agents", "2", GetParam(), "--lcm-url", kUrl});

@@ -37,6 +37,11 @@ inline std::vector<std::string> agent(int id) {
   return {"ergocast-agent", "--id " + std::to_string(id)};
 }
 
+/// For tests in either pace, of which "--lockstep" is one.
+inline std::string name_of_pace(const ::testing::TestParamInfo<const char*>& pace) {
+  return pace.param == std::string("--lockstep") ? "Lockstep" : "Realtime";
+}
+
 class RunningMission : public OwnHost {
  protected:
   /// For missions whose buses the test uses itself.
@@ -125,6 +130,12 @@ class RunningMission : public OwnHost {
   std::string log_of(const std::string& process) const {
     return text_of(out() / "log" / (process + ".log"));
   }
+  /// By the summary: whether each command came in time, and no tick was skipped. It is not so in
+  /// real time on a slow machine.
+  bool all_on_time() const {
+    const auto summary = this->summary();
+    return summary["missed_deadlines"] == 0 && summary["skipped_ticks"] == 0;
+  }
   /// Waits until `process` has logged `part` that many times.
   bool logs(const std::string& process, const std::string& part, int times = 1) const {
     return eventually([&] {
@@ -133,6 +144,13 @@ class RunningMission : public OwnHost {
       for (auto at = log.find(part); at != log.npos; at = log.find(part, at + 1)) ++count;
       return count >= times;
     });
+  }
+  /// The tick from which an amendment holds, by the output of the last command.
+  Tick since_tick() const {
+    const std::string text = output(), since = "holds since tick ";
+    const auto at = text.find(since);
+    EXPECT_NE(at, text.npos) << text;
+    return at == text.npos ? 0 : std::stoll(text.substr(at + since.size()));
   }
   /// Waits until the record has grown by `bytes`.
   bool moves_on(std::uintmax_t bytes = 30000) const { return recorded(recorded_bytes() + bytes); }
