@@ -96,7 +96,7 @@ TEST_F(Paused, AVehicleThatLeavesAZoneIsNotStuck) {
     return watch.is_stuck(team_.standing());
   };
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(is_stuck_at(899)) << i;
-  for (int i = 0; i < 9; ++i) EXPECT_FALSE(is_stuck_at(1000)) << i;
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(is_stuck_at(1000)) << i;
   EXPECT_TRUE(is_stuck_at(1000));
 }
 
