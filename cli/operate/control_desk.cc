@@ -189,8 +189,8 @@ void ControlDesk::give(const ControlRequest& request, const MonitoredRun& team, 
       {request, what(request), team.mission_time(team.tick()), order_for(request, team, now)});
 }
 
-/// A change is ours if one of our orders of its kind and operator has not been named yet. MISSION
-/// does not name who has recalled an agent.
+/// A change is ours if one of our orders of its kind and operator has not been named yet. A
+/// recall has no operator in MISSION.
 void ControlDesk::note_changes(const MonitoredRun& team) {
   for (NamedChange& change : changes_.take(team)) {
     const auto ours = std::ranges::find_if(acts_, [&change](const Act& act) {
