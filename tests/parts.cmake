@@ -1,6 +1,6 @@
 # Tests of parts: of functions, and of simulated teams. ./test builds and runs them with
 # the address and undefined-behaviour sanitizers.
-ergocast_test(NAME modes_tests LABELS unit
+ergocast_test(NAME modes_tests LABELS unit OPTIMISED
   SOURCES
     modes/eigen_modes_test.cc
     modes/free_grid_test.cc
@@ -8,7 +8,7 @@ ergocast_test(NAME modes_tests LABELS unit
     modes/provide_test.cc
     modes/table_test.cc
   LIBS ergocast::modes)
-ergocast_test(NAME core_tests LABELS unit
+ergocast_test(NAME core_tests LABELS unit OPTIMISED
   SOURCES
     core/amendments_test.cc
     core/basis_in_space_test.cc
@@ -42,7 +42,7 @@ ergocast_test(NAME core_tests LABELS unit
     core/walls_test.cc
   LIBS ergocast_lab ergocast::target ergocast::team)
 
-ergocast_test(NAME target_tests LABELS unit
+ergocast_test(NAME target_tests LABELS unit OPTIMISED
   SOURCES
     target/cosine_integrals_test.cc
     target/fractional_domains_test.cc
@@ -258,7 +258,7 @@ ergocast_test(NAME layering_tests LABELS unit
   SOURCES layering/includes_test.cc layering/modules_test.cc layering/sources_test.cc
   LIBS ergocast::core)
 
-ergocast_test(NAME lab_tests LABELS lab
+ergocast_test(NAME lab_tests LABELS lab OPTIMISED
   SOURCES
     lab/foresight_test.cc
     lab/invariants_test.cc
