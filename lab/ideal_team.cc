@@ -3,6 +3,7 @@
 #include "lab/ideal_team.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "core/base/geometry.h"
@@ -34,9 +35,7 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
       sensors_(mission_),
       metric_(mission_) {
   table_.set_half_life(HalfLife(mission_));
-  for (std::size_t kind = 0; kind < std::max<std::size_t>(1, mission_.kinds.size()); ++kind)
-    laws_.push_back(make_law(mission_, static_cast<int>(kind)));
-  needs_ = laws_.front()->needs();
+  std::map<int, Law*> law_of_kind;
   for (const Eigen::Vector3d& start_m : mission_.starts_m) {
     const Author author{static_cast<AgentId>(agents_.size()), 1};
     const int kind = planned_kind(mission_, author.agent);
@@ -44,22 +43,26 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
     table_.set_quality(author, sensors_.of(kind).quality);
     const Motion motion = motion_of(mission_, author.agent);
     // Laws that answer to coverage alone are shared.
-    if (!needs_.coverage) laws_.push_back(make_law(mission_, kind));
+    Law*& law = law_of_kind[kind];
+    if (law == nullptr || !needs_.coverage) {
+      laws_.push_back(make_law(mission_, kind));
+      law = laws_.back().get();
+      needs_ = law->needs();
+    }
     team_.push_back(author.agent);
-    agents_.push_back(
-        {author,
-         kind,
-         needs_.coverage ? laws_[static_cast<std::size_t>(kind)].get() : laws_.back().get(),
-         motion,
-         filters_commands(mission_, author.agent),
-         start_m,
-         first_velocity(motion, start_m),
-         {0, 0, 0},
-         {0, 0, 0},
-         std::nullopt,
-         earlier_,
-         earlier_,
-         earlier_});
+    agents_.push_back({author,
+                       kind,
+                       law,
+                       motion,
+                       filters_commands(mission_, author.agent),
+                       start_m,
+                       first_velocity(motion, start_m),
+                       {0, 0, 0},
+                       {0, 0, 0},
+                       std::nullopt,
+                       earlier_,
+                       earlier_,
+                       earlier_});
     if (follows_walls(mission_)) agents_.back().follower.emplace(mission_, author.agent);
   }
   if (any_filtered(mission_)) separation_.emplace(mission_, 0);

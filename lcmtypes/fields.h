@@ -268,7 +268,11 @@ template <>
 struct Fields<RecordAck> {
   using Generated = record_ack_t;
   static constexpr AgentId kSender = kLogger;
-  static void list(auto& io, auto& m) { io.flag(m.last); }
+  static void list(auto& io, auto& m) {
+    io.flag(m.last);
+    io.quantity(m.detection_probability);
+    io.holds(m.detection_probability <= 1);
+  }
 };
 
 template <>

@@ -3,6 +3,7 @@
 // trajectory.csv, the due rows of metrics.csv, and the facts of the summary.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -117,6 +118,8 @@ class RecordTables {
 
   const RunFacts& facts() const { return facts_; }
   RunFacts& facts() { return facts_; }
+  /// How likely the rows so far have found an object of the newest target.
+  double detection_probability() const { return measures_.detection().probability(); }
   /// What the team has achieved so far; costs a pass over all cells. @pre begun()
   TeamFigures team_figures() const { return measures_.figures(); }
 

@@ -137,7 +137,8 @@ void Recorder::advance(Instant now, Outbox& out) {
   }
   if (me_.knows_mission()) acknowledge(now, out);
   if (ending_.finished && follower().over()) {
-    me_.publish(Bus::kWorld, RecordAck{{}, true}, row_.tick - 1, out);  // to the coordinator
+    me_.publish(Bus::kWorld, RecordAck{{}, true, tables_.detection_probability()}, row_.tick - 1,
+                out);  // to the coordinator
   }
 }
 
@@ -167,7 +168,7 @@ void Recorder::acknowledge(Instant now, Outbox& out) {
   next_ack_ = now + (hole ? kImpatientAckPeriod : kAckPeriod);
   if (!tables_.good()) return;
   acked_ = recorded;
-  me_.publish(Bus::kCommand, RecordAck{}, recorded, out);
+  me_.publish(Bus::kCommand, RecordAck{{}, false, tables_.detection_probability()}, recorded, out);
 }
 
 bool Recorder::abandoned(Instant now) const {

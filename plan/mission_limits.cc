@@ -90,9 +90,6 @@ bool fits(const ControlLaw& law) {
   return law.perturbation == Perturbation::kConstant || law.noise_ceiling >= law.noise_intensity;
 }
 
-/// Lanes are in a plane.
-bool fits(LawKind kind, const Box& domain) { return kind != LawKind::kMow || domain.planar(); }
-
 /// Some steps are needed between two halvings.
 bool memory_fits(const ControlLaw& law, double dt_s) {
   return law.memory_half_life_s == 0 ||
@@ -256,7 +253,7 @@ bool within_limits(const Mission& mission) {
   return each.ok && fits(mission.domain) && fit_together(mission.basis, mission.domain) &&
          is_target(mission.target_coefficients, mission.cosine_target, mission) &&
          fits(mission.basis, mission) && fits(mission.law) && fits(mission.timing) &&
-         fits(mission.law.kind, mission.domain) && memory_fits(mission.law, mission.timing.dt_s) &&
+         memory_fits(mission.law, mission.timing.dt_s) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
          is_team(mission) && are_kinds(mission) && bodies_fit(mission) &&

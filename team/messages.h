@@ -258,6 +258,7 @@ struct Beacon {
 struct RecordAck {
   Header header;
   bool last = false;  ///< the mission is over, and the logger leaves: this is its last message
+  double detection_probability = 0;  ///< of the recorded ticks, core/measure/detection.h
 };
 /// Lockstep: how many ticks the world may be ahead of the logger's acknowledgement, unless it has
 /// given that logger up.

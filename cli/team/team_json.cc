@@ -75,6 +75,8 @@ std::string team_json(const TeamPicture& at) {
       {"world_tick", at.tick},
       {"ergodic_metric", or_null(at.ergodic_metric.has_value(), at.ergodic_metric.value_or(0))},
       {"free_domain", at.free_domain},
+      {"detection_probability",
+       or_null(at.detection_probability.has_value(), at.detection_probability.value_or(0))},
       {"agents_alive", at.agents_alive},
       {"agents_expected", at.agents_expected},
       {"missed_deadlines", at.missed_deadlines},

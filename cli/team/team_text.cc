@@ -170,6 +170,9 @@ std::string second_line(const TeamPicture& at) {
     text += number(", phi^2 %.4g", *at.ergodic_metric);
     text += at.free_domain ? " in modes of the free domain (median)" : " (median)";
   }
+  if (at.detection_probability)
+    text += number(", found %.1f %%", 100 * *at.detection_probability) +
+            " of objects drawn from the target";
   if (at.target) text += ", " + target_text(at);
   if (at.end)
     text += ", end of amendment " + std::to_string(at.end->number) +

@@ -79,6 +79,10 @@ void TeamView::on(const WorldState& world, const Arrival& arrival) {
   }
 }
 
+void TeamView::on(const RecordAck& ack, const Arrival& arrival) {
+  if (arrival.fresh) detection_probability_ = ack.detection_probability;
+}
+
 Instant TeamView::last_sign(const Author& author) const {
   return me_.liveness().last_sign(author).value_or(since_);
 }
@@ -271,6 +275,7 @@ TeamPicture TeamView::picture(Instant now) const {
       !over() && (follower().mission() ? is_held(follower().holds(), picture.tick) : team_paused_);
   picture.state = follower().revision() < 0 ? team_state_ : std::optional(follower().state());
   picture.reason = follower().plan_problem().value_or(follower().reason());
+  picture.detection_probability = detection_probability_;
   picture.missed_deadlines = missed_deadlines_;
   picture.skipped_ticks = skipped_ticks_;
   picture.clamped_commands = clamped_commands_;

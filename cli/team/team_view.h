@@ -76,6 +76,8 @@ struct TeamPicture {
   double dt_s = 0;
   std::optional<double> ergodic_metric;  ///< median of the agents' values, in cosines or …
   bool free_domain = false;              ///< … in the modes of the free domain
+  /// How likely an object drawn from the target has been found; nothing: no logger has said so.
+  std::optional<double> detection_probability;
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
@@ -117,6 +119,7 @@ class TeamView {
   void on(const AgentStatus& status, const Arrival& arrival);
   void on(const TeamStatus& team, const Arrival& arrival);
   void on(const WorldState& world, const Arrival& arrival);
+  void on(const RecordAck& ack, const Arrival& arrival);
   const MissionFollower& follower() const { return me_.follower(); }
   Instant last_sign(const Author& author) const;
   AgentRow row_of(const Author& author, bool member, Instant now) const;
@@ -138,7 +141,8 @@ class TeamView {
   std::map<AgentId, Header> processes_;                   // the newest message of each
   std::map<AgentId, std::pair<Tick, Vehicle>> vehicles_;  // each one's newest state
   std::string coordinator_host_;
-  std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
+  std::optional<double> detection_probability_;  // from the newest RECORD_ACK
+  std::optional<MissionState> team_state_;       // from TEAM_STATUS, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;
   bool team_paused_ = false;  // from TEAM_STATUS
 };

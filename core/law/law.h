@@ -23,13 +23,14 @@ struct LawNeeds {
   bool team = false;     ///< LawInput::team
 };
 
-/// An agent at a tick that counts.
+/// An agent at a tick that counts. Its team are all agents whose coverage counts and that were not
+/// recalled, itself among them. Agents that rest by plan stay in it.
 struct LawInput {
   AgentId agent;
   Tick tick;
   const Eigen::Vector3d& x_m;     ///< its place
   const BasisAt& at;              ///< the basis there
-  std::span<const AgentId> team;  ///< all agents whose coverage counts and that move, ascending
+  std::span<const AgentId> team;  ///< as above, ascending
 };
 
 class Law {
@@ -47,7 +48,8 @@ class Law {
   virtual void set_law(const LawNumbers& numbers) = 0;
 
   /// The velocity that the agent wants [m/s], at most u_max but for noise and contraction. In a
-  /// plane v_z is 0. Does not allocate while team and target stay the same.
+  /// plane v_z is 0. While team and target stay the same, it allocates only for a
+  /// new way around walls.
   virtual Eigen::Vector3d wanted_mps(const LawInput& input) = 0;
   /// B of (6) for the last wanted_mps() [1/m]; 0 for a law without.
   virtual Eigen::Vector3d spectral_gradient() const { return {0, 0, 0}; }

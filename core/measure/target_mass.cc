@@ -8,8 +8,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/base/rings.h"
-
 namespace ergocast {
 namespace {
 
@@ -72,10 +70,10 @@ void empty_walls(const Rings& walls, const Cells& cells, std::vector<double>& ma
 
 }  // namespace
 
-std::vector<double> target_mass(const Mission& mission, const Coefficients& target,
+std::vector<double> target_mass(const Basis& basis, const Rings& walls, const Coefficients& target,
                                 const Cells& cells) {
-  std::vector<double> mass = densities(mission.basis, target, cells);
-  if (!mission.walls.empty() && mission.domain.planar()) empty_walls(mission.walls, cells, mass);
+  std::vector<double> mass = densities(basis, target, cells);
+  if (!walls.empty() && cells.domain.planar()) empty_walls(walls, cells, mass);
   const double total = std::accumulate(mass.begin(), mass.end(), 0.0);
   if (!(total > 0) || !std::isfinite(total)) return std::vector<double>(mass.size(), 0);
   for (double& cell : mass) cell /= total;

@@ -9,15 +9,15 @@
 
 #include <vector>
 
+#include "core/base/rings.h"
 #include "core/basis/basis.h"
 #include "core/measure/cells.h"
-#include "core/mission/mission.h"
 
 namespace ergocast {
 
 /// One mass a cell; all 0 if p is nowhere above 0.
-/// @param target  μ in the basis (2), mode_count() entries
-std::vector<double> target_mass(const Mission& mission, const Coefficients& target,
+/// @param target  μ in `basis`, which is (2); mode_count() entries
+std::vector<double> target_mass(const Basis& basis, const Rings& walls, const Coefficients& target,
                                 const Cells& cells);
 
 }  // namespace ergocast

@@ -15,7 +15,8 @@ TeamMeasures::TeamMeasures(const Mission& mission)
 }
 
 void TeamMeasures::begin_target(const Mission& mission, const Coefficients& target, Tick counted) {
-  detection_.begin_target(target_mass(mission, target, detection_.cells()), counted);
+  detection_.begin_target(target_mass(mission.basis, mission.walls, target, detection_.cells()),
+                          counted);
   std::ranges::fill(time_, 0.0);
 }
 

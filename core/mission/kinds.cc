@@ -97,6 +97,17 @@ const std::string& name_of_kind(const Mission& mission, int kind) {
   return known == nullptr ? kNone : known->name;
 }
 
+const VehicleLimits& vehicle_of(const Mission& mission, int kind) {
+  const AgentKind* const own = kind_of(mission, kind);
+  return own != nullptr && own->vehicle ? *own->vehicle : mission.vehicle;
+}
+
+double speed_limit_mps(const Mission& mission, int kind) {
+  const AgentKind* const own = kind_of(mission, kind);
+  return own != nullptr && own->speed_limit_mps > 0 ? own->speed_limit_mps
+                                                    : mission.speed_limit_mps;
+}
+
 ControlLaw law_of(const Mission& mission, int kind) {
   ControlLaw law = mission.law;
   if (const AgentKind* const own = kind_of(mission, kind)) {

@@ -62,6 +62,11 @@ std::optional<int> kind_named(const Mission& mission, const std::string& name);
 /// The name of a kind; empty if the mission has no kind `kind`.
 const std::string& name_of_kind(const Mission& mission, int kind);
 
+/// The vehicle of an agent of `kind`, and its speed limit [m/s], 0: none. They are the scenario's
+/// where the kind has none of its own.
+const VehicleLimits& vehicle_of(const Mission& mission, int kind);
+double speed_limit_mps(const Mission& mission, int kind);
+
 /// The law that an agent of `kind` follows. The look-ahead still uses the team's u_max_mps, so that
 /// all agents compute the same forecast.
 ControlLaw law_of(const Mission& mission, int kind);

@@ -84,12 +84,8 @@ bool stands(const Motion& motion, const Eigen::Vector3d& v_mps) {
 }
 
 Motion motion_of_kind(const Mission& mission, int kind) {
-  Motion motion{mission.vehicle, mission.speed_limit_mps, mission.timing.dt_s, mission.domain};
-  if (kind < 0 || kind >= std::ssize(mission.kinds)) return motion;
-  const AgentKind& own = mission.kinds[static_cast<std::size_t>(kind)];
-  if (own.vehicle) motion.vehicle = *own.vehicle;
-  if (own.speed_limit_mps > 0) motion.speed_limit_mps = own.speed_limit_mps;
-  return motion;
+  return {vehicle_of(mission, kind), speed_limit_mps(mission, kind), mission.timing.dt_s,
+          mission.domain};
 }
 
 Motion motion_of(const Mission& mission, AgentId id) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Looks the way's length up in a table made once, and follows it from one visible cell to the next.
+// Compares the time left with the time that the way takes, and brakes at its end.
 #include "core/motion/way_home.h"
 
 #include <algorithm>
@@ -26,8 +26,6 @@ constexpr double kCircles = 3;
 constexpr double kCorners = 3;
 /// Standard deviations of a way that is disturbed.
 constexpr double kWayDeviations = 4;
-/// The share of a clearance that rounding may take.
-constexpr double kRounded = 1e-9;
 /// The cosine of the angle beyond which a vehicle turns before it goes on.
 constexpr double kAhead = 0.99;
 /// The same for a fixed wing, if it does not turn farther in a tick.
@@ -79,64 +77,18 @@ WayHome::WayHome(const Mission& mission, AgentId id)
                             std::cos(std::min(motion_.vehicle.max_turn_radps * motion_.dt_s,
                                               std::numbers::pi / 2)))),
       drift_(kWayDeviations * mission.disturbance_intensity / speed_mps_),
-      walls_(mission.walls),
+      way_(mission, motion_),
       detour_(static_cast<std::int64_t>(std::ceil((kPatience_s + slack_s_) / motion_.dt_s)),
               speed_mps_ * motion_.dt_s) {
-  if (walls_.empty()) return;
-  const double kept_m = kept_from_walls_m(mission, motion_);
-  region_.emplace(walls_, mission.domain, kept_m);
-  seen_m_ = kept_m * (1 - kRounded);
-  if (const auto cell = region_->free_cell_near(home_m_.head<2>()))
-    ways_m_ = region_->ways_m(*cell);
+  way_.lead_to(home_m_);
 }
 
 void WayHome::note_zones(const Mission& mission, std::vector<Zone> zones) {
-  if (!mission.domain.planar() || zones == zones_) return;
-  zones_ = std::move(zones);
-  begun_ = false;  // a way that was closed may be open again
-  cell_.reset();
-  const double kept_m = kept_from_zones_m(mission, motion_);
-  seen_zones_m_ = kept_m * (1 - kRounded);
-  if (walls_.empty()) region_.reset();
-  if (!region_ && !zones_.empty()) region_.emplace(walls_, mission.domain, kept_m);
-  open_.clear();
-  ways_m_.clear();
-  if (!region_) return;
-  for (int cell = 0; cell < region_->cells() && !zones_.empty(); ++cell) {
-    const StraightWay place{on_ground(region_->center_m(cell)), {0, 0, 0}};
-    open_.push_back(std::ranges::all_of(
-        zones_, [&](const Zone& zone) { return beside_m(zone, place) >= kept_m; }));
-  }
-  if (const auto cell = open_cell_near(home_m_.head<2>()))
-    ways_m_ = region_->ways_m({*cell}, open_);
-}
-
-/// The nearest cell that is free and outside of zones; nothing if none is near.
-std::optional<int> WayHome::open_cell_near(const Eigen::Vector2d& x_m) const {
-  if (open_.empty()) return region_->free_cell_near(x_m);
-  std::optional<int> best;
-  double best_m2 = std::numeric_limits<double>::infinity();
-  region_->for_cells_near(x_m, [&](int cell) {
-    const double apart_m2 = (region_->center_m(cell) - x_m).squaredNorm();
-    if (!open_[static_cast<std::size_t>(cell)] || apart_m2 >= best_m2) return;
-    best_m2 = apart_m2;
-    best = cell;
-  });
-  return best;
-}
-
-double WayHome::way_m(const Eigen::Vector3d& x_m) const {
-  if (!region_) return length_of(home_m_ - x_m);
-  const Eigen::Vector2d here_m = x_m.head<2>(), there_m = home_m_.head<2>();
-  const auto from = open_cell_near(here_m), to = open_cell_near(there_m);
-  if (!from || !to || ways_m_.empty()) return std::numeric_limits<double>::infinity();
-  return length_of(on_ground(region_->center_m(*from) - here_m)) +
-         ways_m_[static_cast<std::size_t>(*from)] +
-         length_of(on_ground(region_->center_m(*to) - there_m));
+  if (way_.note_zones(mission, std::move(zones))) begun_ = false;  // a way may be open again
 }
 
 double WayHome::needed_s(const Eigen::Vector3d& x_m) const {
-  const double travel_s = way_m(x_m) / speed_mps_;
+  const double travel_s = way_.length_m(x_m) / speed_mps_;
   if (std::isinf(travel_s)) return travel_s;  // 0 · ∞ is not a number
   return travel_s + drift_ * std::sqrt(travel_s) + slack_s_;
 }
@@ -153,44 +105,6 @@ bool WayHome::begun(Tick counted, const Eigen::Vector3d& x_m) {
   return begun_;
 }
 
-bool WayHome::clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) const {
-  const Segment way{x_m.head<2>(), to_m};
-  bool clear = true;
-  for_segments(walls_,
-               [&](const Segment& edge) { clear = clear && distance_m(way, edge) >= seen_m_; });
-  const StraightWay seen{x_m, on_ground(to_m - x_m.head<2>())};
-  return clear && std::ranges::all_of(zones_, [&](const Zone& zone) {
-           return beside_m(zone, seen) >= seen_zones_m_;
-         });
-}
-
-/// The visible cell around `x_m` through which the way is shortest.
-std::optional<int> WayHome::first_cell(const Eigen::Vector3d& x_m) const {
-  std::optional<int> best;
-  double best_m = std::numeric_limits<double>::infinity();
-  region_->for_cells_near(x_m.head<2>(), [&](int cell) {
-    const Eigen::Vector2d center_m = region_->center_m(cell);
-    const double way_m =
-        length_of(on_ground(center_m) - x_m) + ways_m_[static_cast<std::size_t>(cell)];
-    if (way_m >= best_m || !clear(x_m, center_m)) return;
-    best_m = way_m;
-    best = cell;
-  });
-  return best ? best : open_cell_near(x_m.head<2>());
-}
-
-/// The station, or the farthest visible cell on the way to it.
-Eigen::Vector3d WayHome::next_place_m(const Eigen::Vector3d& x_m) {
-  if (!region_ || ways_m_.empty() || clear(x_m, home_m_.head<2>())) return home_m_;
-  if (!cell_ || !clear(x_m, region_->center_m(*cell_))) cell_ = first_cell(x_m);
-  if (!cell_) return home_m_;
-  for (int next = region_->nearer(ways_m_, *cell_);
-       next != *cell_ && clear(x_m, region_->center_m(next));
-       next = region_->nearer(ways_m_, *cell_))
-    cell_ = next;
-  return on_ground(region_->center_m(*cell_));
-}
-
 /// The speed at which it still stops at the end of the way: with inertia it brakes at half of A.
 double WayHome::speed_mps(double way_m) const {
   const double dt_s = motion_.dt_s;
@@ -201,7 +115,7 @@ double WayHome::speed_mps(double way_m) const {
 
 Eigen::Vector3d WayHome::velocity_mps(const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps) {
   const Eigen::Vector3d at_m = anchor_m(motion_, x_m, v_mps);
-  Eigen::Vector3d to_m = next_place_m(at_m) - at_m;
+  Eigen::Vector3d to_m = way_.next_place_m(at_m) - at_m;
   if (motion_.domain.planar()) to_m.head<2>() = detour_.round(at_m.head<2>(), to_m.head<2>());
   const double apart_m = length_of(to_m), way_m = length_of(home_m_ - at_m);
   if (apart_m == 0) return {0, 0, 0};

@@ -7,27 +7,23 @@
 //
 //   (R − t) dt ≤ w / v + slack,   v: home_speed_mps()
 //
-// and then it does not turn back. Without walls w is the straight way. Among walls it leads along
-// the cells of core/motion/free_region.h, and is never too short. The agent moves straight to the
-// farthest of these cells that it can see. The slack is 2 dt and what a vehicle loses: with inertia
-// 3 v/A, to turn round and to brake; to turn on the spot π/ω, and for a fixed wing three circles,
-// three times as much among walls; and what disturbances, old commands in real time and a late
-// answer may cost. It does not contain detours around teammates: reserve_s is for those. On a plane
-// the agent goes round bodies that stand for good, core/motion/detour.h.
+// and then it does not turn back. The way leads around walls, core/motion/way_around.h. The slack
+// is 2 dt and what a vehicle loses: with inertia 3 v/A, to turn round and to brake; to turn on the
+// spot π/ω, and for a fixed wing three circles, three times as much among walls; and what
+// disturbances, old commands in real time and a late answer may cost. It does not contain detours
+// around teammates: reserve_s is for those. On a plane the agent goes round bodies that stand for
+// good, core/motion/detour.h.
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "core/base/ids.h"
-#include "core/base/rings.h"
 #include "core/mission/mission.h"
 #include "core/mission/zones.h"
 #include "core/motion/detour.h"
-#include "core/motion/free_region.h"
 #include "core/motion/vehicle.h"
+#include "core/motion/way_around.h"
 
 namespace ergocast {
 
@@ -65,11 +61,6 @@ class WayHome {
   Eigen::Vector3d velocity_mps(const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps);
 
  private:
-  double way_m(const Eigen::Vector3d& x_m) const;
-  bool clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) const;
-  std::optional<int> open_cell_near(const Eigen::Vector2d& x_m) const;
-  std::optional<int> first_cell(const Eigen::Vector3d& x_m) const;
-  Eigen::Vector3d next_place_m(const Eigen::Vector3d& x_m);
   double speed_mps(double way_m) const;
   Eigen::Vector3d turning_mps(const Eigen::Vector3d& to_m, double way_m,
                               const Eigen::Vector3d& v_mps) const;
@@ -80,14 +71,7 @@ class WayHome {
   double speed_mps_, slack_s_;
   double ahead_;  // the cosine of the angle within which it goes on
   double drift_;  // 4 σ / v; times √ of the way's time it is what disturbances cost
-  Rings walls_;
-  std::vector<Zone> zones_;
-  double seen_m_ = 0;                 // how far a straight way keeps from walls
-  double seen_zones_m_ = 0;           // and from zones
-  std::optional<FreeRegion> region_;  // where there are walls or zones
-  std::vector<bool> open_;            // its cells outside of zones; empty: all
-  std::vector<double> ways_m_;        // from its cells to that of the station
-  std::optional<int> cell_;           // of the way, the farthest that can be seen
+  WayAround way_;
   Detour detour_;
   bool begun_ = false;
 };

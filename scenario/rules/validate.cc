@@ -191,8 +191,6 @@ class Validator {
     ceiling();
     contraction();
     memory();
-    if (law.kind() == proto::Law::MOW && is_box())
-      problem("law.kind", "MOW needs a plane, and the domain is a box", "write COVER");
   }
 
   /// Some steps are needed between two halvings.

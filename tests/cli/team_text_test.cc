@@ -72,6 +72,16 @@ TEST(TeamTable, ShowsWhichBodyBlocksAnAgentOnceItLasts) {
   EXPECT_EQ(condition_text(row), "silent 0 s");
 }
 
+TEST(TeamTable, SaysWhatHasBeenFoundOnceALoggerHasSaidSo) {
+  TeamPicture picture = running_team();
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["detection_probability"], nullptr);
+  picture.detection_probability = 0.4312;
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["detection_probability"], 0.4312);
+  EXPECT_EQ(lines_of(team_table(picture, false))[1],
+            "2 of 3 agents alive, phi^2 0.00123 (median), found 43.1 % of objects drawn from the "
+            "target, unauthenticated");
+}
+
 TEST(TeamTable, ShowsEverythingInLinesThatFit) {
   EXPECT_EQ(
       team_table(running_team(), false),

@@ -129,6 +129,15 @@ TEST_F(TeamViewTest, KnowsTheNewestPlaceOfEachVehicle) {
   EXPECT_EQ(row(0, at(300ms)).moves, true);
 }
 
+TEST_F(TeamViewTest, KnowsWhatTheLoggerSaysHasBeenFound) {
+  hear_mission(at(0s));
+  EXPECT_FALSE(view_.picture(at(0s)).detection_probability);
+  RecordAck ack{{kRun, kLogger, kLoggerLife, next_sequence(), 7}};
+  ack.detection_probability = 0.25;
+  give(view_, ack, at(0s));
+  EXPECT_EQ(view_.picture(at(0s)).detection_probability, 0.25);
+}
+
 TEST_F(TeamViewTest, IsCompleteOnceTheMissionAndEveryMemberAreKnown) {
   EXPECT_FALSE(view_.complete());
   hear_all(at(0s), 0, 2);

@@ -53,7 +53,7 @@ TEST(TargetMass, IsTheDensityOfTheModes) {
   Mission mission = square();
   mission.target_coefficients[mission.basis.modes_y] = 0.25;  // p V = 1 + ½ cos(πx/100)
   const Cells cells = measure_cells(mission);
-  const auto mass = target_mass(mission, mission.target_coefficients, cells);
+  const auto mass = target_mass(mission.basis, mission.walls, mission.target_coefficients, cells);
   EXPECT_NEAR(sum(mass), 1, 1e-12);
   const auto each = 1 / static_cast<double>(cells.total());
   EXPECT_NEAR(mass[cells.cell_of({0.1, 50, 0})] / each, 1.5, 1e-3);
@@ -65,7 +65,7 @@ TEST(TargetMass, IsNotInWallsButInTheirRooms) {
   mission.walls = {{{20, 20}, {80, 20}, {80, 80}, {20, 80}},
                    {{40, 40}, {60, 40}, {60, 60}, {40, 60}}};
   const Cells cells = measure_cells(mission);
-  const auto mass = target_mass(mission, mission.target_coefficients, cells);
+  const auto mass = target_mass(mission.basis, mission.walls, mission.target_coefficients, cells);
   EXPECT_NEAR(sum(mass), 1, 1e-12);
   EXPECT_EQ(mass[cells.cell_of({30, 50, 0})], 0);
   EXPECT_EQ(mass[cells.cell_of({50, 30, 0})], 0);

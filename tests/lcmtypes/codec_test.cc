@@ -255,7 +255,9 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(wire.vehicles[1].velocity_mps[1], -11);
   EXPECT_EQ(wire.vehicles[1].velocity_mps[2], 1e-300);
 
-  expect_header(read_by_lcm<record_ack_t>(encoded(record_ack())).ack_header, kLogger);
+  const auto ack = read_by_lcm<record_ack_t>(encoded(record_ack()));
+  expect_header(ack.ack_header, kLogger);
+  EXPECT_EQ(ack.detection_probability, 0.25);
 }
 
 TEST(Codec, EveryMessageComesBackAsTheSameMessage) {

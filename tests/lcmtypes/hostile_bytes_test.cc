@@ -291,6 +291,8 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<Part>(mission_part(), [](Part& m) { m.header.sender = kOperator; }),
       changed<TeamStatus>(team_status(), [](TeamStatus& m) { m.header.sender = 0; }),
       changed<RecordAck>(record_ack(), [](RecordAck& m) { m.header.sender = kWorld; }),
+      changed<RecordAck>(record_ack(), [](RecordAck& m) { m.detection_probability = 1.5; }),
+      changed<RecordAck>(record_ack(), [](RecordAck& m) { m.detection_probability = -0.5; }),
       changed<Command>(command(), [](Command& m) { m.header.sender = kWorld; }),
       changed<Command>(command(), [](Command& m) { m.header.sender = kMaxAgents; }),
       changed<Command>(command(), [](Command& m) { m.header.tick = -2; }),

@@ -177,7 +177,7 @@ inline Command command() {
   return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}, 0xfeedfacecafebeef};
 }
 
-inline RecordAck record_ack() { return {header_of_sender(kLogger)}; }
+inline RecordAck record_ack() { return {header_of_sender(kLogger), true, 0.25}; }
 
 inline Digest digest() {
   Digest m;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -80,6 +81,15 @@ inline std::vector<Tick> acks(const Outbox& out) {
     }
   }
   return ticks;
+}
+
+/// What the last acknowledgement in `out` says has been found; nothing: there is none.
+inline std::optional<double> found(const Outbox& out) {
+  std::optional<double> found;
+  for (const Outgoing& outgoing : out)
+    if (const auto* ack = std::get_if<RecordAck>(&outgoing.message))
+      found = ack->detection_probability;
+  return found;
 }
 
 inline Mission realtime_mission() {

@@ -237,8 +237,9 @@ TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   Coefficients sums = Coefficients::Zero(20);
   const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
   std::vector<double> expected;
+  std::optional<double> acknowledged;
   for (Tick tick = 0; tick <= 25; ++tick) {
-    record.deliver(state_of(tick));
+    acknowledged = found(record.deliver(state_of(tick)));
     const Eigen::Vector3d x_m(100 + static_cast<double>(tick), 500, 0);
     sums += 0.1 * basis_values(x_m, mission.domain, mission.basis);
     if (tick == 0 || tick == 10 || tick == 20 || tick == 24) {
@@ -254,6 +255,8 @@ TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   EXPECT_EQ(columns(rows[1])[0], "10");
   EXPECT_EQ(columns(rows[3])[0], "24");
   EXPECT_EQ(number(rows[1], 1), 1.0);
+  EXPECT_GT(number(rows[3], 3), 0);
+  EXPECT_EQ(acknowledged, number(rows[3], 3)) << "the last acknowledgement says what was found";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     // The order of summation differs: 25 samples of 20 modes.
     EXPECT_NEAR(number(rows[i], 2), expected[i], 1e-13 * expected[i]);
