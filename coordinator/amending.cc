@@ -97,6 +97,7 @@ bool Amending::may_name(const Amend& amend, const TickWatch& ticks) const {
   if (amend.kind == AmendmentKind::kResume) return is_open(list_.holds);
   if (amend.kind == AmendmentKind::kEnd)
     return list_.ends.size() < kMaxEnds && amend.delay_ticks == 0;
+  if (amend.kind == AmendmentKind::kReopen) return amend.delay_ticks == 0;
   return true;
 }
 
@@ -131,6 +132,7 @@ bool Amending::possible(const Wish& wish, const Mission& mission, Tick newest, T
                       newest, from, target_hash);
   if (wish.kind == AmendmentKind::kLaw)
     return may_follow(list_.laws, wish.law, plans_law(mission), newest, from, law_hash);
+  if (wish.kind == AmendmentKind::kReopen) return can_reopen(list_, wish.number, from);
   if (wish.kind != AmendmentKind::kEnd) return true;
   const auto agents = team.places.of(team.roster);
   return end_rules_.problem(mission, list_, team.places.tick(), from, wish.tick_count, agents) ==
@@ -176,6 +178,11 @@ std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Missio
     auto law = decode_law(*content, mission);
     if (!law) return std::nullopt;
     wish.law = *std::move(law);
+  }
+  if (wish.kind == AmendmentKind::kReopen) {
+    const auto number = decode_reopening(*content);
+    if (!number) return std::nullopt;
+    wish.number = *number;
   }
   if (wish.kind == AmendmentKind::kZone) {
     const auto& [refused, since] = refused_zone_;
@@ -274,6 +281,8 @@ void Amending::list_wish(Tick now, Tick tick, Wish wish) {
       return name_end(list_, tick + delay, wish.tick_count);
     case AmendmentKind::kZone:
       return name_zone(list_, now, tick, delay, std::move(wish.zone));
+    case AmendmentKind::kReopen:
+      return name_reopening(list_, tick, wish.number);
     default:
       return name_pause(list_, tick + delay);
   }

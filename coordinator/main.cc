@@ -110,6 +110,9 @@ class MissionLog {
       if (one.number < logged_amendments_) continue;
       if (one.kind == AmendmentKind::kZone) {
         log_zone(one, coordinator.amendments().zones);
+      } else if (one.kind == AmendmentKind::kReopen) {
+        spdlog::info("the zone of amendment {} is cancelled: it ends at tick {} (amendment {})",
+                     one.hash, one.from, named_text(one));
       } else {
         spdlog::info("mission {} from tick {} on (amendment {})", effect_of(one.kind), one.from,
                      named_text(one));
@@ -126,7 +129,7 @@ class MissionLog {
                           named_text(amendment));
     spdlog::info(
         "zone {} is closed from tick {} on, and free from tick {} until tick {} (amendment {})",
-        to_hex(amendment.hash), zone->closed, zone->from, zone->until, named_text(amendment));
+        to_hex(amendment.hash), zone->closed, zone->from, zone->end(), named_text(amendment));
   }
 
   /// "3, by anna@base"

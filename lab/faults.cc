@@ -42,6 +42,7 @@ constexpr FaultField kFields[] = {
     {"lasting_share", &Faults::lasting_share, 1},
     {"zones_per_s", &Faults::zones_per_s, 1},
     {"laws_per_s", &Faults::laws_per_s, 1},
+    {"cancels_per_s", &Faults::cancels_per_s, 1},
 };
 
 /// Random streams, so that one kind of fault does not change what another draws.
@@ -56,7 +57,8 @@ enum Stream : std::uint32_t {
   kTargets,
   kEnds,
   kZones,
-  kLaws
+  kLaws,
+  kCancels
 };
 
 }  // namespace
@@ -112,6 +114,7 @@ Faults drawn(std::uint64_t seed) {
   if (random.coin()) faults.ends_per_s = random.log_uniform(0.02, 0.1);
   if (random.coin()) faults.zones_per_s = random.log_uniform(0.03, 0.2);
   if (random.coin()) faults.laws_per_s = random.log_uniform(0.03, 0.3);
+  if (random.coin()) faults.cancels_per_s = random.log_uniform(0.05, 0.5);
   return faults;
 }
 
@@ -179,6 +182,8 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
        [](RandomStream& random) { return std::pair(kZone, random.word()); });
   draw(kLaws, faults.laws_per_s, 0,
        [](RandomStream& random) { return std::pair(kLaw, random.word()); });
+  draw(kCancels, faults.cancels_per_s, 0,
+       [](RandomStream& random) { return std::pair(kCancel, random.word()); });
   std::stable_sort(all.begin(), all.end(),
                    [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;

@@ -39,6 +39,7 @@ struct Faults {
   double departure_share = 0;     ///< … or, with this share of recalls, out of the mission
   double zones_per_s = 0;         ///< an operator sends the team out of a zone
   double laws_per_s = 0;          ///< an operator changes speed and noise of the law
+  double cancels_per_s = 0;       ///< an operator undoes a target, an end, a law or a zone
   double downtime_max_s = 0;      ///< until a crashed process is started again, uniform
   double clock_rate_error = 0;    ///< a process's clock runs at a rate of 1 ± so much, uniform
   double clock_offset_max_s = 0;  ///< and started up to so long before, uniform
@@ -83,13 +84,15 @@ struct FaultEvent {
     kTarget,
     kEnd,
     kZone,
-    kLaw
+    kLaw,
+    kCancel
   };
   Kind kind;
   double at_s;  ///< after the start of the mission
   double lasts_s;
   std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall:
-                      ///< which agent; target, end, zone or law: which one
+                      ///< which agent; target, end, zone, law or
+                      ///< what is undone: which one
 };
 
 /// The events of `horizon_s` seconds, by time.

@@ -19,7 +19,7 @@ namespace {
 bool knows_closed_zone(const TableView& agent, Tick tick) {
   return agent.amendments != nullptr &&
          std::ranges::any_of(agent.amendments->zones, [tick](const Zone& zone) {
-           return zone.closed <= tick && tick <= zone.until;
+           return zone.closed <= tick && tick <= zone.end();
          });
 }
 
@@ -88,14 +88,20 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
     if (!truth_.receive(*part)) return;
     const Amendments& list = truth_.amendments();
     shifted_ = shifted_ || !list.targets.empty() || !list.ends.empty();
-    for (const Zone& zone : list.zones) zone_revisions_.try_emplace(zone.number, truth_.revision());
+    for (const Zone& zone : list.zones) {
+      zone_revisions_.try_emplace(zone.number, truth_.revision());
+      zones_.insert_or_assign(zone.number, zone);
+    }
     note_ends();
+    note_end_of(list);
     return check_closed_numbers(t_s);
   }
   if (const auto* command = std::get_if<Command>(&outgoing.message)) {
     // A repeated command was checked before.
     const bool answers = speaker != nullptr && command->header.tick == speaker->answered;
-    return answers ? check(t_s, *command, *speaker) : void();
+    if (!answers) return;
+    check_ended(t_s, *command, *speaker);
+    return check(t_s, *command, *speaker);
   }
   if (const auto* block = std::get_if<Contribution>(&outgoing.message)) {
     return check(t_s, *block, outgoing.relayer, speaker);
@@ -110,6 +116,7 @@ void Invariants::check(double t_s, const WorldState& world) {
   last_tick_ = std::max(last_tick_, world.header.tick);
   if (keeps_distance(mission_)) check_distances(t_s, world);
   check_paused(t_s, world);
+  check_ended(t_s, world);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     places_m_[vehicle.id] = vehicle.position_m;
     if (!mission_.walls.empty()) check_wall(t_s, vehicle);

@@ -50,6 +50,7 @@ enum class Invariant : std::uint8_t {
   kNothingCountsWhilePaused,
   kWhatIsNotPausedCounts,
   kNobodyMovesWhilePaused,
+  kNobodyMovesAfterTheEnd,
   kAverageOfWhatIsHeld,
   kSamplesAreTrue,
   kForecastOfWhatIsKnown,
@@ -95,6 +96,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kNothingCountsWhilePaused, "nothing counts while paused or at rest"},
         {Invariant::kWhatIsNotPausedCounts, "every tick counts unless paused or at rest"},
         {Invariant::kNobodyMovesWhilePaused, "no vehicle moves while the mission is paused"},
+        {Invariant::kNobodyMovesAfterTheEnd, "no vehicle moves after the end"},
         {Invariant::kAverageOfWhatIsHeld, "c_k = sum S / sum elapsed of what is held"},
         {Invariant::kSamplesAreTrue,
          "each sample is f at its place against the target of its tick"},
@@ -164,12 +166,15 @@ class Invariants {
   /// from each wall as the mission requires; bodies are as far apart as required, in each tick; |u|
   /// ≤ the u_max that holds, or |v| ≤ the speed limit where a distance is kept or on the way home;
   /// in lockstep agents with a station are there from the reserve before the end on, or where
-  /// others may be in the way, at the last tick, as near as vehicles that stand for good let them;
-  /// |S| ≤ S_00 = steps · dt, or with a half-life the time that is remembered, which is halved at
-  /// its ticks; while the mission is paused no body moves once it has braked; a digest matches what
-  /// its sender holds; each entry of a received digest gets at most one answer.
+  /// others may be in the way, at the last tick, unless a zone may have delayed them, as near as
+  /// vehicles that stand for good let them; |S| ≤ S_00 = steps · dt, or with a half-life the time
+  /// that is remembered, which is halved at its ticks; while the mission is paused no body moves
+  /// once it has braked, and after the end none moves; a digest matches what its sender holds; each
+  /// entry of a received digest gets at most one answer.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
+  /// An agent that has finished has sent a command: it may only stop its vehicle.
+  void commanded_after(double t_s, const Command& command);
   /// An agent has received a digest.
   void digest_received(const Author& listener, const Digest& digest);
   /// Bytes were decoded: whole messages are accepted, damaged ones refused.
@@ -179,8 +184,8 @@ class Invariants {
   void received(const TableView& listener, const Message& message);
   /// An agent has begun the tick `holder.answered`, and may not have answered it yet. It has more
   /// steps than before if the tick counts, and no more if not, or if it was recalled. In lockstep a
-  /// recalled point is at home after the time that the longest way takes. Call it for each tick,
-  /// before the agent receives anything else.
+  /// recalled point is at home after the time that the longest way takes, if no zone is closed.
+  /// Call it for each tick, before the agent receives anything else.
   void began(double t_s, const TableView& holder);
   /// An agent has answered a tick. What it holds never shrinks; no author's steps exceed the ticks
   /// so far that count; c_k is Σ S / Σ elapsed of what it holds; c_00 = 1. Where its law looks
@@ -248,6 +253,9 @@ class Invariants {
   void check(double t_s, const Command& command, const TableView& speaker);
   void check_paused(double t_s, const Command& command);
   void check_paused(double t_s, const WorldState& world);
+  void note_end_of(const Amendments& list);
+  void check_ended(double t_s, const WorldState& world);
+  void check_ended(double t_s, const Command& command, const TableView& speaker);
   void check(double t_s, const Contribution& block, AgentId relayer, const TableView* speaker);
   void check_memory(double t_s, const Contribution& block);
   void check(double t_s, const Digest& digest, const TableView& speaker);
@@ -269,7 +277,10 @@ class Invariants {
   void check_wall(double t_s, const Vehicle& vehicle);
   void check_zones(double t_s, const WorldState& world);
   void check_zone(double t_s, const WorldState& world, const Zone& zone);
+  void forget_bound(std::int32_t zone);
   bool may_leave_a_zone(AgentId id, const Eigen::Vector3d& x_m, Tick tick) const;
+  bool any_zone_closed_at(Tick tick) const;
+  bool zone_may_delay(AgentId id, Tick home_from) const;
   void check_home(double t_s, const WorldState& world);
   double nearest_to_station_m(const Vehicle& vehicle) const;
   void check_recalled_home(double t_s, const TableView& holder);
@@ -296,6 +307,13 @@ class Invariants {
     Tick first_seen = 0;
     bool bound = false;  // it was surely outside
   };
+  std::vector<EndChange> ends_;    // of the newest mission
+  std::vector<Hold> holds_;        // the same
+  std::int64_t end_revision_ = 0;  // by which they were named
+  /// Where vehicles are after the end, and the world that reported it.
+  std::map<AgentId, Eigen::Vector3d> final_places_m_;
+  Incarnation final_world_ = 0;
+  std::map<std::int32_t, Zone> zones_;                   // all so far
   std::map<std::int32_t, std::int64_t> zone_revisions_;  // by which each zone was named
   std::map<std::pair<std::int32_t, AgentId>, BesideZone> beside_zones_;
   Incarnation zone_world_ = 0;  // the world of beside_zones_

@@ -84,7 +84,28 @@ double nearest_reached_m(const Box& domain, const std::vector<Eigen::Vector2d>& 
   return nearest_m;
 }
 
+/// The longest straight way, at the speed of the way home.
+double longest_way_home_s(const Mission& mission, AgentId id) {
+  const double limit_mps = motion_of(mission, id).speed_limit_mps;
+  double v_mps = law_of(mission, planned_kind(mission, id)).u_max_mps;
+  if (limit_mps > 0) v_mps = std::min(v_mps, limit_mps);
+  return mission.domain.size_m.norm() / v_mps;
+}
+
 }  // namespace
+
+/// Whether a zone may keep an agent from being home at a counted tick. One that has ended for long
+/// enough does not: from then on the agent has the whole time that the longest way takes, twice
+/// because it turns and gives way. Ways among walls are not known here.
+bool Invariants::zone_may_delay(AgentId id, Tick home_from) const {
+  constexpr double kTurns_s = 10;
+  if (!mission_.walls.empty()) return !zones_.empty();
+  const double spare_s = 2 * longest_way_home_s(mission_, id) + kTurns_s;
+  const auto spare = static_cast<Tick>(std::ceil(spare_s / mission_.timing.dt_s));
+  return std::ranges::any_of(zones_, [&](const auto& zone) {
+    return counted_ticks(truth_.holds(), zone.second.end()) > home_from - spare;
+  });
+}
 
 /// How near its station a vehicle that keeps a distance can get: vehicles of agents that were sent
 /// out stand for good, perhaps at the station or around it. 0 where that is not known.
@@ -111,11 +132,11 @@ void Invariants::check_home(double t_s, const WorldState& world) {
   if (home_from_.empty() || timing.pace == Pace::kRealtime ||
       timing.on_timeout == OnTimeout::kEvict)
     return;
-  if (!zone_revisions_.empty()) return;  // a zone may have been in the way
   const Tick counted = counted_ticks(truth_.holds(), world.header.tick);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     const auto from = home_from_.find(vehicle.id);
     if (from == home_from_.end() || counted < from->second) continue;
+    if (zone_may_delay(vehicle.id, from->second)) continue;
     bool from_the_start = false, sent_out = false;
     for (const RosterEntry& entry : truth_.roster()) {
       if (entry.author.agent != vehicle.id) continue;
@@ -144,17 +165,13 @@ bool Invariants::recalled_in_truth(const TableView& holder) const {
 void Invariants::check_recalled_home(double t_s, const TableView& holder) {
   const AgentId id = holder.self.agent;
   const bool free = mission_.separation.distance_m == 0 && mission_.walls.empty() &&
-                    mission_.disturbance_intensity == 0 && motion_of(mission_, id).is_point() &&
-                    zone_revisions_.empty();
+                    mission_.disturbance_intensity == 0 && motion_of(mission_, id).is_point();
   const auto rested = rested_.find(holder.self);
   const auto place = places_m_.find(id);
   if (mission_.timing.pace == Pace::kRealtime || !free || rested == rested_.end() ||
       place == places_m_.end())
     return;
-  const double limit_mps = motion_of(mission_, id).speed_limit_mps;
-  double v_mps = law_of(mission_, planned_kind(mission_, id)).u_max_mps;
-  if (limit_mps > 0) v_mps = std::min(v_mps, limit_mps);
-  const double longest_s = mission_.domain.size_m.norm() / v_mps + 2 * mission_.timing.dt_s;
+  const double longest_s = longest_way_home_s(mission_, id) + 2 * mission_.timing.dt_s;
   if (static_cast<double>(rested->second) * mission_.timing.dt_s <= longest_s) return;
   const bool has_station = home_from_.contains(id);
   const Eigen::Vector3d home_m =

@@ -64,6 +64,11 @@ void Invariants::check_paused(double t_s, const WorldState& world) {
   }
 }
 
+bool Invariants::any_zone_closed_at(Tick tick) const {
+  return std::ranges::any_of(zones_,
+                             [tick](const auto& zone) { return zone.second.closed_at(tick); });
+}
+
 void Invariants::began(double t_s, const TableView& holder) {
   const std::int64_t steps = steps_of(*holder.table, holder.self);
   const auto [last, is_first] = own_steps_.try_emplace(holder.self, steps);
@@ -79,6 +84,8 @@ void Invariants::began(double t_s, const TableView& holder) {
   const RosterEntry* const own = entry_of(*holder.roster, holder.self);
   const bool recalled = own != nullptr && is_recalled(*own, holder);
   if (recalled && !is_held(holds, holder.answered)) ++rested_[holder.self];
+  // It goes round zones, or waits. Afterwards it has the whole time again.
+  if (recalled && any_zone_closed_at(holder.answered)) rested_[holder.self] = 0;
   if (!recalled) rested_.erase(holder.self);
   check_recalled_home(t_s, holder);
   const bool idle = by_plan || recalled;

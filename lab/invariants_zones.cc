@@ -60,11 +60,19 @@ void Invariants::check_zones(double t_s, const WorldState& world) {
   if (world.header.incarnation != zone_world_) beside_zones_.clear();
   zone_world_ = world.header.incarnation;
   for (const Zone& zone : truth_.amendments().zones) {
+    // Bodies may enter it when it is cancelled, and a coordinator that does not know of that may
+    // take over.
+    if (zone.cancelled >= 0 && zone.cancelled <= world.header.tick) forget_bound(zone.number);
     const auto named = zone_revisions_.find(zone.number);
     // In real time a world may not have received it yet.
     if (named == zone_revisions_.end() || world.roster_revision < named->second) continue;
     if (zone.closed_at(world.header.tick)) check_zone(t_s, world, zone);
   }
+}
+
+void Invariants::forget_bound(std::int32_t zone) {
+  for (auto& [which, beside] : beside_zones_)
+    if (which.first == zone) beside.bound = false;
 }
 
 void Invariants::check_zone(double t_s, const WorldState& world, const Zone& zone) {
@@ -95,8 +103,10 @@ bool Invariants::may_leave_a_zone(AgentId id, const Eigen::Vector3d& x_m, Tick t
   const double u_max_mps = law_of(mission_, planned_kind(mission_, id)).u_max_mps;
   const double step_m = std::max(limit_mps, u_max_mps) * mission_.timing.dt_s;
   return std::ranges::any_of(truth_.amendments().zones, [&](const Zone& zone) {
-    // The velocity in a state is that of the step that led there.
-    const bool counts = zone.closed <= tick && tick <= zone.until;
+    // The velocity in a state is that of the step that led there. In real time an agent may not
+    // know yet that a zone is cancelled.
+    const bool exact = mission_.timing.pace == Pace::kLockstep;
+    const bool counts = zone.closed <= tick && tick <= (exact ? zone.end() : zone.until);
     return counts && outside_m(zone, x_m) <= surely_bound_m(mission_, id) + step_m;
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A simulated operator: it pauses a mission and resumes it, gives the team other targets, sends it
-// out of zones, changes its speed, and sends agents home or out of the mission.
+// out of zones, changes its speed, undoes that, and sends agents home or out of the mission.
 #pragma once
 
 #include <algorithm>
@@ -48,6 +48,8 @@ class SimulatedOperator {
     zone_notice_ = notice;
     zone_wanted_ = now;
   }
+  /// Wants the zone of this amendment to end. The coordinator may refuse it; then it gives up.
+  void want_no_zone(std::int32_t number) { cancelled_zone_ = number; }
   /// Wants the law to have other numbers. It then wants no earlier ones any more.
   void want_law(const LawChange& law) {
     law_hash_ = law_hash(law);
@@ -64,13 +66,12 @@ class SimulatedOperator {
   /// Whether it has wanted nothing yet, and wants nothing now.
   bool idle() const {
     return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty() && !end_ &&
-           zone_.empty() && law_.empty();
+           zone_.empty() && !cancelled_zone_ && law_.empty();
   }
   /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
   std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
     const Amendments& list = coordinator.amendments();
-    const auto is_ours = [this](const Amendment& one) { return one.hash == target_hash_; };
-    if (std::ranges::any_of(list.recent, is_ours)) target_.clear();
+    if (newest_hash(AmendmentKind::kTarget, list) == target_hash_) target_.clear();
     if (target_.empty() || now < next_target_) return {};
     next_target_ = now + kPeriod;
     auto parts = in_parts({.header = {run, kOperator, 1, messages_ + 1, coordinator.tick()},
@@ -112,11 +113,23 @@ class SimulatedOperator {
     return parts;
   }
 
+  /// What it sends now to end a zone.
+  std::optional<Amend> cancelled_zone(Instant now, RunId run, const Coordinator& coordinator) {
+    const Amendments& list = coordinator.amendments();
+    if (cancelled_zone_ && !can_reopen(list, *cancelled_zone_, coordinator.tick()))
+      cancelled_zone_.reset();
+    if (!cancelled_zone_ || now < next_cancel_) return {};
+    next_cancel_ = now + kPeriod;
+    return Amend{.header = {run, kOperator, 4, ++messages_, coordinator.tick()},
+                 .number = list.named,
+                 .kind = AmendmentKind::kReopen,
+                 .content = encode_reopening(*cancelled_zone_)};
+  }
+
   /// The law that it sends now. It repeats it until the coordinator has named it.
   std::vector<Amend> laws(Instant now, RunId run, const Coordinator& coordinator) {
     const Amendments& list = coordinator.amendments();
-    const auto is_ours = [this](const Amendment& one) { return one.hash == law_hash_; };
-    if (std::ranges::any_of(list.recent, is_ours)) law_.clear();
+    if (newest_hash(AmendmentKind::kLaw, list) == law_hash_) law_.clear();
     if (law_.empty() || now < next_law_) return {};
     next_law_ = now + kPeriod;
     return in_parts({.header = {run, kOperator, 3, ++messages_, coordinator.tick()},
@@ -162,6 +175,12 @@ class SimulatedOperator {
   }
 
  private:
+  /// The hash of the newest amendment of a kind; nothing if the list names none.
+  static std::optional<std::uint64_t> newest_hash(AmendmentKind kind, const Amendments& list) {
+    const auto found = std::find_if(list.recent.rbegin(), list.recent.rend(),
+                                    [kind](const Amendment& one) { return one.kind == kind; });
+    return found == list.recent.rend() ? std::nullopt : std::optional(found->hash);
+  }
   static bool is_obeyed(const Recall& recall, const Coordinator& coordinator) {
     return std::ranges::any_of(coordinator.roster(), [&](const RosterEntry& entry) {
       return entry.author.agent == recall.agent && entry.recalled() &&
@@ -187,6 +206,8 @@ class SimulatedOperator {
   std::uint64_t zone_hash_ = 0;
   Tick zone_notice_ = 0;
   Instant zone_wanted_, next_zone_;
+  std::optional<std::int32_t> cancelled_zone_;  // that it wants to end
+  Instant next_cancel_;
   std::vector<std::byte> law_;  // that it wants
   std::uint64_t law_hash_ = 0;
   Instant next_law_;

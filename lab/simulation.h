@@ -58,6 +58,7 @@ struct SimulationCounts {
   std::int64_t splits = 0, one_way_cuts = 0;
   std::int64_t agent_crashes = 0, coordinator_crashes = 0, world_crashes = 0, skewed_clocks = 0;
   std::int64_t pauses = 0, recalls = 0, targets = 0, ends = 0, zones = 0, laws = 0;
+  std::int64_t cancels = 0;
 };
 
 /// Is called at once for each event of a simulation.
@@ -162,7 +163,9 @@ class Simulation {
   bool crash(NodeId node, double lasts_s);
   void heal();
   void supervise_coordinator();
+  bool takes_orders() const;
   void want_zone(std::uint64_t word);
+  void want_cancel(std::uint64_t word);
   TargetChange drawn_target(std::uint64_t word) const;
   Tick drawn_end(std::uint64_t word) const;
   LawChange drawn_law(std::uint64_t word) const;

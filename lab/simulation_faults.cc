@@ -90,6 +90,9 @@ void Simulation::begin(const FaultEvent& event) {
       ++counts_.laws;
       operator_.want_law(drawn_law(event.who));
       return;
+    case kCancel:
+      want_cancel(event.who);
+      return;
     case kRecall:
     case kDeparture:
       ++counts_.recalls;
@@ -148,13 +151,42 @@ LawChange Simulation::drawn_law(std::uint64_t word) const {
   return is_law(change, mission_) ? change : plans_law(mission_);
 }
 
+/// Whether there is a coordinator that an operator may ask.
+bool Simulation::takes_orders() const {
+  const NodeId node = coordinator_node();
+  return up(node) && !finished(node) && coordinator().state() == MissionState::kRunning;
+}
+
+/// Undoes the newest target, end or law, or any zone, as `ergocast amend --cancel` does, if there
+/// is one.
+void Simulation::want_cancel(std::uint64_t word) {
+  if (!takes_orders()) return;
+  const auto& [named, recent, holds, targets, ends, zones, laws] = coordinator().amendments();
+  const auto before = [](const auto& changes, auto plans) {
+    return changes.size() > 1 ? changes[changes.size() - 2] : plans;
+  };
+  constexpr int kKinds = 4;
+  const std::uint64_t kind = word % kKinds, which = word / kKinds;
+  const auto count = counts_.cancels++;
+  if (kind == 0 && !targets.empty())
+    return operator_.want_target(before(
+        targets,
+        TargetChange{.target = mission_.target_coefficients, .cosine = mission_.cosine_target}));
+  if (kind == 1 && !ends.empty())
+    return operator_.want_end(
+        before(ends, EndChange{.tick_count = mission_.timing.tick_count}).tick_count);
+  if (kind == 2 && !laws.empty()) return operator_.want_law(before(laws, plans_law(mission_)));
+  if (kind == 3 && !zones.empty())
+    return operator_.want_no_zone(zones[which % zones.size()].number);
+  counts_.cancels = count;
+}
+
 /// Asks for a polygon somewhere in the domain, if one of some is possible: of three to seven
 /// corners around a place, so that it may have dents.
 void Simulation::want_zone(std::uint64_t word) {
   constexpr int kAttempts = 4;
   RandomStream random(word, 0);
-  const NodeId node = coordinator_node();
-  if (!up(node) || finished(node) || coordinator().state() != MissionState::kRunning) return;
+  if (!takes_orders()) return;
   const auto& others = coordinator().amendments().zones;
   const Box& domain = mission_.domain;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -195,6 +227,8 @@ void Simulation::send_to_coordinator() {
     deliver(node, part, by_operator);
   for (const Amend& part : operator_.zones(now_, run_, coordinator()))
     deliver(node, part, by_operator);
+  if (const auto cancel = operator_.cancelled_zone(now_, run_, coordinator()))
+    deliver(node, *cancel, by_operator);
   for (const Amend& part : operator_.laws(now_, run_, coordinator()))
     deliver(node, part, by_operator);
   // The operator repeats it; only the first one has an effect.

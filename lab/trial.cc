@@ -118,6 +118,7 @@ void Trial::sends(NodeId node, const Outbox& outbox) {
     invariants_.sent(t_s(), sent, view.table != nullptr ? &view : nullptr);
     const auto* command = std::get_if<Command>(&sent.message);
     if (command != nullptr && takes_part) note_answer(node, *command, view);
+    if (command != nullptr && !takes_part) invariants_.commanded_after(t_s(), *command);
   }
 }
 

@@ -205,7 +205,7 @@ struct Fields<Amend> {
   static void list(auto& io, auto& m) {
     io.bytes(m.signature);
     io.within(m.number, 0, kMaxAmendments);
-    io.enumerator(m.kind, AmendmentKind::kLaw);
+    io.enumerator(m.kind, AmendmentKind::kReopen);
     io.count(m.delay_ticks);
     io.within(m.part, 0, kMaxAmendParts - 1);
     io.within(m.parts, 1, kMaxAmendParts);

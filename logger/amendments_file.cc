@@ -35,12 +35,15 @@ Json without_numbers(const ReceivedAmendment& one, double dt_s) {
                {"t_s", static_cast<double>(amendment.from) * dt_s}};
   if (amendment.kind == AmendmentKind::kEnd) {
     json["tick_count"] = amendment.hash;
+  } else if (amendment.kind == AmendmentKind::kReopen) {
+    json["zone"] = amendment.hash;
   } else if (amendment.kind >= AmendmentKind::kTarget) {
     json["hash"] = to_hex(amendment.hash);
   }
   if (one.zone) {
     json["closed_tick"] = one.zone->closed;
     json["until_tick"] = one.zone->until;
+    if (one.zone->cancelled >= 0) json["cancelled_tick"] = one.zone->cancelled;
   }
   if (!amendment.by.empty()) json["by"] = amendment.by;
   if (one.is_void) json["void"] = true;
@@ -90,7 +93,8 @@ std::optional<std::int64_t> count_in(const Json& object, const char* key, std::i
 
 std::optional<AmendmentKind> kind_in(const Json& object) {
   constexpr std::array kKinds{AmendmentKind::kPause, AmendmentKind::kResume, AmendmentKind::kTarget,
-                              AmendmentKind::kEnd,   AmendmentKind::kZone,   AmendmentKind::kLaw};
+                              AmendmentKind::kEnd,   AmendmentKind::kZone,   AmendmentKind::kLaw,
+                              AmendmentKind::kReopen};
   const Json& name = value_in(object, "kind");
   const auto found =
       std::ranges::find_if(kKinds, [&](AmendmentKind kind) { return name == to_string(kind); });
@@ -151,6 +155,11 @@ Result<Zone> zone_in(const Json& entry, const Amendment& amendment, const Missio
   };
   if (!closed || !until || !corners.is_array()) return bad();
   Zone zone{amendment.number, *closed, amendment.from, *until, Ring(corners.size())};
+  if (entry.contains("cancelled_tick")) {
+    const auto cancelled = count_in(entry, "cancelled_tick", kMostTicks);
+    if (!cancelled) return bad();
+    zone.cancelled = *cancelled;
+  }
   for (std::size_t i = 0; i < corners.size(); ++i)
     if (!read_point(corners[i], zone.corners_m[i].x(), zone.corners_m[i].y())) return bad();
   if (entry.contains("heights_m") &&
@@ -225,6 +234,12 @@ Result<ReceivedAmendment> amendment_in(const Json& entry, const Mission& mission
     if (!tick_count || !is_tick_count(*tick_count, mission.timing))
       return failure("its end is none of the mission of " + std::string(kPlanFile));
     one.amendment.hash = static_cast<std::uint64_t>(*tick_count);
+    return one;
+  }
+  if (*kind == AmendmentKind::kReopen) {
+    const auto zone = count_in(entry, "zone", *number - 1);
+    if (!zone) return failure("the zone that it cancels has no possible number");
+    one.amendment.hash = static_cast<std::uint64_t>(*zone);
     return one;
   }
   if (*kind < AmendmentKind::kTarget) return one;

@@ -49,6 +49,24 @@ void ReceivedAmendments::note(const Amendments& list) {
     auto& known = add({change.number, AmendmentKind::kLaw, change.from, law_hash(change)}).law;
     if (!known) known = change;
   }
+  note_cancelled(list);
+}
+
+/// Notes which zones are cancelled. A list has only zones that had not ended; for others the
+/// amendments tell it. One that is void cancels nothing.
+void ReceivedAmendments::note_cancelled(const Amendments& list) {
+  for (ReceivedAmendment& one : all_) {
+    if (!one.zone || one.is_void) continue;
+    const std::int32_t number = one.amendment.number;
+    const auto cancels = [number](const ReceivedAmendment& other) {
+      return other.amendment.kind == AmendmentKind::kReopen && !other.is_void &&
+             other.amendment.hash == static_cast<std::uint64_t>(number);
+    };
+    const auto named = std::ranges::find_if(all_, cancels);
+    one.zone->cancelled = named == all_.end() ? -1 : named->amendment.from;
+    const auto listed = std::ranges::find(list.zones, number, &Zone::number);
+    if (listed != list.zones.end()) one.zone->cancelled = listed->cancelled;
+  }
 }
 
 /// Marks what the list lacks. It names its newest amendments; older ones are as they were.

@@ -53,6 +53,7 @@ class ReceivedAmendments {
 
  private:
   void compare(const Amendments& list);
+  void note_cancelled(const Amendments& list);
   ReceivedAmendment& add(const Amendment& amendment);
 
   std::vector<ReceivedAmendment> all_;

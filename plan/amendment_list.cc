@@ -118,6 +118,7 @@ void list_fields(auto& io, auto& amendments) {
     wire.value(zone.closed);
     wire.value(zone.from);
     wire.value(zone.until);
+    wire.value(zone.cancelled);
     place_fields(wire, zone);
   });
   io.list(amendments.laws, [](auto& wire, auto& change) {
@@ -128,7 +129,7 @@ void list_fields(auto& io, auto& amendments) {
 }
 
 bool is_kind(const Amendment& amendment) {
-  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kLaw;
+  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kReopen;
 }
 
 }  // namespace
@@ -172,6 +173,20 @@ std::optional<Tick> decode_end(std::span<const std::byte> bytes, const Mission& 
   reader.value(tick_count);
   if (!reader.complete() || !is_tick_count(tick_count, mission.timing)) return std::nullopt;
   return tick_count;
+}
+
+std::vector<std::byte> encode_reopening(std::int32_t number) {
+  ListWriter writer;
+  writer.value(number);
+  return writer.take();
+}
+
+std::optional<std::int32_t> decode_reopening(std::span<const std::byte> bytes) noexcept {
+  std::int32_t number = 0;
+  ListReader reader(bytes);
+  reader.value(number);
+  if (!reader.complete() || number < 0) return std::nullopt;
+  return number;
 }
 
 std::size_t target_bytes(const Mission& mission) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,6 +25,11 @@ std::optional<Amendments> decode_amendments(std::span<const std::byte> bytes,
 std::vector<std::byte> encode_end(Tick tick_count);
 /// The number of ticks of these bytes; nothing if no mission can have it (is_tick_count()).
 std::optional<Tick> decode_end(std::span<const std::byte> bytes, const Mission& mission) noexcept;
+
+/// What cancels a zone, as AMEND carries it: the number of the zone's amendment.
+std::vector<std::byte> encode_reopening(std::int32_t number);
+/// The number of these bytes; nothing if they are none.
+std::optional<std::int32_t> decode_reopening(std::span<const std::byte> bytes) noexcept;
 
 /// How many bytes a target of `mission` has in AMEND.
 std::size_t target_bytes(const Mission& mission);

@@ -386,6 +386,7 @@ Json page_amendments(std::span<const Amendment> list, std::span<const LawChange>
     Json entry = {{"number", one.number}, {"kind", to_string(one.kind)}, {"from", one.from}};
     if (one.kind == AmendmentKind::kTarget) entry["hash"] = page_target_name(one.hash);
     if (one.kind == AmendmentKind::kEnd) entry["tick_count"] = one.hash;
+    if (one.kind == AmendmentKind::kReopen) entry["zone"] = one.hash;
     const auto law = std::ranges::find(laws, one.number, &LawChange::number);
     if (law != laws.end()) entry["law"] = law_text(*law, mission);
     if (!one.by.empty()) entry["by"] = one.by;
@@ -403,8 +404,9 @@ Json page_zones(std::span<const Zone> zones, const Box& domain) {
     list.push_back({{"number", zone.number},
                     {"closed", zone.closed},
                     {"from", zone.from},
-                    {"until", zone.until},
+                    {"until", zone.end()},
                     {"corners_m", std::move(corners)}});
+    if (zone.cancelled >= 0) list.back()["cancelled"] = true;
     if (!domain.planar())
       list.back()["heights_m"] = {zone.low_m - domain.origin_m.z(),
                                   zone.high_m - domain.origin_m.z()};

@@ -364,7 +364,8 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
   command
       .add_option_function<std::string>(
           "--cancel", [&options](const std::string& text) { options.cancel = number_from(text); },
-          "Undo amendment N, as --list numbers it: what held before it holds again")
+          "Undo amendment N, as --list numbers it: what held before it holds again, and a zone "
+          "ends")
       ->type_name("N");
   command.add_flag("--dry-run", options.dry_run,
                    "Only check the target, law or zone and show what would change; send nothing");

@@ -51,6 +51,8 @@ std::string kind_text(const MonitoredRun& team, const Amendment& amendment) {
       return "the end at " + end_text(team, static_cast<Tick>(amendment.hash));
     case AmendmentKind::kZone:
       return "zone " + to_hex(amendment.hash);
+    case AmendmentKind::kReopen:
+      return "the end of the zone of amendment " + std::to_string(amendment.hash);
     case AmendmentKind::kLaw:
       return "law " + to_hex(amendment.hash) + numbers_text(team, amendment.number);
     default:
@@ -86,9 +88,21 @@ std::optional<std::string> why_no_place(const MonitoredRun& team) {
   if (zones_at(team.amendments(), team.tick()) < kMaxZones) return std::nullopt;
   Tick first = std::numeric_limits<Tick>::max();
   for (const Zone& zone : team.amendments().zones)
-    if (zone.until > team.tick()) first = std::min(first, zone.until);
+    if (zone.end() > team.tick()) first = std::min(first, zone.end());
   return std::to_string(kMaxZones) + " zones are in force, and there can be no more at a time: " +
          "repeat the order when the first of them has ended, at " + team.mission_time(first);
+}
+
+/// Why a zone cannot be cancelled any more; nothing if it can.
+std::optional<std::string> why_not_cancelled(const MonitoredRun& team, const AmendmentWish& wish) {
+  const auto number = static_cast<std::int32_t>(wish.hash);
+  const auto& zones = team.amendments().zones;
+  const auto zone = std::ranges::find(zones, number, &Zone::number);
+  if (zone != zones.end() && zone->cancelled >= 0)
+    return "another operator has cancelled that zone: it ends at " +
+           team.mission_time(zone->cancelled);
+  if (can_reopen(team.amendments(), number, earliest_tick(team, 0))) return std::nullopt;
+  return "that zone ends by itself before all agents can know of an earlier end";
 }
 
 /// The coordinator decides by the same rules, with newer places.
@@ -127,28 +141,18 @@ std::string since_text(const MonitoredRun& team, Tick from) {
          (holds ? "" : in_seconds(team.seconds_until(from)));
 }
 
-/// "was closed from … until …", or "holds since …, closed since …, until …".
-std::string zone_ticks_text(const MonitoredRun& team, const Amendment& amendment) {
-  const auto& zones = team.amendments().zones;
-  const auto zone = std::ranges::find(zones, amendment.number, &Zone::number);
-  if (zone == zones.end()) return "has ended";  // the list has only zones that had not ended
-  const std::string until = team.mission_time(zone->until);
-  if (team.tick() >= zone->until)
-    return "was closed from " + team.mission_time(zone->closed) + " until " + until;
-  return since_text(team, amendment.from) +
-         (team.tick() >= zone->closed ? ", closed since " : ", closed from ") +
-         team.mission_time(zone->closed) + ", until " + until;
-}
-
-/// The amendment that ends what a target, an end or a pause has changed; null if none is named.
+/// The amendment that ends what another one has changed; null if none is named.
 const Amendment* successor_of(const MonitoredRun& team, const Amendment& amendment) {
-  if (amendment.kind == AmendmentKind::kZone || amendment.kind == AmendmentKind::kResume)
+  if (amendment.kind == AmendmentKind::kReopen || amendment.kind == AmendmentKind::kResume)
     return nullptr;
-  const auto kind =
-      amendment.kind == AmendmentKind::kPause ? AmendmentKind::kResume : amendment.kind;
+  const bool is_zone = amendment.kind == AmendmentKind::kZone;
+  const auto kind = is_zone                                   ? AmendmentKind::kReopen
+                    : amendment.kind == AmendmentKind::kPause ? AmendmentKind::kResume
+                                                              : amendment.kind;
   const Amendment* next = nullptr;
   for (const Amendment& one : team.amendments().recent) {
     if (one.number <= amendment.number || one.kind != kind) continue;
+    if (is_zone && one.hash != static_cast<std::uint64_t>(amendment.number)) continue;
     // A later one from the same tick on has replaced the next one.
     if (next == nullptr || one.from <= next->from) next = &one;
   }
@@ -159,6 +163,29 @@ const Amendment* successor_of(const MonitoredRun& team, const Amendment& amendme
 bool never_holds(const MonitoredRun& team, const Amendment& amendment) {
   const Amendment* const next = successor_of(team, amendment);
   return next != nullptr && next->from <= amendment.from;
+}
+
+/// ": amendment 5 cancelled it", if the list still has that.
+std::string cancelled_text(const MonitoredRun& team, const Amendment& zone) {
+  const Amendment* const next = successor_of(team, zone);
+  return next == nullptr ? "" : ": amendment " + std::to_string(next->number) + " cancelled it";
+}
+
+/// "was closed from … until …: amendment 5 cancelled it", or "holds since …, closed since …, until
+/// …".
+std::string zone_ticks_text(const MonitoredRun& team, const Amendment& amendment) {
+  const auto& zones = team.amendments().zones;
+  const auto zone = std::ranges::find(zones, amendment.number, &Zone::number);
+  if (zone == zones.end()) return "has ended";  // the list has only zones that had not ended
+  const std::string until = team.mission_time(zone->end()) +
+                            (zone->cancelled >= 0 ? cancelled_text(team, amendment) : "");
+  const bool ended = team.tick() >= zone->end();
+  if (ended || zone->end() <= zone->from)
+    return (ended ? "was closed from " : "is closed from ") + team.mission_time(zone->closed) +
+           " until " + until;
+  return since_text(team, amendment.from) +
+         (team.tick() >= zone->closed ? ", closed since " : ", closed from ") +
+         team.mission_time(zone->closed) + ", until " + until;
 }
 
 std::string ticks_text(const MonitoredRun& team, const Amendment& amendment) {
@@ -186,6 +213,10 @@ AmendmentWish wish_of_end(Tick tick_count) {
 
 AmendmentWish wish_of(const Zone& zone) {
   return {AmendmentKind::kZone, encode_zone(zone), zone_hash(zone)};
+}
+
+AmendmentWish wish_of_reopening(std::int32_t number) {
+  return {AmendmentKind::kReopen, encode_reopening(number), static_cast<std::uint64_t>(number)};
 }
 
 AmendmentWish wish_of(const LawChange& law) {
@@ -218,13 +249,18 @@ Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std:
   if (!ends.empty() && ends.back().number == number)
     return wish_of_end(ends.size() > 1 ? ends[ends.size() - 2].tick_count
                                        : team.mission().timing.tick_count);
+  if (can_reopen(list, number, team.tick())) return wish_of_reopening(number);
   const auto found = std::ranges::find(list.recent, number, &Amendment::number);
   if (found != list.recent.end() && found->kind == AmendmentKind::kPause)
     return failure(name + " is a pause: ergocast resume ends it");
   if (found != list.recent.end() && found->kind == AmendmentKind::kResume)
     return failure(name + " ended a pause: ergocast pause pauses the mission again");
   if (found != list.recent.end() && found->kind == AmendmentKind::kZone)
-    return failure(name + " is a zone, which ends by itself: ergocast amend --list shows when");
+    return failure(name +
+                   " is a zone that has ended, or is cancelled already: ergocast amend --list "
+                   "shows when");
+  if (found != list.recent.end() && found->kind == AmendmentKind::kReopen)
+    return failure(name + " cancelled a zone: ergocast amend --zone closes one again");
   return failure("a later amendment has replaced " + name +
                  ": ergocast amend --list shows which can be cancelled");
 }
@@ -280,6 +316,7 @@ std::optional<std::string> why_impossible(const MonitoredRun& team, const Amendm
            team.mission_time(team.tick() + team.ticks_left()) + ": name an earlier time";
   if (wish.kind == AmendmentKind::kEnd) return why_no_end(team, wish, delay);
   if (wish.kind == AmendmentKind::kZone) return why_no_place(team);
+  if (wish.kind == AmendmentKind::kReopen) return why_not_cancelled(team, wish);
   const auto waiting = waiting_for(wish.kind, team);
   const std::chrono::duration<double> patience = Order::kAnswerPatience;
   if (wish.brings_back || !waiting || team.seconds_until(waiting->from) < patience.count())
@@ -302,6 +339,8 @@ OrderReport AmendOrder::unnamed(const MonitoredRun& team, Instant now) const {
     return {State::kFailed, waiting_text(team, wish_.kind, *waiting)};
   if (wish_.kind == AmendmentKind::kEnd)
     if (const auto problem = why_no_end(team, wish_, delay_)) return {State::kFailed, *problem};
+  if (wish_.kind == AmendmentKind::kReopen)
+    if (const auto problem = why_not_cancelled(team, wish_)) return {State::kFailed, *problem};
   return {State::kFailed, why_no_tick(team)};
 }
 

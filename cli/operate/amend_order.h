@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order to cover another target, to end at another time, to leave a zone, or to follow another
-// law.
+// The order to cover another target, to end at another time, to leave a zone, to cancel a zone, or
+// to follow another law.
 #pragma once
 
 #include <cstddef>
@@ -34,8 +34,11 @@ AmendmentWish wish_of(const Zone& zone);
 /// @param law  is_law() of the mission; number and tick do not count
 AmendmentWish wish_of(const LawChange& law);
 
-/// What undoes an amendment: what held before it. An error says why it cannot be undone, and what
-/// to do instead. @pre team.knows_mission()
+/// @param number  of the amendment of the zone that ends
+AmendmentWish wish_of_reopening(std::int32_t number);
+
+/// What undoes an amendment: what held before it, or the end of its zone. An error says why it
+/// cannot be undone, and what to do instead. @pre team.knows_mission()
 Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std::int32_t number);
 
 /// Why no coordinator would name this now; nothing if one may. @pre team.knows_mission()

@@ -8,9 +8,10 @@ namespace ergocast::cli {
 namespace {
 
 const char* what(AmendmentKind kind) {
-  return kind == AmendmentKind::kTarget ? "new target"
-         : kind == AmendmentKind::kEnd  ? "another end"
-                                        : to_string(kind);
+  return kind == AmendmentKind::kTarget   ? "new target"
+         : kind == AmendmentKind::kEnd    ? "another end"
+         : kind == AmendmentKind::kReopen ? "cancelled zone"
+                                          : to_string(kind);
 }
 
 }  // namespace

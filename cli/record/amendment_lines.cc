@@ -33,8 +33,9 @@ class Lines {
   }
   std::string zone(const Zone& zone) const {
     std::string text = "zone      amendment " + std::to_string(zone.number) + " closed from " +
-                       time_of(zone.closed) + " until " + time_of(zone.until) + "; at " +
-                       time_of(zone.from);
+                       time_of(zone.closed) + " until " + time_of(zone.end()) + cancelled(zone);
+    if (zone.end() <= zone.from) return text + " before it was free";
+    text += "; at " + time_of(zone.from);
     if (zone.from > last_) return text + " the mission had ended";
     const std::vector<AgentId> inside = inside_at(zone);
     if (inside.empty()) return text + " nobody was inside";
@@ -63,6 +64,19 @@ class Lines {
     });
     const bool before = next != all.end() && next->amendment.from <= amendment.from;
     return before ? ", replaced before by amendment " + std::to_string(next->amendment.number) : "";
+  }
+
+  /// ", when amendment 4 cancelled it", or nothing.
+  std::string cancelled(const Zone& zone) const {
+    if (zone.cancelled < 0) return "";
+    const auto& all = run_.amendments.all();
+    const auto by = std::ranges::find_if(all, [&zone](const ReceivedAmendment& one) {
+      return !one.is_void && one.amendment.kind == AmendmentKind::kReopen &&
+             one.amendment.hash == static_cast<std::uint64_t>(zone.number);
+    });
+    return by == all.end()
+               ? ", when it was cancelled,"
+               : ", when amendment " + std::to_string(by->amendment.number) + " cancelled it";
   }
 
   std::vector<AgentId> inside_at(const Zone& zone) const {

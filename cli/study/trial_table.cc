@@ -53,6 +53,7 @@ constexpr Count kCounts[] = {
     {"targets", "new targets", [](TrialFigures& f) -> std::int64_t& { return f.targets; }},
     {"zones", "zones", [](TrialFigures& f) -> std::int64_t& { return f.zones; }},
     {"laws", "other laws", [](TrialFigures& f) -> std::int64_t& { return f.laws; }},
+    {"cancels", "changes undone", [](TrialFigures& f) -> std::int64_t& { return f.cancels; }},
     {"held_ticks", "ticks held", [](TrialFigures& f) -> std::int64_t& { return f.held_ticks; }},
     {"skewed_clocks", "clocks skewed",
      [](TrialFigures& f) -> std::int64_t& { return f.skewed_clocks; }},

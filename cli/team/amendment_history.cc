@@ -4,12 +4,26 @@
 #include "cli/team/amendment_history.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "report/page.h"
 
 namespace ergocast {
 namespace {
+
+/// Takes in the newest zones, and forgets those whose amendments are not known any more. A list has
+/// only zones that had not ended.
+void replace_zones(std::span<const Zone> listed, std::span<const Amendment> known,
+                   std::vector<Zone>& zones) {
+  std::erase_if(zones, [&](const Zone& zone) {
+    const bool in_list = std::ranges::find(listed, zone.number, &Zone::number) != listed.end();
+    const auto amendment = std::ranges::find(known, zone.number, &Amendment::number);
+    return in_list || amendment == known.end() || amendment->hash != zone_hash(zone);
+  });
+  zones.insert(zones.end(), listed.begin(), listed.end());
+  std::ranges::sort(zones, {}, &Zone::number);
+}
 
 /// Replaces those from the amendment `first` on, and forgets those before `oldest`.
 void replace_from(std::int32_t first, std::int32_t oldest, const auto& listed, auto& known) {
@@ -30,7 +44,7 @@ void AmendmentHistory::note(const Amendments& list) {
   if (all == amendments_) return;
   amendments_ = std::move(all);
   const std::int32_t oldest = amendments_.empty() ? first : amendments_.front().number;
-  replace_from(first, oldest, list.zones, zones_);
+  replace_zones(list.zones, amendments_, zones_);
   replace_from(first, oldest, list.laws, laws_);
   ++changes_;
 }

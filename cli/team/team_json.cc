@@ -98,7 +98,7 @@ std::string team_json(const TeamPicture& at) {
     json["zones"].push_back({{"amendment", zone.number},
                              {"closed_tick", zone.closed},
                              {"from_tick", zone.from},
-                             {"until_tick", zone.until}});
+                             {"until_tick", zone.end()}});
   json["law"] = law_json(at);
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));

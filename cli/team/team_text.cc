@@ -157,7 +157,7 @@ std::string target_text(const TeamPicture& at) {
 
 /// "zone of amendment 3 until t = 120.0 s", in mission time if no pause begins.
 std::string zone_text(const TeamPicture& at, const Zone& zone) {
-  const Tick until = counted_ticks(at.holds, zone.until);
+  const Tick until = counted_ticks(at.holds, zone.end());
   return "zone of amendment " + std::to_string(zone.number) +
          number(" until t = %.1f s", static_cast<double>(until) * at.dt_s);
 }

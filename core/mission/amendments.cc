@@ -63,7 +63,7 @@ bool are_ends(std::span<const EndChange> ends) {
 }  // namespace
 
 const char* to_string(AmendmentKind kind) {
-  constexpr const char* kNames[] = {"pause", "resume", "target", "end", "zone", "law"};
+  constexpr const char* kNames[] = {"pause", "resume", "target", "end", "zone", "law", "reopen"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -193,6 +193,20 @@ void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone) 
   list.zones = not_ended(list.zones, now);
   ERGOCAST_REQUIRE(list.zones.size() < kMaxZones);
   add_zone(list, closed, notice, std::move(zone));
+}
+
+bool can_reopen(const Amendments& list, std::int32_t number, Tick tick) {
+  const auto zone = std::ranges::find(list.zones, number, &Zone::number);
+  return zone != list.zones.end() && zone->cancelled < 0 && tick < zone->until;
+}
+
+void name_reopening(Amendments& list, Tick tick, std::int32_t number) {
+  ERGOCAST_REQUIRE(can_reopen(list, number, tick));
+  Zone& zone = *std::ranges::find(list.zones, number, &Zone::number);
+  zone.cancelled = std::max(tick, zone.closed);
+  name(list, {.kind = AmendmentKind::kReopen,
+              .from = zone.cancelled,
+              .hash = static_cast<std::uint64_t>(number)});
 }
 
 void name_law(Amendments& list, Tick tick, LawChange change) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What has changed in a mission since its plan: pauses, new targets, other ends, zones, and other
-// speeds and noise of the law.
+// What has changed in a mission since its plan: pauses, new targets, other ends, zones and their
+// cancellation, and other speeds and noise of the law.
 //
 // The coordinator names each amendment: it gives it the next number, and the world's tick from
 // which it holds. All processes learn of an amendment before its tick, so all change at the same
@@ -30,6 +30,7 @@ enum class AmendmentKind {
   kEnd,     ///< the mission has another number of ticks
   kZone,    ///< the team leaves a part of the domain, core/mission/zones.h
   kLaw,     ///< the law has another speed or other noise, core/mission/law_change.h
+  kReopen,  ///< a zone is cancelled: it ends
 };
 const char* to_string(AmendmentKind kind);
 
@@ -38,8 +39,8 @@ struct Amendment {
   std::int32_t number = 0;  ///< from 0
   AmendmentKind kind = AmendmentKind::kPause;
   Tick from = 0;  ///< the world's tick from which it holds
-  /// kTarget: target_hash(); kEnd: the number of ticks; kZone: zone_hash(); kLaw: law_hash(); else
-  /// 0
+  /// kTarget: target_hash(); kEnd: the number of ticks; kZone: zone_hash(); kLaw: law_hash();
+  /// kReopen: the number of the zone's amendment; else 0
   std::uint64_t hash = 0;
   std::string by{};  ///< its operator, as is_operator_name() allows; empty: not known
   /// The incarnation that sent its AMEND; 0: not known. One operator may send two alike.
@@ -160,11 +161,17 @@ void name_end(Amendments& list, Tick tick, Tick tick_count);
 /// @param zone  with `until` − `from` alone of its ticks
 /// @pre now <= closed, and zones_at(list, now) < kMaxZones
 void name_zone(Amendments& list, Tick now, Tick closed, Tick notice, Zone zone);
+/// Names the next amendment, which ends a zone from a tick on, or when it closes if that is later.
+/// @pre can_reopen(list, number, tick)
+void name_reopening(Amendments& list, Tick tick, std::int32_t number);
 /// Names the next amendment, a law. Its number and tick are set here.
 void name_law(Amendments& list, Tick tick, LawChange change);
 /// Names the next amendment, a law that holds in the place of the newest one, from its tick on.
 /// @pre the newest law does not hold yet
 void replace_law(Amendments& list, LawChange change);
+/// Whether a zone of this number can be cancelled from a tick on: it has not been, and has not
+/// ended by then.
+bool can_reopen(const Amendments& list, std::int32_t number, Tick tick);
 /// How many zones have not ended at a tick.
 std::size_t zones_at(const Amendments& list, Tick tick);
 

@@ -16,7 +16,8 @@ constexpr double kFarthest = 10, kLeastArea = 1e-8;
 
 bool ticks_follow(const Zone& zone) {
   return zone.number >= 0 && zone.closed >= 0 && zone.closed <= zone.from &&
-         zone.from < zone.until && zone.until - zone.from <= kMaxZoneTicks;
+         zone.from < zone.until && zone.until - zone.from <= kMaxZoneTicks &&
+         (zone.cancelled == -1 || zone.cancelled >= zone.closed);
 }
 
 bool heights_fit(const Zone& zone, const Box& domain) {
@@ -55,7 +56,7 @@ bool are_zones(std::span<const Zone> zones, const Box& domain) {
 std::vector<Zone> not_ended(std::span<const Zone> zones, Tick tick) {
   std::vector<Zone> left;
   std::ranges::copy_if(zones, std::back_inserter(left),
-                       [tick](const Zone& zone) { return zone.until > tick; });
+                       [tick](const Zone& zone) { return zone.end() > tick; });
   return left;
 }
 

@@ -165,6 +165,18 @@ class LiveRun:
             raise ScenarioError("amend_law: name u_max_mps, noise_intensity or noise_ceiling")
         return self._amend(command, at, dry_run)
 
+    def cancel(self, number: int) -> None:
+        """Undoes an amendment, as `ergocast amend --cancel` does, and returns once that holds.
+
+        What held before the newest target, end or law holds again; a zone ends.
+
+        Raises TeamError if that is not possible, if no team is found, or if it was not seen to obey;
+        ScenarioError if several teams are found.
+        """
+        answer = self._run("amend", "--cancel", str(int(number)))
+        if answer.returncode:
+            _complain(answer.returncode, answer.stderr)
+
     def _amend(self, command: list[str], at: float, dry_run: bool) -> Amendment:
         if at:
             command += ["--at", f"+{float(at)!r}s"]

@@ -10,12 +10,13 @@
 
 namespace ergocast {
 
-/// One MCAP file with poses, densities, metrics and log lines. Returns nullopt on success, else the
-/// error.
+/// One MCAP file with poses, densities, metrics, amendments and log lines. Returns nullopt on
+/// success, else the error.
 std::optional<std::string> write_mcap(const ExportRecord& record,
                                       const std::filesystem::path& file);
 
-/// A folder with trajectory.csv, metrics.csv, density.csv and log.csv.
+/// A folder with trajectory.csv, metrics.csv, density.csv, log.csv and, if the mission changed,
+/// amendments.csv.
 std::optional<std::string> write_tables(const ExportRecord& record,
                                         const std::filesystem::path& folder);
 

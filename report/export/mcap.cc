@@ -5,6 +5,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "report/export/changes.h"
 #include "report/export/exports.h"
 #include "report/export/foxglove.h"
 #include "report/export/mcap_writer.h"
@@ -31,6 +32,7 @@ class McapExport {
   std::optional<std::string> write() {
     metadata();
     logs();
+    amendments();
     metrics();
     targets();
     coverage();
@@ -67,6 +69,18 @@ class McapExport {
     const auto topic = channel("/log", foxglove::log_schema());
     for (const ExportedLine& line : record_.log)
       waiting_.push_back({line.time_ns, topic, foxglove::log(line)});
+  }
+
+  /// What has changed, as lines of its operators.
+  void amendments() {
+    const std::vector<ExportedChange> changes = changes_of(record_);
+    if (changes.empty()) return;
+    const auto topic = channel("/amendments", foxglove::log_schema());
+    for (const auto& [amendment, t_s, text] : changes) {
+      const std::uint64_t time_ns = record_.time_ns(t_s);
+      const std::string line = "amendment " + std::to_string(amendment.number) + ": " + text;
+      waiting_.push_back({time_ns, topic, foxglove::log({time_ns, "info", amendment.by, line})});
+    }
   }
 
   void metrics() {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "logger/recorder.h"
+#include "report/export/changes.h"
 #include "report/export/exports.h"
 #include "text/shortest.h"
 
@@ -28,6 +29,7 @@ class Tables {
     metrics();
     density();
     log();
+    amendments();
     return problem_;
   }
 
@@ -115,6 +117,16 @@ class Tables {
         file << shortest(static_cast<double>(since) / 1e9) << ',' << line.level << ','
              << quoted(line.process) << ',' << quoted(line.text) << '\n';
       }
+    });
+  }
+
+  void amendments() {
+    const std::vector<ExportedChange> changes = changes_of(record_);
+    if (changes.empty()) return;
+    table("amendments.csv", "number,kind,from_tick,t_s,change,by", [&](std::ostream& file) {
+      for (const auto& [amendment, t_s, text] : changes)
+        file << amendment.number << ',' << to_string(amendment.kind) << ',' << amendment.from << ','
+             << shortest(t_s) << ',' << quoted(text) << ',' << quoted(amendment.by) << '\n';
     });
   }
 

@@ -105,7 +105,8 @@ void add_zones(const LocalPlane& plane, const ExportRecord& record, Json& featur
                        {"amendment", zone.number},
                        {"closed_from_s", t_s(zone.closed)},
                        {"free_from_s", t_s(zone.from)},
-                       {"until_s", t_s(zone.until)}};
+                       {"until_s", t_s(zone.end())}};
+    if (zone.cancelled >= 0) properties["cancelled"] = true;
     if (zone.high_m > zone.low_m) properties["heights_m"] = {zone.low_m, zone.high_m};
     Json rings = Json::array({ring_json(plane, zone.corners_m, false)});
     features.push_back(

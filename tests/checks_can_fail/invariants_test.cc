@@ -36,6 +36,12 @@ const char* const kEnds = "ends_per_s = 0.3";
 const char* const kManyEnds = "ends_per_s = 1";
 const char* const kZones = "zones_per_s = 0.3";
 const char* const kLaws = "laws_per_s = 0.3";
+const char* const kUndoneTargets = "targets_per_s = 0.3\ncancels_per_s = 1";
+const char* const kUndoneEnds = "ends_per_s = 0.3\ncancels_per_s = 1";
+const char* const kUndoneLaws = "laws_per_s = 0.5\ncancels_per_s = 0.5";
+const char* const kUndoneZones = "zones_per_s = 0.5\ncancels_per_s = 1";
+const char* const kFewZones = "zones_per_s = 0.05";
+const char* const kZonesAndRecalls = "zones_per_s = 0.05\nrecalls_per_s = 0.3";
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
@@ -129,6 +135,8 @@ const Plant kPlants[] = {
     {Invariant::kInputsBounded, "the input is not cut"},
     {Invariant::kInputsBounded, "agents keep to the plan's law", kLaws},
     {Invariant::kInputsBounded, "a law holds a tick late", kLaws, "", "", "--lockstep"},
+    {Invariant::kInputsBounded, "agents keep to a law that is undone", kUndoneLaws},
+    {Invariant::kInputsBounded, "all kinds have the law of the last", kLaws, kTwoKinds},
     {Invariant::kDistanceKept, "bodies are no bodies", "", kCrowd},
     {Invariant::kDistanceKept, "only two bodies count", "", kCrowd},
     {Invariant::kDistanceKept, "a body takes the whole gap", "", kCrowd},
@@ -162,8 +170,10 @@ const Plant kPlants[] = {
     {Invariant::kZonesNotEntered, "a zone closes only at its tick", kZones, kTenAgents, "",
      "--lockstep"},
     {Invariant::kZonesNotEntered, "a zone ends early", kZones, kTenAgents, "", "--lockstep"},
+    {Invariant::kZonesNotEntered, "a cancelled zone ends at once", kUndoneZones, kTenAgents},
     {Invariant::kZonesLeft, "nobody is led out of a zone", kZones, kTenAgents},
     {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
+    {Invariant::kHomeInTime, "an agent goes home late", kFewZones, kStations, "", "--lockstep"},
     {Invariant::kHomeInTime, "agents go home by the plan's end", kManyEnds, kStationsForAll, "",
      "--lockstep"},
     {Invariant::kForecastOfWhatIsKnown, "agents go by the plan's end", kEnds, kStations, "",
@@ -171,6 +181,10 @@ const Plant kPlants[] = {
     {Invariant::kNothingCountsWhilePaused, "the way home is not asked for", kManyEnds, kLongRests},
     {Invariant::kRecalledComeHome, "a recalled agent stays where it is", kRecalls, "", "",
      "--lockstep"},
+    {Invariant::kRecalledComeHome, "a recalled agent stays where it is", kZonesAndRecalls, "", "",
+     "--lockstep"},
+    {Invariant::kForecastOfWhatIsKnown, "agents go by an end that is undone", kUndoneEnds,
+     kStations, "", "--lockstep"},
     {Invariant::kForecastOfWhatIsKnown, "the resting are foreseen", "", kStations},
     {Invariant::kForecastOfWhatIsKnown, "the recalled are foreseen", kRecalls},
     {Invariant::kSumsBounded, "a sum runs away"},
@@ -196,8 +210,11 @@ const Plant kPlants[] = {
     {Invariant::kNobodyMovesWhilePaused, "an agent creeps on", kPauses, "", ": agent "},
     {Invariant::kNobodyMovesWhilePaused, "the world creeps on", kPauses, "", ": vehicle ",
      "--lockstep"},
+    {Invariant::kNobodyMovesAfterTheEnd, "an agent drives on after the end", "", "", ": agent "},
+    {Invariant::kNobodyMovesAfterTheEnd, "vehicles go home after the end", "", "", ": vehicle "},
     {Invariant::kAverageOfWhatIsHeld, "the average is off"},
     {Invariant::kSamplesAreTrue, "one agent keeps to the plan's target", kTargets},
+    {Invariant::kSamplesAreTrue, "a target that is undone before its tick holds", kUndoneTargets},
     {Invariant::kSamplesAreTrue, "a target counts twice", kTargets},
     {Invariant::kSamplesAreTrue, "a target holds a tick late", kTargets, "", "", "--lockstep"},
     {Invariant::kSamplesAreTrue, "a pause does not delay a target", kTargetsAndPauses},

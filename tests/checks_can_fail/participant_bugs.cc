@@ -126,6 +126,16 @@ void ignore_pause(const Agent& self, Outbox& out) {
   }
 }
 
+/// With its last message.
+void drive_on(const Agent& self, Outbox& out) {
+  if (out.empty() || self.tick() < kUnderWay) return;
+  Command command;
+  command.header = header_of(out.back().message);
+  command.header.tick = self.tick();
+  command.velocity_mps = {1, 0, 0};
+  out.push_back({Bus::kCommand, command});
+}
+
 void bug_advance(Agent* self, Instant now, Outbox& out) {
   if (bug("an agent crashes") && self->tick() == kUnderWay) std::abort();
   if (bug("an agent gives up") && self->tick() == kUnderWay) self->leave("no more");
@@ -135,6 +145,7 @@ void bug_advance(Agent* self, Instant now, Outbox& out) {
   }
   const bool is_one_of_them = self->author().agent == 2;
   if (self->held()) ignore_pause(*self, out);
+  if (self->finished() && bug("an agent drives on after the end")) drive_on(*self, out);
   if (bug("a newcomer is mute") && is_one_of_them) {
     std::erase_if(out,
                   [](const Outgoing& one) { return std::holds_alternative<Hello>(one.message); });
@@ -218,6 +229,14 @@ void bug_turn_world(World* self, Instant now, Outbox& out) {
       auto* state = std::get_if<WorldState>(&one.message);
       if (state != nullptr && is_held(self->follower().holds(), state->header.tick))
         state->vehicles[0].velocity_mps.x() = 1e-3;
+    }
+  }
+  if (bug("vehicles go home after the end")) {
+    for (Outgoing& one : out) {
+      auto* state = std::get_if<WorldState>(&one.message);
+      if (state != nullptr && state->last)
+        for (Vehicle& vehicle : state->vehicles_in_part())
+          vehicle.position_m = self->follower().mission()->domain.center_m();
     }
   }
   if (bug("the world keeps a tick to itself") && self->tick() == kUnderWay) {

@@ -309,6 +309,58 @@ TEST_F(Amended, TheListNamesZonesThatHaveEnded) {
   EXPECT_EQ(text(), "has ended");
 }
 
+TEST_F(Amended, AZoneIsCancelled) {
+  const Zone zone{.until = 60, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  name_zone(list_, 0, 5, 3, zone);  // until 68
+  announce_list();
+  move_to(20);
+  const auto wish = wish_to_cancel(team_, 0);
+  ASSERT_TRUE(wish) << wish.error();
+  AmendOrder order(*wish, 0, now_);
+  EXPECT_EQ(turn(order, 20ms).state, State::kSent);
+  ASSERT_EQ(sent_.size(), 1U);
+  EXPECT_EQ(sent_[0].kind, AmendmentKind::kReopen);
+  EXPECT_EQ(decode_reopening(sent_[0].content), 0);
+  name_reopening(list_, 22, 0);
+  announce_list();
+  EXPECT_EQ(turn(order, 20ms).state, State::kAnswered);
+  EXPECT_FALSE(wish_to_cancel(team_, 0)) << "it is cancelled already";
+  EXPECT_FALSE(wish_to_cancel(team_, 1)) << "no amendment undoes that";
+  const auto text = [&](std::size_t i) { return amendment_text(team_, list_.recent[i]); };
+  EXPECT_NE(text(0).find("until tick 22, t = 2.2 s: amendment 1 cancelled it"), std::string::npos)
+      << text(0);
+  move_to(22);
+  const OrderReport report = turn(order, 20ms);
+  EXPECT_EQ(report.state, State::kDone);
+  EXPECT_EQ(report.text,
+            "amendment 1, the end of the zone of amendment 0, holds since tick 22, t = 2.2 s");
+  EXPECT_NE(text(0).find("was closed from tick 5, t = 0.5 s until tick 22"), std::string::npos)
+      << text(0);
+  // Another operator cannot do it again, and none can shortly before the end.
+  EXPECT_TRUE(why_impossible(team_, wish_of_reopening(0), 0));
+  name_zone(list_, 22, 25, 3, zone);  // until 88
+  announce_list();
+  move_to(86);
+  EXPECT_TRUE(why_impossible(team_, wish_of_reopening(2), 0));
+}
+
+TEST_F(Amended, AZoneThatIsCancelledBeforeItIsFreeFails) {
+  const Zone zone{.until = 60, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  announce_list();
+  AmendOrder order(wish_of(zone), 30, now_);
+  turn(order, 20ms);
+  name_zone(list_, 0, 5, 30, zone);
+  name_reopening(list_, 10, 0);
+  announce_list();
+  move_to(7);
+  const OrderReport report = turn(order, 20ms);
+  EXPECT_EQ(report.state, State::kFailed);
+  EXPECT_NE(report.text.find("is closed from tick 5, t = 0.5 s until tick 10, t = 1.0 s: amendment "
+                             "1 cancelled it"),
+            std::string::npos)
+      << report.text;
+}
+
 TEST_F(Amended, ThereIsNoPlaceForANinthZone) {
   const Zone zone{.until = 50, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
   for (std::size_t i = 0; i < kMaxZones; ++i) name_zone(list_, 0, 5, 3, zone);

@@ -73,6 +73,19 @@ TEST_F(AmendmentLines, NameWhoWasInAZone) {
                                       "s; at t = 7.0 s the mission had ended"}));
 }
 
+TEST_F(AmendmentLines, NameWhatCancelledAZone) {
+  name_zone(list_, 0, 10, 20, zone(400));
+  name_zone(list_, 0, 11, 20, zone(150.5));
+  name_reopening(list_, 40, 1);
+  name_reopening(list_, 20, 0);
+  EXPECT_EQ(amendment_lines(run(), mission_),
+            (std::vector<std::string>{
+                "zone      amendment 0 closed from t = 1.0 s until t = 2.0 s, when amendment 3 "
+                "cancelled it before it was free",
+                "zone      amendment 1 closed from t = 1.1 s until t = 4.0 s, when amendment 2 "
+                "cancelled it; at t = 3.1 s agent 0 was inside"}));
+}
+
 TEST_F(AmendmentLines, ARecordEndsByTheNewestEndAndItsPauses) {
   const TempFolder folder;
   EXPECT_DOUBLE_EQ(recorded_end_s(folder.path(), mission_), 10);

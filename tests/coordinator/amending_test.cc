@@ -314,6 +314,48 @@ TEST(Amending, ClosesAZoneAtOnceAndFreesItLater) {
   EXPECT_EQ(zone.until, 163);
 }
 
+Amend reopening(std::int32_t zone, std::int32_t number, Tick delay = 0) {
+  return {.header = {kRun, kOperator, 1, next_sequence(), 0},
+          .number = number,
+          .kind = AmendmentKind::kReopen,
+          .delay_ticks = delay,
+          .content = encode_reopening(zone),
+          .by = "anna@base"};
+}
+
+TEST(Amending, CancelsAZoneOnce) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  give(coordinator, zone_wish(300, 0), at(1s));
+  let_world_stand_by(coordinator, 11);
+  give(coordinator, world_where(80, {79, 79}), at(1s));
+  for (const Amend& refused : {reopening(1, 1), reopening(0, 1, 5)}) {
+    give(coordinator, refused, at(1s));
+    let_world_stand_by(coordinator, 80);
+    EXPECT_EQ(coordinator.amendments().named, 1);
+  }
+  give(coordinator, reopening(0, 1), at(1s));
+  let_world_stand_by(coordinator, 81);
+  ASSERT_EQ(coordinator.amendments().named, 2);
+  EXPECT_EQ(coordinator.amendments().recent[1],
+            (Amendment{1, AmendmentKind::kReopen, 83, 0, "anna@base"}));
+  EXPECT_EQ(coordinator.amendments().zones[0].end(), 83);
+  give(coordinator, reopening(0, 2), at(1s));
+  let_world_stand_by(coordinator, 82);
+  EXPECT_EQ(coordinator.amendments().named, 2) << "it is cancelled already";
+}
+
+TEST(Amending, CancelsNoZoneThatEndsBefore) {
+  Coordinator coordinator = running_coordinator(wide_mission());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  give(coordinator, zone_wish(300, 0), at(1s));
+  let_world_stand_by(coordinator, 11);  // until 163
+  give(coordinator, world_where(161, {160, 160}), at(1s));
+  give(coordinator, reopening(0, 1), at(1s));
+  let_world_stand_by(coordinator, 161);
+  EXPECT_EQ(coordinator.amendments().named, 1);
+}
+
 TEST(Amending, RefusesAZoneThatIsNotPossible) {
   const Amend outside = zone_wish(5000, 0), everything = zone_wish(-100, 0, 4000);
   Amend cut = zone_wish(300, 0);

@@ -185,6 +185,44 @@ TEST(Amendments, AZoneStaysInForceThoughTheNextOneIsNamedForALaterTick) {
   EXPECT_EQ(list.zones.size(), 2U);
 }
 
+TEST(Amendments, ACancelledZoneEndsAtItsTick) {
+  Amendments list;
+  name_zone(list, 20, 20, 30, square(100));  // until 150
+  EXPECT_FALSE(can_reopen(list, 1, 60)) << "it is no zone";
+  EXPECT_FALSE(can_reopen(list, 0, 150)) << "it ends then";
+  EXPECT_TRUE(can_reopen(list, 0, 149));
+  name_reopening(list, 60, 0);
+  EXPECT_EQ(list.recent[1], (Amendment{1, AmendmentKind::kReopen, 60, 0}));
+  EXPECT_FALSE(can_reopen(list, 0, 55)) << "once";
+  EXPECT_TRUE(list.zones[0].closed_at(59));
+  EXPECT_FALSE(list.zones[0].closed_at(60));
+  EXPECT_EQ(zones_at(list, 59), 1U);
+  EXPECT_EQ(zones_at(list, 60), 0U);
+  EXPECT_EQ(zone_hash(list.zones[0]), list.recent[0].hash);
+  EXPECT_TRUE(are_amendments(list, small_mission(1)));
+  EXPECT_EQ(decode_amendments(encode_amendments(list), small_mission(1)), list);
+  name_zone(list, 60, 60, 30, square(300));
+  ASSERT_EQ(list.zones.size(), 1U) << "it has left the list";
+  EXPECT_EQ(list.zones[0].number, 2);
+}
+
+TEST(Amendments, AZoneThatIsCancelledBeforeItClosesIsNeverClosed) {
+  Amendments list;
+  name_zone(list, 0, 20, 30, square(100));
+  name_reopening(list, 10, 0);
+  EXPECT_EQ(list.recent[1].from, 20);
+  for (Tick tick = 0; tick < 200; ++tick) EXPECT_FALSE(list.zones[0].closed_at(tick)) << tick;
+  EXPECT_TRUE(are_amendments(list, small_mission(1)));
+}
+
+TEST(Amendments, WhatCancelsAZoneIsItsWholeNumber) {
+  const std::vector<std::byte> bytes = encode_reopening(70000);
+  EXPECT_EQ(decode_reopening(bytes), 70000);
+  EXPECT_EQ(decode_reopening(std::span(bytes).first(3)), std::nullopt);
+  EXPECT_EQ(decode_reopening(encode_reopening(-1)), std::nullopt);
+  EXPECT_EQ(decode_reopening(encode_end(5)), std::nullopt);
+}
+
 TEST(Amendments, RefusesZonesThatNoCoordinatorNames) {
   Amendments list;
   name_zone(list, 20, 20, 30, square(100));
@@ -197,6 +235,8 @@ TEST(Amendments, RefusesZonesThatNoCoordinatorNames) {
   EXPECT_TRUE(refused([](Zone& zone) { zone.number = 1; }));
   EXPECT_TRUE(refused([](Zone& zone) { zone.closed = 51; }));
   EXPECT_TRUE(refused([](Zone& zone) { zone.until = 50; }));
+  EXPECT_TRUE(refused([](Zone& zone) { zone.cancelled = 19; })) << "before it is closed";
+  EXPECT_TRUE(refused([](Zone& zone) { zone.cancelled = -2; }));
   EXPECT_TRUE(refused([](Zone& zone) { zone.corners_m.resize(2); }));
   EXPECT_TRUE(refused([](Zone& zone) { std::swap(zone.corners_m[0], zone.corners_m[1]); }));
   EXPECT_TRUE(refused([](Zone& zone) { zone.corners_m[0].x() = std::nan(""); }));

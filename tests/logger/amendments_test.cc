@@ -123,6 +123,28 @@ TEST(ReceivedAmendments, AllZonesAreKeptThoughAListHasThoseInForce) {
   EXPECT_EQ(heard.unknown_content(), nullptr);
 }
 
+TEST(ReceivedAmendments, AZoneIsCancelledAsLongAsAnAmendmentSaysSo) {
+  ReceivedAmendments heard;
+  Amendments list;
+  Zone zone;
+  zone.until = 100;
+  zone.corners_m = {{100, 100}, {200, 100}, {200, 200}};
+  name_zone(list, 10, 10, 2, zone);
+  const Amendments before = list;
+  name_reopening(list, 30, 0);
+  heard.note(list);
+  EXPECT_EQ(heard.list(), list);
+  heard.note(before);
+  EXPECT_EQ(heard.list(), before) << "its coordinator's successor does not know it";
+  heard.note(list);
+  name_zone(list, 40, 40, 2, zone);
+  ASSERT_EQ(list.zones.size(), 1U);
+  heard.note(list);
+  ASSERT_EQ(heard.list().zones.size(), 2U);
+  EXPECT_EQ(heard.list().zones[0].cancelled, 30) << "the list has it no more";
+  EXPECT_EQ(heard.list().zones[1].cancelled, -1);
+}
+
 // ---- amendments.json ----
 
 class AmendmentsFile : public testing::Test {
@@ -191,6 +213,33 @@ TEST_F(AmendmentsFile, HasZones) {
   EXPECT_TRUE(damaged("100.1", "\"x\""));
   EXPECT_TRUE(damaged("\"until_tick\":17", "\"until_tick\":12"));
   EXPECT_TRUE(damaged("\"closed_tick\":10", "\"closed_tick\":13"));
+}
+
+TEST_F(AmendmentsFile, HasCancelledZones) {
+  ReceivedAmendments heard;
+  Amendments list;
+  Zone zone;
+  zone.until = 50;
+  zone.corners_m = {{100, 100}, {200, 100}, {200, 200}};
+  name_zone(list, 10, 10, 2, zone);
+  name_reopening(list, 30, 0);
+  heard.note(list);
+  const std::string text = amendments_text(heard, 0.1);
+  write(text);
+  auto again = read();
+  ASSERT_TRUE(again) << again.error();
+  EXPECT_EQ(again->list(), list);
+  EXPECT_EQ(amendments_json(heard, 0.1)[0]["cancelled_tick"], 30);
+  EXPECT_EQ(amendments_json(heard, 0.1)[1]["kind"], "reopen");
+  EXPECT_EQ(amendments_json(heard, 0.1)[1]["zone"], 0);
+  for (const auto& [from, to] : {std::pair("\"cancelled_tick\":30", "\"cancelled_tick\":9"),
+                                 std::pair("\"cancelled_tick\":30", "\"cancelled_tick\":null"),
+                                 std::pair("\"zone\":0", "\"zone\":1")}) {
+    std::string changed = text;
+    changed.replace(changed.find(from), std::string(from).size(), to);
+    write(changed);
+    EXPECT_FALSE(read()) << to;
+  }
 }
 
 TEST_F(AmendmentsFile, HasWhatTheSummaryListsAndTheNumbers) {

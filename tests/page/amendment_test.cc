@@ -30,14 +30,21 @@ class AmendedMissionInABrowser : public PageInABrowser {
   /// A minute in which the target changes after 20 s to the domain's middle, and after 40 s to its
   /// east.
   void open_amended(const std::string& fragment = "", const std::string& law = "history=BY_TIME") {
+    open_changed(fragment, law, [](const Mission& mission) {
+      Amendments amendments;
+      name_target(amendments, 200, gaussian(mission, 1000, 1000));
+      name_target(amendments, 400, gaussian(mission, 1700, 1000));
+      return amendments;
+    });
+  }
+  /// A minute with the amendments of a function.
+  void open_changed(const std::string& fragment, const std::string& law, const auto& changes) {
     ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "60",
                         "--set", "law." + law, "--out", out()}),
               0)
         << output();
     const Mission mission = read_mission(out()).value();
-    Amendments amendments;
-    name_target(amendments, 200, gaussian(mission, 1000, 1000));
-    name_target(amendments, 400, gaussian(mission, 1700, 1000));
+    const Amendments amendments = changes(mission);
     {
       std::ofstream trajectory(out() / kTrajectoryFile), metrics(out() / kMetricsFile);
       lab::Simulation({.plan = encode_plan(mission), .amendments = amendments}, trajectory, metrics)
@@ -120,6 +127,33 @@ TEST_F(AmendedMissionInABrowser, AddsUpTheMetricOfATeamThatForgets) {
 TEST_F(AmendedMissionInABrowser, AddsUpTheMetricOfAKeptHistory) {
   open_amended("", "history=KEEP");
   EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
+  expect_no_errors();
+}
+
+TEST_F(AmendedMissionInABrowser, ACancelledZoneEndsAtItsTick) {
+  open_changed("", "history=BY_TIME", [](const Mission&) {
+    const Zone zone{.until = 300, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+    Amendments amendments;
+    name_zone(amendments, 0, 50, 50, zone);
+    name_zone(amendments, 0, 60, 100, zone);
+    name_reopening(amendments, 200, 0);
+    name_reopening(amendments, 150, 1);
+    return amendments;
+  });
+  const auto zones_at = [this](int row) {
+    return js("return ergocast.S.run.zonesAt(" + std::to_string(row) + ").map(z => z.number)");
+  };
+  EXPECT_EQ(zones_at(149), nlohmann::json({0, 1}));
+  EXPECT_EQ(zones_at(150), nlohmann::json({0}));
+  EXPECT_EQ(zones_at(200), nlohmann::json::array());
+  EXPECT_EQ(js("return ergocast.S.run.marks.map(({ kind, t, until }) => [kind, t, until ?? 0])"),
+            nlohmann::json::parse(R"([["zone", 6, 15], ["zone", 10, 20], ["reopen", 15, 0],
+                                      ["reopen", 20, 0]])"));
+  EXPECT_EQ(js("const button = [...document.querySelectorAll('#strip button')].at(-1);"
+               "return button.title"),
+            "amendment 2: zone cancelled at 20.0 s");
+  js("ergocast.draw(14)");
+  screenshot("cancelled_zones");
   expect_no_errors();
 }
 

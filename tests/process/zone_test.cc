@@ -67,6 +67,34 @@ TEST_P(ZoneInEitherPace, SendsTheTeamOutAndKeepsItOut) {
   EXPECT_TRUE(answered("identical to its simulation")) << output();
 }
 
+TEST_P(ZoneInEitherPace, IsCancelled) {
+  Child mission = launch_endless(scenario(), {GetParam(), "--lcm-url", kUrl});
+  ASSERT_TRUE(moves_on(200000)) << printed();
+  ASSERT_EQ(amend({"--zone", square(), "--for", "1000000s"}), 0) << output();
+  ASSERT_EQ(amend({"--list"}), 0) << output();
+  EXPECT_TRUE(answered("(--cancel undoes it)")) << output();
+  ASSERT_EQ(amend({"--cancel", "0"}), 0) << output();
+  const std::string printed_text = output(), since = "holds since tick ";
+  EXPECT_TRUE(answered("amendment 1, the end of the zone of amendment 0, ")) << output();
+  ASSERT_NE(printed_text.find(since), std::string::npos) << printed_text;
+  const Tick from = std::stoll(printed_text.substr(printed_text.find(since) + since.size()));
+  EXPECT_EQ(amend({"--cancel", "0"}), 4) << output();
+  EXPECT_TRUE(answered("is a zone that has ended")) << output();
+  ASSERT_EQ(amend({"--list"}), 0) << output();
+  EXPECT_TRUE(answered(": amendment 1 cancelled it")) << output();
+  ASSERT_EQ(ergocast({"status", "--json", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_TRUE(answered("\"zones\":[]")) << output();
+  ASSERT_TRUE(moves_on(400000)) << printed();
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
+  EXPECT_GT(rows_inside(from).first, 0) << "the target draws them there again";
+  EXPECT_NE(printed().find(", when amendment 1 cancelled it; at t = "), std::string::npos)
+      << printed();
+  if (GetParam() != std::string("--lockstep")) return;
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  EXPECT_TRUE(answered("identical to its simulation")) << output();
+}
+
 TEST_F(ZoneCommand, ADryRunNamesThatThereIsNoPlaceForANinthZone) {
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
   const std::vector<std::string> order = {"--zone", square(), "--for", "1000000s"};

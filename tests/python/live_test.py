@@ -111,6 +111,24 @@ class ARunningTeam(unittest.TestCase):
         difference = self.team.target(from_text.number) - self.team.target(from_grid.number)
         self.assertLess(np.abs(difference).max(), 0.01)
 
+    def test_an_amendment_is_cancelled(self):
+        last = self.run_.amend(EAST)
+        self.run_.cancel(last.number)
+        self.assertEqual(self.numbered(), last.number + 2)
+        with self.assertRaisesRegex(ergocast.TeamError, "later amendment has replaced"):
+            self.run_.cancel(last.number)
+
+    def test_a_zone_is_cancelled(self):
+        corner = self.folder / "corner.textproto"
+        corner.write_text("vertices { x_m: 0 y_m: 0 } vertices { x_m: 200 y_m: 0 } vertices { x_m: 0 y_m: 200 }")
+        number = self.numbered()
+        subprocess.run([COMMAND, "amend", "--zone", corner, "--for", "1000000s"], check=True, capture_output=True)
+        self.run_.cancel(number)
+        ended = lambda: all(zone["amendment"] != number for zone in self.run_.status()["zones"])
+        self.assertTrue(ended())
+        with self.assertRaisesRegex(ergocast.TeamError, "zone that has ended"):
+            self.run_.cancel(number)
+
     def test_a_dict_a_text_and_a_file_are_the_same_target(self):
         text = ("target { gaussians { mean_x_m: 1600 mean_y_m: 400 sigma_m: 150 } "
                 "uniform_weight: 0.1 }")

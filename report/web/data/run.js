@@ -50,7 +50,8 @@ export class Run {
     this.summary = null;
     // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
     this.amendments = [];
-    this.zones = []; // {number, closed, from, until: ticks, corners_m, heights_m}, ascending
+    // {number, closed, from, until: ticks, corners_m, heights_m, cancelled}, ascending
+    this.zones = [];
     this.received = new Map(); // coefficients of new targets, by hash
     this.targets = [plannedTarget(mission)]; // ascending by row
     this.coverage = new Coverage(this);
@@ -130,8 +131,11 @@ export class Run {
       ...this.targets.slice(1).map(({ from }) => ({ from, kind: 'target', sign: '◎', text: 'new target' })),
       ...ends.map(({ from }) => ({ from, kind: 'end', sign: '⏱', text: 'another end' })),
       ...laws.map(({ from }) => ({ from, kind: 'law', sign: '⚙', text: 'another law' })),
-      ...this.zones.map(({ from, until }) => ({
-        from,
+      ...this.amendments
+        .filter(one => one.kind === 'reopen')
+        .map(({ from }) => ({ from, kind: 'reopen', sign: '○', text: 'zone cancelled' })),
+      ...this.zones.map(({ closed, from, until }) => ({
+        from: until < from ? closed : from,
         until: until * dt,
         kind: 'zone',
         sign: '⊘',

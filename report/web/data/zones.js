@@ -102,7 +102,7 @@ const wholeSeconds = s => (s < 120 ? `${Math.ceil(s - 1e-6)} s` : duration(s));
 export function stateOfZone(run, { number, from, until, corners_m: corners, heights_m: heights }, row) {
   const tick = row * run.stride,
     leaving = tick < from,
-    left = wholeSeconds(((leaving ? from : until) - tick) * run.mission.dt_s),
+    left = wholeSeconds(((leaving ? Math.min(from, until) : until) - tick) * run.mission.dt_s),
     count = insideAt(run, row, corners, heights ?? [0, Infinity]).length;
   const words = leaving ? `agents leave within ${left}` : `closed, ${left} left`;
   return {

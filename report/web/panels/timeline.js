@@ -13,6 +13,7 @@ const COLOUR = {
   end: 'var(--muted)',
   zone: 'var(--bad)',
   law: 'var(--muted)',
+  reopen: 'var(--muted)',
 };
 let last = 0;
 

@@ -80,5 +80,19 @@ TEST_F(ExportedMap, HasTheZonesAndAmendments) {
   EXPECT_EQ(amendments[0]["tick_count"], 300);
 }
 
+TEST_F(ExportedMap, TablesAndMcapHaveWhatHasChanged) {
+  amendments_ = {"--law", "2:u_max_mps=3", "--end", "1:30s"};
+  map_of("quadrimodal_corners");
+  ASSERT_EQ(ergocast({"export", out(), "--to", "csv"}), 0) << output();
+  EXPECT_EQ(text_of(out() / "export/amendments.csv"),
+            "number,kind,from_tick,t_s,change,by\n"
+            "0,end,10,1,\"the end at 30 s of mission time\",\"simulate\"\n"
+            "1,law,20,2,\"law u_max_mps 3\",\"simulate\"\n");
+  ASSERT_EQ(ergocast({"export", out(), "--to", "mcap"}), 0) << output();
+  const std::string mcap = text_of(out() / "export.mcap");
+  EXPECT_NE(mcap.find("/amendments"), std::string::npos);
+  EXPECT_NE(mcap.find("amendment 1: law u_max_mps 3"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ergocast::test

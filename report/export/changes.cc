@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Has a line for each kind of amendment.
+#include "report/export/changes.h"
+
+#include "core/mission/law_change.h"
+#include "text/shortest.h"
+
+namespace ergocast {
+namespace {
+
+/// "zone, closed from 8 s on, free from 15 s until 18 s".
+std::string zone_text(const Zone& zone, double dt_s) {
+  const auto at = [dt_s](Tick tick) { return shortest(static_cast<double>(tick) * dt_s) + " s"; };
+  const std::string closed = "zone, closed from " + at(zone.closed);
+  if (zone.cancelled >= 0) return closed + " until " + at(zone.end()) + ", when it was cancelled";
+  return closed + " on, free from " + at(zone.from) + " until " + at(zone.until);
+}
+
+std::string text_of(const ReceivedAmendment& one, const Mission& mission) {
+  const double dt_s = mission.timing.dt_s;
+  switch (one.amendment.kind) {
+    case AmendmentKind::kPause:
+      return "the mission is paused";
+    case AmendmentKind::kResume:
+      return "the mission goes on";
+    case AmendmentKind::kTarget:
+      return "target " + to_hex(one.amendment.hash);
+    case AmendmentKind::kEnd:
+      return "the end at " + shortest(static_cast<double>(one.amendment.hash) * dt_s) +
+             " s of mission time";
+    case AmendmentKind::kZone:
+      return one.zone ? zone_text(*one.zone, dt_s) : "zone " + to_hex(one.amendment.hash);
+    case AmendmentKind::kLaw:
+      return "law " + (one.law ? law_text(*one.law, mission) : to_hex(one.amendment.hash));
+    case AmendmentKind::kReopen:
+      return "the zone of amendment " + std::to_string(one.amendment.hash) + " is cancelled";
+  }
+  return to_string(one.amendment.kind);
+}
+
+}  // namespace
+
+std::vector<ExportedChange> changes_of(const ExportRecord& record) {
+  std::vector<ExportedChange> changes;
+  for (const ReceivedAmendment& one : record.run.amendments.all()) {
+    if (one.is_void) continue;
+    const double t_s = static_cast<double>(one.amendment.from) * record.mission.timing.dt_s;
+    changes.push_back({one.amendment, t_s, text_of(one, record.mission)});
+  }
+  return changes;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What has changed in a mission, in words, for formats that have no keys of their own for it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mission/amendments.h"
+#include "report/export/record.h"
+
+namespace ergocast {
+
+struct ExportedChange {
+  Amendment amendment;
+  double t_s = 0;    ///< of its tick, as tracks have it
+  std::string text;  ///< "another law: u_max_mps 8"
+};
+
+/// All amendments of the record that are not void, ascending by number.
+std::vector<ExportedChange> changes_of(const ExportRecord& record);
+
+}  // namespace ergocast

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What browsers get of a running mission's amendments.
+#include "cli/team/amendment_history.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/team.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+Zone triangle(double side_m) {
+  return {.until = 50, .corners_m = {{100, 100}, {100 + side_m, 100}, {100, 100 + side_m}}};
+}
+
+TEST(AmendmentHistory, HasZonesThatHaveLeftTheListAndCancelledOnes) {
+  const Mission mission = small_mission(1);
+  AmendmentHistory history;
+  AmendmentHistory::Cursor cursor;
+  const auto frame = [&](const Amendments& list) {
+    history.note(list);
+    nlohmann::ordered_json json;
+    history.add_new(cursor, mission, json);
+    return json;
+  };
+  Amendments list;
+  name_zone(list, 0, 5, 3, triangle(100));  // until 58
+  EXPECT_EQ(frame(list)["zones"][0]["until"], 58);
+  EXPECT_TRUE(frame(list).is_null()) << "nothing is new";
+  name_reopening(list, 20, 0);
+  const auto cancelled = frame(list);
+  EXPECT_EQ(cancelled["zones"][0]["until"], 20);
+  EXPECT_EQ(cancelled["zones"][0]["cancelled"], true);
+  EXPECT_EQ(cancelled["amendments"][1]["kind"], "reopen");
+  EXPECT_EQ(cancelled["amendments"][1]["zone"], 0);
+  name_zone(list, 30, 30, 3, triangle(200));
+  ASSERT_EQ(list.zones.size(), 1U);
+  const auto both = frame(list)["zones"];
+  ASSERT_EQ(both.size(), 2U) << "the page shows the mission from its beginning";
+  EXPECT_EQ(both[0]["until"], 20);
+  EXPECT_EQ(both[1]["number"], 2);
+}
+
+TEST(AmendmentHistory, ForgetsAZoneThatANewerListLacks) {
+  const Mission mission = small_mission(1);
+  AmendmentHistory history;
+  AmendmentHistory::Cursor cursor;
+  Amendments lost, kept;
+  name_zone(lost, 0, 5, 3, triangle(100));
+  name_zone(kept, 0, 9, 3, triangle(200));
+  name_pause(kept, 10);
+  history.note(lost);
+  history.note(kept);
+  nlohmann::ordered_json json;
+  history.add_new(cursor, mission, json);
+  ASSERT_EQ(json["zones"].size(), 1U);
+  EXPECT_EQ(json["zones"][0]["closed"], 9);
+}
+
+}  // namespace
+}  // namespace ergocast
