@@ -95,12 +95,16 @@ double longest_way_home_s(const Mission& mission, AgentId id) {
 }  // namespace
 
 /// Whether a zone may keep an agent from being home at a counted tick. One that has ended for long
-/// enough does not: from then on the agent has the whole time that the longest way takes, twice
-/// because it turns and gives way. Ways among walls are not known here.
+/// enough does not: from then on the agent has the whole time that the longest way takes. If it may
+/// have to turn, give way or go against the wind, it has twice the time and some seconds. Ways
+/// among walls are not known here.
 bool Invariants::zone_may_delay(AgentId id, Tick home_from) const {
-  constexpr double kTurns_s = 10;
+  constexpr double kSpare_s = 1, kTurns_s = 10;
   if (!mission_.walls.empty()) return !zones_.empty();
-  const double spare_s = 2 * longest_way_home_s(mission_, id) + kTurns_s;
+  const bool straight = motion_of(mission_, id).is_point() && !keeps_distance(mission_) &&
+                        mission_.disturbance_intensity == 0;
+  const double longest_s = longest_way_home_s(mission_, id);
+  const double spare_s = straight ? longest_s + kSpare_s : 2 * longest_s + kTurns_s;
   const auto spare = static_cast<Tick>(std::ceil(spare_s / mission_.timing.dt_s));
   return std::ranges::any_of(zones_, [&](const auto& zone) {
     return counted_ticks(truth_.holds(), zone.second.end()) > home_from - spare;

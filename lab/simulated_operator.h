@@ -32,9 +32,10 @@ class SimulatedOperator {
     if (paused_until_ && *paused_until_ <= now) paused_until_.reset();
   }
   /// Wants the team to cover another target. It then wants no earlier one any more.
-  void want_target(TargetChange target) {
+  void want_target(const TargetChange& target, Tick delay = 0) {
     target_hash_ = target_hash(target);
     target_ = encode_target(target);
+    target_delay_ = delay;
   }
   /// Wants the mission to have another end. The coordinator may refuse it; then it gives up.
   void want_end(Tick tick_count) {
@@ -51,9 +52,10 @@ class SimulatedOperator {
   /// Wants the zone of this amendment to end. The coordinator may refuse it; then it gives up.
   void want_no_zone(std::int32_t number) { cancelled_zone_ = number; }
   /// Wants the law to have other numbers. It then wants no earlier ones any more.
-  void want_law(const LawChange& law) {
+  void want_law(const LawChange& law, Tick delay = 0) {
     law_hash_ = law_hash(law);
     law_ = encode_law(law);
+    law_delay_ = delay;
   }
   /// Wants an agent to go home, or out of the mission if it `leaves`.
   void want_recall(AgentId id, bool leaves) { recalls_.push_back({{}, id, leaves, {}}); }
@@ -76,7 +78,8 @@ class SimulatedOperator {
     next_target_ = now + kPeriod;
     auto parts = in_parts({.header = {run, kOperator, 1, messages_ + 1, coordinator.tick()},
                            .number = list.named,
-                           .kind = AmendmentKind::kTarget},
+                           .kind = AmendmentKind::kTarget,
+                           .delay_ticks = target_delay_},
                           target_);
     messages_ += std::ssize(parts);
     return parts;
@@ -135,6 +138,7 @@ class SimulatedOperator {
     return in_parts({.header = {run, kOperator, 3, ++messages_, coordinator.tick()},
                      .number = list.named,
                      .kind = AmendmentKind::kLaw,
+                     .delay_ticks = law_delay_,
                      .by = "operator@laboratory"},
                     law_);
   }
@@ -197,6 +201,7 @@ class SimulatedOperator {
   std::int64_t messages_ = 0;
   std::vector<std::byte> target_;  // that it wants, as AMEND carries it
   std::uint64_t target_hash_ = 0;
+  Tick target_delay_ = 0;
   Instant next_target_;
   static constexpr int kMostEndsSent = 10;
   std::optional<Tick> end_;  // that it wants
@@ -210,6 +215,7 @@ class SimulatedOperator {
   Instant next_cancel_;
   std::vector<std::byte> law_;  // that it wants
   std::uint64_t law_hash_ = 0;
+  Tick law_delay_ = 0;
   Instant next_law_;
   std::vector<Recall> recalls_;  // that it wants
   std::set<AgentId> sent_out_;

@@ -77,7 +77,7 @@ void Simulation::begin(const FaultEvent& event) {
       return;
     case kTarget:
       ++counts_.targets;
-      operator_.want_target(drawn_target(event.who));
+      operator_.want_target(drawn_target(event.who), drawn_delay(event.who));
       return;
     case kEnd:
       ++counts_.ends;
@@ -88,7 +88,7 @@ void Simulation::begin(const FaultEvent& event) {
       return;
     case kLaw:
       ++counts_.laws;
-      operator_.want_law(drawn_law(event.who));
+      operator_.want_law(drawn_law(event.who), drawn_delay(event.who));
       return;
     case kCancel:
       want_cancel(event.who);
@@ -111,6 +111,15 @@ void Simulation::cut(const FaultEvent& event, bool join) {
       join ? network_.join(from, to) : network_.cut(from, to);
     }
   }
+}
+
+/// How long a target or law waits longer than necessary: as often as not not at all, so that some
+/// can be undone before they hold.
+Tick Simulation::drawn_delay(std::uint64_t word) const {
+  constexpr double kMost_s = 6;
+  RandomStream random(word, 1);
+  if (random.coin()) return 0;
+  return static_cast<Tick>(kMost_s * random.uniform() / mission_.timing.dt_s);
 }
 
 /// A target that no agent reaches: all is at one place, or, where modes are not cosines, between

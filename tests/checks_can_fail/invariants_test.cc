@@ -40,7 +40,7 @@ const char* const kUndoneTargets = "targets_per_s = 0.3\ncancels_per_s = 1";
 const char* const kUndoneEnds = "ends_per_s = 0.3\ncancels_per_s = 1";
 const char* const kUndoneLaws = "laws_per_s = 0.5\ncancels_per_s = 0.5";
 const char* const kUndoneZones = "zones_per_s = 0.5\ncancels_per_s = 1";
-const char* const kFewZones = "zones_per_s = 0.05";
+const char* const kEarlyZones = "zones_per_s = 0.15\nlasting_share = 0.2";
 const char* const kZonesAndRecalls = "zones_per_s = 0.05\nrecalls_per_s = 0.3";
 const char* const kRecalls = "recalls_per_s = 0.3";
 const char* const kDepartures = "recalls_per_s = 0.3\ndeparture_share = 1";
@@ -125,6 +125,10 @@ const char* const kStations =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 20 } "
     "kind { name: \"b\" count: 2 } }";
 
+const char* const kShortRests =
+    "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 1 } "
+    "kind { name: \"b\" count: 2 } }";
+
 const char* const kStationsForAll =
     "agents { kind { name: \"a\" count: 4 station { x_m: 8 y_m: 50 } reserve_s: 1 } }";
 const char* const kLongRests =
@@ -173,7 +177,7 @@ const Plant kPlants[] = {
     {Invariant::kZonesNotEntered, "a cancelled zone ends at once", kUndoneZones, kTenAgents},
     {Invariant::kZonesLeft, "nobody is led out of a zone", kZones, kTenAgents},
     {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
-    {Invariant::kHomeInTime, "an agent goes home late", kFewZones, kStations, "", "--lockstep"},
+    {Invariant::kHomeInTime, "an agent goes home late", kEarlyZones, kShortRests, "", "--lockstep"},
     {Invariant::kHomeInTime, "agents go home by the plan's end", kManyEnds, kStationsForAll, "",
      "--lockstep"},
     {Invariant::kForecastOfWhatIsKnown, "agents go by the plan's end", kEnds, kStations, "",
