@@ -2,15 +2,23 @@
 // Has a line for each kind of amendment.
 #include "report/export/changes.h"
 
+#include <cstdio>
+
 #include "core/mission/law_change.h"
-#include "text/shortest.h"
 
 namespace ergocast {
 namespace {
 
+/// "1600.8 s"
+std::string seconds_of(Tick tick, double dt_s) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9g s", static_cast<double>(tick) * dt_s);
+  return text;
+}
+
 /// "zone, closed from 8 s on, free from 15 s until 18 s".
 std::string zone_text(const Zone& zone, double dt_s) {
-  const auto at = [dt_s](Tick tick) { return shortest(static_cast<double>(tick) * dt_s) + " s"; };
+  const auto at = [dt_s](Tick tick) { return seconds_of(tick, dt_s); };
   const std::string closed = "zone, closed from " + at(zone.closed);
   if (zone.cancelled >= 0) return closed + " until " + at(zone.end()) + ", when it was cancelled";
   return closed + " on, free from " + at(zone.from) + " until " + at(zone.until);
@@ -26,8 +34,8 @@ std::string text_of(const ReceivedAmendment& one, const Mission& mission) {
     case AmendmentKind::kTarget:
       return "target " + to_hex(one.amendment.hash);
     case AmendmentKind::kEnd:
-      return "the end at " + shortest(static_cast<double>(one.amendment.hash) * dt_s) +
-             " s of mission time";
+      return "the end at " + seconds_of(static_cast<Tick>(one.amendment.hash), dt_s) +
+             " of mission time";
     case AmendmentKind::kZone:
       return one.zone ? zone_text(*one.zone, dt_s) : "zone " + to_hex(one.amendment.hash);
     case AmendmentKind::kLaw:

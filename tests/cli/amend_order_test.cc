@@ -344,6 +344,19 @@ TEST_F(Amended, AZoneIsCancelled) {
   EXPECT_TRUE(why_impossible(team_, wish_of_reopening(2), 0));
 }
 
+TEST_F(Amended, AZoneDoesNotFailBecauseAnotherIsCancelled) {
+  const Zone zone{.until = 60, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  announce_list();
+  AmendOrder order(wish_of(zone), 30, now_);
+  turn(order, 20ms);
+  name_zone(list_, 0, 5, 30, zone);
+  name_zone(list_, 0, 5, 30, zone);
+  name_reopening(list_, 10, 1);
+  announce_list();
+  move_to(7);
+  EXPECT_EQ(turn(order, 20ms).state, State::kAnswered);
+}
+
 TEST_F(Amended, AZoneThatIsCancelledBeforeItIsFreeFails) {
   const Zone zone{.until = 60, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
   announce_list();

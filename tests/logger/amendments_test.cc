@@ -136,6 +136,12 @@ TEST(ReceivedAmendments, AZoneIsCancelledAsLongAsAnAmendmentSaysSo) {
   EXPECT_EQ(heard.list(), list);
   heard.note(before);
   EXPECT_EQ(heard.list(), before) << "its coordinator's successor does not know it";
+  Amendments later = before;
+  name_zone(later, 150, 150, 2, zone);
+  ReceivedAmendments successor = heard;
+  successor.note(later);
+  ASSERT_EQ(successor.list().zones.size(), 2U);
+  EXPECT_EQ(successor.list().zones[0].cancelled, -1) << "and no list has that zone any more";
   heard.note(list);
   name_zone(list, 40, 40, 2, zone);
   ASSERT_EQ(list.zones.size(), 1U);
