@@ -322,6 +322,7 @@ TEST_F(Amended, AZoneIsCancelled) {
   EXPECT_EQ(sent_[0].kind, AmendmentKind::kReopen);
   EXPECT_EQ(decode_reopening(sent_[0].content), 0);
   name_reopening(list_, 22, 0);
+  name_as_sent();
   announce_list();
   EXPECT_EQ(turn(order, 20ms).state, State::kAnswered);
   EXPECT_FALSE(wish_to_cancel(team_, 0)) << "it is cancelled already";
@@ -350,6 +351,7 @@ TEST_F(Amended, AZoneDoesNotFailBecauseAnotherIsCancelled) {
   AmendOrder order(wish_of(zone), 30, now_);
   turn(order, 20ms);
   name_zone(list_, 0, 5, 30, zone);
+  name_as_sent();
   name_zone(list_, 0, 5, 30, zone);
   name_reopening(list_, 10, 1);
   announce_list();
@@ -363,6 +365,7 @@ TEST_F(Amended, AZoneThatIsCancelledBeforeItIsFreeFails) {
   AmendOrder order(wish_of(zone), 30, now_);
   turn(order, 20ms);
   name_zone(list_, 0, 5, 30, zone);
+  name_as_sent();
   name_reopening(list_, 10, 0);
   announce_list();
   move_to(7);

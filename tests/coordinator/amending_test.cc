@@ -338,7 +338,7 @@ TEST(Amending, CancelsAZoneOnce) {
   let_world_stand_by(coordinator, 81);
   ASSERT_EQ(coordinator.amendments().named, 2);
   EXPECT_EQ(coordinator.amendments().recent[1],
-            (Amendment{1, AmendmentKind::kReopen, 83, 0, "anna@base"}));
+            (Amendment{1, AmendmentKind::kReopen, 83, 0, "anna@base", 1}));
   EXPECT_EQ(coordinator.amendments().zones[0].end(), 83);
   advance(coordinator, at(1s));
   give(coordinator, reopening(0, 2), at(1s));
