@@ -27,11 +27,12 @@ const Coefficients kNoCoverage;
 
 }  // namespace
 
-Agent::Agent(AgentIdentity identity)
+Agent::Agent(AgentIdentity identity, LawMaker laws)
     : me_(kRole, {identity.run, identity.requested_id, identity.incarnation}),
       requested_id_(identity.requested_id),
       version_(std::move(identity.version)),
       kind_(std::move(identity.kind)),
+      laws_(std::move(laws)),
       mission_repeat_(identity.incarnation) {
   ERGOCAST_REQUIRE(identity.incarnation != 0);
   status_.host = std::move(identity.host);
@@ -74,7 +75,7 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
     return finish(over->failed, std::move(over->reason));
   if (!in_mission()) {
     me_.set_id(own->author.agent);
-    state_.emplace<MissionRun>(me_, *own);
+    state_.emplace<MissionRun>(me_, *own, laws_);
   }
   if (follower().state() == MissionState::kRunning) in_mission()->start(arrival.now);
 }

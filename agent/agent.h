@@ -15,6 +15,7 @@
 #include "agent/mission_run.h"
 #include "core/base/ids.h"
 #include "core/law/coverage_table.h"
+#include "core/law/law.h"
 #include "core/mission/roster.h"
 #include "team/beacon_book.h"
 #include "team/messages.h"
@@ -36,7 +37,8 @@ class Agent {
  public:
   static constexpr Role kRole = Role::kAgent;
 
-  explicit Agent(AgentIdentity identity);
+  /// @param laws  makes its law in a mission; all members of a team need the same one
+  explicit Agent(AgentIdentity identity, LawMaker laws = make_law);
 
   /// Takes in a message. Harmless when late, repeated, out of order or untrue.
   /// @param bus  on which it arrived
@@ -138,6 +140,7 @@ class Agent {
   Participant me_;
   AgentId requested_id_;
   std::string version_, kind_;
+  LawMaker laws_;
   Hellos hellos_;
   MissionRepeat mission_repeat_;
   AgentStatus status_;  // its process's part: host and transport

@@ -9,14 +9,14 @@
 
 namespace ergocast {
 
-Guidance::Guidance(const Mission& mission, const RosterEntry& self)
+Guidance::Guidance(const Mission& mission, const RosterEntry& self, const LawMaker& laws)
     : id_(self.author.agent),
       kind_(self.kind),
       active_from_(self.active_from),
-      dead_reckons_(looks_ahead(mission) && mission.dead_reckoning),
-      law_(make_law(mission, self.kind)),
+      law_(laws(mission, self.kind)),
       law_numbers_(law_numbers(mission, self.kind, nullptr)),
       needs_(law_->needs()),
+      needs_state_(needs_.places || (looks_ahead(mission) && mission.dead_reckoning)),
       metric_(mission),
       foreseen_(Coefficients::Zero(mission.basis.mode_count())) {
   if (looks_ahead(mission)) forecast_.emplace(mission, self.author);
@@ -24,17 +24,19 @@ Guidance::Guidance(const Mission& mission, const RosterEntry& self)
 
 void Guidance::on(const WorldState& world, const RadioRange& radio, const Participant& me) {
   const Tick tick = world.header.tick;
-  if (!forecast_ || tick < active_from_) return;
+  if ((!forecast_ && !needs_.places) || tick < active_from_) return;
   // A restarted world may send the same tick with fewer vehicles: then only its parts count.
   if (tick >= parts_.tick()) {
     if (parts_.same(world)) {
       parts_.add(world);
     } else {
       parts_.begin(world);
+      seen_.clear();
     }
+    if (needs_.places) note_places(world, radio, me.mission().domain);
   }
   // Nothing is covered at a held tick, and no vehicle moves on before the mission continues.
-  if (me.is_held(tick)) return;
+  if (!forecast_ || me.is_held(tick)) return;
   const Timing& timing = me.timing();
   const auto hold =
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
@@ -42,6 +44,19 @@ void Guidance::on(const WorldState& world, const RadioRange& radio, const Partic
     if (!radio.receives(id_, vehicle.id)) continue;
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
     forecast_->see(vehicle.id, me.counted(tick), vehicle.position_m);
+  }
+}
+
+void Guidance::note_places(const WorldState& world, const RadioRange& radio, const Box& domain) {
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
+    if (!radio.receives(id_, vehicle.id)) continue;
+    const Placed now{vehicle.id, domain.nearest(vehicle.position_m)};
+    const auto at = std::ranges::lower_bound(seen_, vehicle.id, {}, &Placed::agent);
+    if (at == seen_.end() || at->agent != vehicle.id) {
+      seen_.insert(at, now);
+    } else {
+      *at = now;
+    }
   }
 }
 
@@ -58,15 +73,16 @@ void Guidance::note_amendments(const Mission& mission, const Amendments& list, T
 }
 
 bool Guidance::has_state_of(Tick tick) const {
-  return !dead_reckons_ || tick < active_from_ || parts_.tick() > tick || parts_.complete();
+  return !needs_state_ || tick < active_from_ || parts_.tick() > tick || parts_.complete();
 }
 
 Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,
                                      const std::vector<RosterEntry>& roster,
                                      const TargetShift& shift, const AgentStep& step) {
-  if (needs_.team) set_team(roster, step);
+  if (needs_.team || needs_.places) set_team(roster, step);
+  if (needs_.places) set_places(step);
   if (needs_.coverage) foresee(table, roster, shift, step);
-  return law_->wanted_mps({id_, step.counted, step.x_m, *step.basis_at, team_});
+  return law_->wanted_mps({id_, step.counted, step.x_m, *step.basis_at, team_, places_});
 }
 
 void Guidance::set_team(const std::vector<RosterEntry>& roster, const AgentStep& step) {
@@ -77,6 +93,18 @@ void Guidance::set_team(const std::vector<RosterEntry>& roster, const AgentStep&
       team_.push_back(entry.author.agent);
   }
   std::ranges::sort(team_);
+}
+
+void Guidance::set_places(const AgentStep& step) {
+  places_.clear();
+  for (const AgentId agent : team_) {
+    const auto at = std::ranges::lower_bound(seen_, agent, {}, &Placed::agent);
+    if (agent == id_) {
+      places_.push_back({id_, step.x_m});
+    } else if (at != seen_.end() && at->agent == agent) {
+      places_.push_back(*at);
+    }
+  }
 }
 
 void Guidance::foresee(const CoverageTable& table, const std::vector<RosterEntry>& roster,

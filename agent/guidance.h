@@ -31,11 +31,11 @@ namespace ergocast {
 class Guidance {
  public:
   /// @param self  the agent's entry in the roster
-  Guidance(const Mission& mission, const RosterEntry& self);
+  Guidance(const Mission& mission, const RosterEntry& self, const LawMaker& laws);
 
-  /// Gives the forecast the positions of vehicles in range. In real time a vehicle stands still
-  /// once its last answer is older than the world holds a command. In lockstep the world waits for
-  /// answers.
+  /// Gives the forecast, and the law if it needs them, the positions of vehicles in range. In real
+  /// time a vehicle stands still once its last answer is older than the world holds a command. In
+  /// lockstep the world waits for answers.
   void on(const WorldState& world, const RadioRange& radio, const Participant& me);
 
   /// Takes in the end that holds at a counted tick.
@@ -64,18 +64,22 @@ class Guidance {
  private:
   void foresee(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                const TargetShift& shift, const AgentStep& step);
+  void note_places(const WorldState& world, const RadioRange& radio, const Box& domain);
   void set_team(const std::vector<RosterEntry>& roster, const AgentStep& step);
+  void set_places(const AgentStep& step);
 
   AgentId id_;
   int kind_;
   Tick active_from_;
-  bool dead_reckons_;
   std::unique_ptr<Law> law_;
   LawNumbers law_numbers_;  // of law_
   LawNeeds needs_;
+  bool needs_state_;  // of the tick: places, or dead reckoning
   TeamMetric metric_;
   std::int32_t newest_target_ = -1;
   std::vector<AgentId> team_;
+  std::vector<Placed> seen_;    // in the newest state of the world, ascending
+  std::vector<Placed> places_;  // of the team
   std::optional<Forecast> forecast_;
   ArrivedParts parts_;  // of the newest state of the world
   Coefficients foreseen_;

@@ -36,13 +36,13 @@ std::int64_t lost(const Participant& me) {
 
 }  // namespace
 
-MissionRun::MissionRun(const Participant& me, const RosterEntry& self)
+MissionRun::MissionRun(const Participant& me, const RosterEntry& self, const LawMaker& laws)
     : active_from_(self.active_from),
       radio_(me.mission().radio_range_m),
       exchange_(me.mission(), self, me.counted(self.active_from)),
       ends_(me.mission()),
       shift_(me.mission()),
-      guidance_(me.mission(), self),
+      guidance_(me.mission(), self, laws),
       motion_(me.mission(), self.author, me.follower().revision()) {
   last_command_.header.tick = command_before_.header.tick = -1;
   note_roster(me);

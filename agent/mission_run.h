@@ -47,7 +47,7 @@ inline constexpr const char* kSentOut = "sent out of the mission by the operator
 class MissionRun {
  public:
   /// @param self  the agent's entry in the roster
-  MissionRun(const Participant& me, const RosterEntry& self);
+  MissionRun(const Participant& me, const RosterEntry& self, const LawMaker& laws);
 
   /// Why the mission is over for the process if it is no longer a member at `tick`, else nothing.
   static std::optional<MissionOver> evicted(const Participant& me, Tick tick);

@@ -10,11 +10,16 @@ set(ERGOCAST_CMAKEDIR ${ERGOCAST_LIBDIR}/cmake/Ergocast)
 # A program with ergocast_agent also needs messages as bytes.
 add_library(ergocast_agent_and_codec INTERFACE)
 target_link_libraries(ergocast_agent_and_codec INTERFACE ergocast_agent ergocast_codec)
+# One with laws of its own also needs scenarios, and missions in one process.
+add_library(ergocast_simulation INTERFACE)
+target_link_libraries(ergocast_simulation INTERFACE ergocast_study_run ergocast_scenario)
+set(SIMULATION ergocast_coordinator ergocast_geo ergocast_lab ergocast_logger ergocast_scenario
+  ergocast_scenario_messages ergocast_sim ergocast_study_run)
 set(INSTALLED ergocast_text ergocast_core ergocast_modes ergocast_plan ergocast_target ergocast_team ergocast_codec ergocast_agent)
 
 # They may be linked into a shared library, such as a robot's plug-in or a Python module.
 set(SHAREABLE ${INSTALLED} ergocast_coordinator ergocast_event_log ergocast_geo ergocast_lab ergocast_logger
-  ergocast_report ergocast_run_directory ergocast_runtime ergocast_scenario ergocast_scenario_messages ergocast_sim
+  ergocast_report ergocast_run_directory ergocast_runtime ergocast_scenario ergocast_scenario_messages ergocast_sim ergocast_study_run
   ergocast_team_view ergocast_team_page ergocast_web_page)
 foreach(library ${SHAREABLE})
   set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON)
@@ -33,6 +38,11 @@ set_target_properties(ergocast_target PROPERTIES EXPORT_NAME target)
 set_target_properties(ergocast_agent_and_codec PROPERTIES EXPORT_NAME agent)
 install(TARGETS ${INSTALLED} ergocast_agent_and_codec EXPORT Ergocast COMPONENT dev
   ARCHIVE DESTINATION ${ERGOCAST_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+set_target_properties(ergocast_simulation PROPERTIES EXPORT_NAME simulation)
+install(TARGETS ${SIMULATION} ergocast_simulation EXPORT ErgocastSimulation COMPONENT dev
+  ARCHIVE DESTINATION ${ERGOCAST_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT ErgocastSimulation NAMESPACE Ergocast:: FILE ErgocastSimulationTargets.cmake
+  DESTINATION ${ERGOCAST_CMAKEDIR} COMPONENT dev)
 install(EXPORT Ergocast NAMESPACE Ergocast:: FILE ErgocastTargets.cmake
   DESTINATION ${ERGOCAST_CMAKEDIR} COMPONENT dev)
 
@@ -48,7 +58,8 @@ file(GLOB HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
   ${CMAKE_SOURCE_DIR}/core/*/*.h ${CMAKE_SOURCE_DIR}/plan/*.h ${CMAKE_SOURCE_DIR}/target/*.h
   ${CMAKE_SOURCE_DIR}/target/maps/*.h ${CMAKE_SOURCE_DIR}/team/*.h ${CMAKE_SOURCE_DIR}/agent/*.h)
 list(REMOVE_ITEM HEADERS core/base/vectorized.h core/basis/free_gains.h target/maps/map_text.h)
-list(APPEND HEADERS lcmtypes/channels.h lcmtypes/codec.h lcmtypes/message_authenticator.h)
+list(APPEND HEADERS lcmtypes/channels.h lcmtypes/codec.h lcmtypes/message_authenticator.h lab/ideal_team.h
+  scenario/scenario.h scenario/parse/problem.h scenario/parse/source.h studies/study_run.h)
 foreach(header ${HEADERS})
   file(STRINGS ${CMAKE_SOURCE_DIR}/${header} needed REGEX "^#include \"")
   list(TRANSFORM needed REPLACE "^#include \"([^\"]+)\".*" "\\1")

@@ -13,7 +13,7 @@ function(ergocast_messages target proto)
     DEPENDS ${CMAKE_SOURCE_DIR}/${proto}
     COMMENT "Generating C++ from ${proto}")
   add_library(${target} STATIC ${stem}.cc ${stem}.h)
-  target_include_directories(${target} SYSTEM PUBLIC ${generated})
+  target_include_directories(${target} SYSTEM PUBLIC $<BUILD_INTERFACE:${generated}>)
   target_link_libraries(${target} PUBLIC protobuf::libprotobuf)
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
   add_custom_target(${target}_generated DEPENDS ${stem}.cc ${stem}.h)

@@ -24,7 +24,7 @@ Mission in_basis_order(Mission mission) {
 
 }  // namespace
 
-IdealTeam::IdealTeam(Mission mission, Edges edges)
+IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
     : mission_(std::move(mission)),
       edges_(edges),
       table_(mission_.basis, mission_.timing.dt_s),
@@ -42,10 +42,9 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
     table_.add_row(author);
     table_.set_quality(author, sensors_.of(kind).quality);
     const Motion motion = motion_of(mission_, author.agent);
-    // Laws that answer to coverage alone are shared.
     Law*& law = law_of_kind[kind];
-    if (law == nullptr || !needs_.coverage) {
-      laws_.push_back(make_law(mission_, kind));
+    if (law == nullptr || !needs_.serves_all) {
+      laws_.push_back(laws(mission_, kind));
       law = laws_.back().get();
       needs_ = law->needs();
     }
@@ -65,15 +64,16 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
                        earlier_});
     if (follows_walls(mission_)) agents_.back().follower.emplace(mission_, author.agent);
   }
+  foresees_ = needs_.coverage && look_ahead_.any();
   if (any_filtered(mission_)) separation_.emplace(mission_, 0);
   bodies_.resize(separation_ ? agents_.size() : 0);
 }
 
-bool IdealTeam::stands_for(const Mission& mission) {
+bool IdealTeam::stands_for(const Mission& mission, const LawMaker& laws) {
   const Timing& timing = mission.timing;
   const bool all_is_sent = longest_period_ticks(timing) == 1;
   const bool all_is_known =
-      !make_law(mission)->needs().coverage || (looks_ahead(mission) && mission.dead_reckoning);
+      !laws(mission, 0)->needs().coverage || (looks_ahead(mission) && mission.dead_reckoning);
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
          (all_is_sent || all_is_known) && !any_station(mission);
@@ -102,7 +102,7 @@ void IdealTeam::use_amendments() {
 void IdealTeam::step() {
   sample();
   use_amendments();
-  if (look_ahead_.any()) {
+  if (foresees_) {
     look_ahead();
   } else if (needs_.coverage) {
     table_.average(coverage_);
@@ -110,15 +110,18 @@ void IdealTeam::step() {
     for (const auto& law : laws_) law->set_coverage(coverage_);
   }
   see_bodies();
+  places_.clear();
+  for (std::size_t i = 0; needs_.places && i < agents_.size(); ++i)
+    places_.push_back({team_[i], agents_[i].x_m});
   for (Agent& agent : agents_) {
-    if (look_ahead_.any()) {
+    if (foresees_) {
       foresee(agent);
       correct();
       compare_with_present();
       agent.law->set_coverage(coverage_);
     }
     const Eigen::Vector3d wanted_mps =
-        agent.law->wanted_mps({agent.author.agent, tick_, agent.x_m, *agent.at, team_});
+        agent.law->wanted_mps({agent.author.agent, tick_, agent.x_m, *agent.at, team_, places_});
     agent.next_mps = executed(agent.motion, agent.v_mps, kept_apart(agent, wanted_mps));
     agent.b = agent.law->spectral_gradient();
   }
@@ -163,7 +166,7 @@ void IdealTeam::sample() {
     const double* const footprint = sensors_.of(agent.kind).footprint();
     table_.add_sample(agent.author, *agent.at, footprint);
     if (change != nullptr) table_.shift_sample(agent.author, change->by_slot.data());
-    if (!look_ahead_.any()) continue;
+    if (!foresees_) continue;
     if (mission_.dead_reckoning) {
       set_basis(*agent.at, mission_.basis, mission_.timing.dt_s, agent.gain.data());
       for (std::size_t k = 0; footprint != nullptr && k < agent.gain.size(); ++k)

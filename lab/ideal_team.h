@@ -33,12 +33,13 @@ enum class Edges {
 
 class IdealTeam {
  public:
-  explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect);
+  explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect,
+                     const LawMaker& laws = make_law);
 
   /// Whether a distributed team would compute the same: it is in lockstep, every agent receives
   /// from every other, and no agent goes home; all coverage is broadcast each tick or known by dead
   /// reckoning, without rounding.
-  static bool stands_for(const Mission& mission);
+  static bool stands_for(const Mission& mission, const LawMaker& laws = make_law);
 
   /// Takes in the newest list of amendments, of which only targets and laws count: its ticks are
   /// those that count. A change of the target is for the ticks to come. A distributed team computes
@@ -115,10 +116,12 @@ class IdealTeam {
   std::int32_t newest_target_ = -1;
   Sensors sensors_;
   TeamMetric metric_;
-  /// One for each kind, or one for each agent if the law has a memory of its own.
+  /// One for each kind if one serves all its agents, else one for each agent.
   std::vector<std::unique_ptr<Law>> laws_;
   LawNeeds needs_;
+  bool foresees_;  // the law reads the forecast coverage
   std::vector<AgentId> team_;
+  std::vector<Placed> places_;  // if the law needs them
   std::vector<Agent> agents_;
   std::optional<SeparationFilter> separation_;
   std::vector<Neighbour> bodies_;

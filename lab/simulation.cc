@@ -49,7 +49,7 @@ void Simulation::start(NodeId id) {
   const Incarnation incarnation = identity(mission_, static_cast<std::uint32_t>(id), node.starts++);
   if (id < agent_count_) {
     node.core = std::make_unique<Agent>(
-        AgentIdentity{run_, id, incarnation, options_.host, options_.version});
+        AgentIdentity{run_, id, incarnation, options_.host, options_.version}, options_.laws);
   } else if (id == coordinator_node()) {
     node.core = std::make_unique<Coordinator>(
         CoordinatorIdentity{run_, incarnation, options_.host, options_.version},

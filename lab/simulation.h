@@ -46,6 +46,7 @@ struct SimulationOptions {
   PacingClock::duration latency{};  ///< of a message without faults
   Amendments amendments{};          ///< known from the beginning; see Amending::plan()
   PhysicsMaker physics{};           ///< what moves the bodies of the world; sim/physics.h
+  LawMaker laws = make_law;         ///< makes the agents' laws
   /// For tests: whether a message that `to` subscribes to is dropped. Healing does not end the
   /// drops.
   std::function<bool(const Message&, NodeId to)> drop{};

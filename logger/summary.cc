@@ -186,6 +186,7 @@ void add_mission(const Mission& mission, Tick tick_count, const RunContext& cont
   summary["scenario_hash"] = context.scenario_hash;
   summary["seed"] = mission.seed;
   summary["mode"] = context.simulated ? "simulate" : lockstep ? "lockstep" : "realtime";
+  if (!context.own_law.empty()) summary["own_law"] = context.own_law;
   if (!lockstep) summary["realtime_factor"] = mission.timing.realtime_factor;
   summary["dt_s"] = mission.timing.dt_s;
   summary["tick_count"] = tick_count;

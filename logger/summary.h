@@ -21,6 +21,7 @@ struct RunContext {
   std::string version, build;
   std::string scenario_hash;  ///< of the compiled plan
   bool simulated = false;     ///< in one process, without a network
+  std::string own_law{};      ///< name of a law that is none of the scenario's; empty: none
   double wall_time_s = 0;     ///< of the current segment
   int segments = 1;
   int interruptions = 0;    ///< how often the files could not be written for a time

@@ -11,4 +11,5 @@ PYBIND11_MODULE(_native, module) {
   ergocast::python::add_target(module);
   ergocast::python::add_team(module);
   ergocast::python::add_records(module);
+  ergocast::python::add_own_laws(module);
 }

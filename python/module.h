@@ -15,5 +15,7 @@ void add_team(pybind11::module_& module);
 void add_target(pybind11::module_& module);
 /// Record, compile_mission(), simulate(): logger/run_data.h, cli/record/simulated_record.h.
 void add_records(pybind11::module_& module);
+/// LawInput, run_study_mission(): python/own_law.h, studies/study_run.h.
+void add_own_laws(pybind11::module_& module);
 
 }  // namespace ergocast::python

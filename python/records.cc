@@ -16,6 +16,7 @@
 #include "logger/summary.h"
 #include "python/arrays.h"
 #include "python/module.h"
+#include "python/own_law.h"
 #include "report/report.h"
 #include "report/target_density.h"
 #include "runtime/process/shipped_scenarios.h"
@@ -200,18 +201,22 @@ Scenario load(const fs::path& file, std::optional<std::uint64_t> seed, const Fie
 }
 
 /// Simulates into `out`, new or empty. A signal, such as Ctrl-C, ends it in order.
-void simulate(const Scenario& scenario, const fs::path& out, bool report) {
+/// @param law  an object of ergocast.Law, or None
+void simulate(const Scenario& scenario, const fs::path& out, bool report, const py::object& law,
+              const std::string& law_name) {
+  const cli::OwnLaw own{laws_of(law, scenario.mission()), law_name};
   std::optional<py::error_already_set> interrupted;
   {
     const py::gil_scoped_release others_may_run;
     const fs::path folder = value_or_throw(cli::prepare_run_directory(out, scenario));
     const auto record = value_or_throw(RunRecord::create(folder));
-    value_or_throw(cli::simulate_into(*record, scenario, [&](lab::Simulation& simulation) {
-      const py::gil_scoped_acquire look;
+    const auto look = [&](lab::Simulation& simulation) {
+      const py::gil_scoped_acquire others_wait;
       if (interrupted || PyErr_CheckSignals() == 0) return;
       interrupted.emplace();
       simulation.end("interrupted from Python");
-    }));
+    };
+    value_or_throw(cli::simulate_into(*record, scenario, look, nullptr, {}, own));
     if (report && !interrupted) {
       const Mission& mission = scenario.mission();
       const auto problem = write_report(folder, mission, cli::recorded_team(folder, mission));
@@ -246,7 +251,7 @@ void add_records(py::module_& module) {
                        "A scenario without problems. Refused: one problem a line.")
       .def(py::init(&load), "file"_a, "seed"_a, "fields"_a)
       .def_property_readonly("mission", [](const Scenario& scenario) { return scenario.mission(); })
-      .def("simulate", &simulate, "out"_a, "report"_a,
+      .def("simulate", &simulate, "out"_a, "report"_a, "law"_a = py::none(), "law_name"_a = "",
            "Writes the record into `out`, new or empty.");
 }
 

@@ -6,6 +6,7 @@
 #include "lab/ideal_team.h"
 #include "python/arrays.h"
 #include "python/module.h"
+#include "python/own_law.h"
 
 namespace ergocast::python {
 namespace {
@@ -138,10 +139,12 @@ that merging is commutative, associative and idempotent.)")
           "Time that all rows cover together [s].");
 }
 
-lab::IdealTeam make_ideal_team(const Mission& mission, const std::string& edges) {
+lab::IdealTeam make_ideal_team(const Mission& mission, const std::string& edges,
+                               const py::object& law) {
   check(edges == "reflect" || edges == "none",
         "edges: must be \"reflect\" or \"none\", not \"" + edges + "\"");
-  return lab::IdealTeam(mission, edges == "none" ? lab::Edges::kNone : lab::Edges::kReflect);
+  return lab::IdealTeam(mission, edges == "none" ? lab::Edges::kNone : lab::Edges::kReflect,
+                        laws_of(law, mission));
 }
 
 using Of = const Eigen::Vector3d& (lab::IdealTeam::*)(std::size_t) const;
@@ -171,10 +174,12 @@ void add_ideal_team(py::module_& module) {
                         R"(The method with perfect communication: lab/ideal_team.h.
 
 Bit for bit a lockstep mission for which stands_for() is true, several times as fast.
-edges: "reflect", or "none": agents leave the domain, as in the paper's theorems.)")
-      .def(py::init(&make_ideal_team), "mission"_a, "edges"_a = "reflect")
-      .def_static("stands_for", &IdealTeam::stands_for, "mission"_a,
-                  "Whether a distributed team would compute the same.")
+edges: "reflect", or "none": agents leave the domain, as in the paper's theorems.
+law: an object of ergocast.Law, or None: the law of the mission.)")
+      .def(py::init(&make_ideal_team), "mission"_a, "edges"_a = "reflect", "law"_a = py::none())
+      .def_static(
+          "stands_for", [](const Mission& mission) { return IdealTeam::stands_for(mission); },
+          "mission"_a, "Whether a distributed team would compute the same.")
       .def("step", &step, "count"_a = 1, "Runs `count` ticks: samples, commands, motion.")
       .def_property_readonly("tick", &IdealTeam::tick, "Steps done.")
       .def_property_readonly("t_s", &IdealTeam::t_s, "The time that they took [s].")

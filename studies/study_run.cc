@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "core/law/block_layout.h"
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "core/motion/filter_rules.h"
 #include "lab/ideal_team.h"
 #include "lab/simulation.h"
 #include "logger/null_buffer.h"
@@ -120,10 +122,10 @@ class Observer : public lab::SimulationObserver {
 
 }  // namespace
 
-StudyFigures run_without_messages(const Mission& mission) {
+StudyFigures run_without_messages(const Mission& mission, const LawMaker& laws) {
   const Mission judged = in_cosines(mission);
   StudyMeasure measure(judged);
-  lab::IdealTeam team(mission);
+  lab::IdealTeam team(mission, lab::Edges::kReflect, laws);
   Judge judge(judged);
   for (Tick tick = 0; tick < mission.timing.tick_count; ++tick) {
     for (std::size_t i = 0; i < team.size(); ++i) {
@@ -141,19 +143,24 @@ StudyFigures run_without_messages(const Mission& mission) {
   return figures;
 }
 
-StudyFigures run_with_messages(std::span<const std::byte> plan) {
+StudyFigures run_with_messages(std::span<const std::byte> plan, const LawMaker& laws) {
   const Mission mission = decode_plan_with_table(plan).value();
   const Mission judged = in_cosines(mission);
   Observer observer(judged);
   NullBuffer nowhere;
-  lab::Simulation({.plan = {plan.begin(), plan.end()}}, nowhere, nowhere, &observer).run();
+  lab::SimulationOptions options{.plan = {plan.begin(), plan.end()}, .laws = laws};
+  lab::Simulation(std::move(options), nowhere, nowhere, &observer).run();
   return observer.figures();
 }
 
-StudyFigures run_study_mission(std::span<const std::byte> plan) {
+StudyFigures run_study_mission(std::span<const std::byte> plan, const LawMaker& laws) {
   const Mission mission = decode_plan_with_table(plan).value();
-  if (lab::IdealTeam::stands_for(mission)) return run_without_messages(mission);
-  return run_with_messages(plan);
+  if (lab::IdealTeam::stands_for(mission, laws)) return run_without_messages(mission, laws);
+  return run_with_messages(plan, laws);
+}
+
+bool knows_all_places(const Mission& mission) {
+  return mission.radio_range_m == 0 && !uses_beacons(mission);
 }
 
 }  // namespace ergocast::studies

@@ -12,6 +12,8 @@
 #include <span>
 
 #include "core/base/ids.h"
+#include "core/law/law.h"
+#include "core/mission/mission.h"
 #include "team/mission_follower.h"
 
 namespace ergocast::studies {
@@ -63,11 +65,15 @@ struct StudyFigures {
 
 /// Runs the mission of a compiled plan. It runs without messages where the result is the same
 /// (IdealTeam), else with the real cores and codec in virtual time (Simulation), for either pace.
+/// @param laws  makes the agents' laws
 /// @pre the plan decodes
-StudyFigures run_study_mission(std::span<const std::byte> plan);
+StudyFigures run_study_mission(std::span<const std::byte> plan, const LawMaker& laws = make_law);
 
 /// The two ways to run a mission. They agree on every mission that IdealTeam stands for.
-StudyFigures run_without_messages(const Mission& mission);
-StudyFigures run_with_messages(std::span<const std::byte> plan);
+StudyFigures run_without_messages(const Mission& mission, const LawMaker& laws = make_law);
+StudyFigures run_with_messages(std::span<const std::byte> plan, const LawMaker& laws = make_law);
+
+/// Whether every agent receives the places of all others at each tick.
+bool knows_all_places(const Mission& mission);
 
 }  // namespace ergocast::studies

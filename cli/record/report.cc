@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/debian_python.h"
 #include "cli/mission_options.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
@@ -24,8 +25,6 @@
 namespace ergocast::cli {
 namespace {
 
-/// Debian's, for which python3-ergocast is built.
-constexpr const char* kPython = "/usr/bin/python3";
 /// Arguments: the folder of the package of a build, or "", and the run directory.
 constexpr const char* kDraw = R"(import sys
 sys.path[:0] = filter(None, sys.argv[1:2])

@@ -21,7 +21,7 @@ constexpr int kTurnsBetweenLooks = 256;
 
 nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scenario,
                                   const std::string& started, double wall_time_s,
-                                  int events_removed) {
+                                  int events_removed, const std::string& law) {
   RunContext context;
   context.started = started;
   context.run = recorder.run();
@@ -29,6 +29,7 @@ nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scen
   context.build = build_text();
   context.scenario_hash = plan_hash(encode_plan(scenario.mission()));
   context.simulated = true;
+  context.own_law = law;
   context.events_removed = events_removed;
   context.wall_time_s = wall_time_s;
   context.cpu_has_fma = cpu_has_fma();
@@ -47,11 +48,13 @@ std::optional<std::string> write_amendments(const Recorder& recorder, const Scen
 
 Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
                                       const std::function<void(lab::Simulation&)>& look,
-                                      SimulatedEvents* events, Amendments amendments) {
+                                      SimulatedEvents* events, Amendments amendments,
+                                      const OwnLaw& law) {
   lab::Simulation simulation({.plan = encode_plan(scenario.mission()),
                               .version = version(),
                               .host = host_name(),
-                              .amendments = std::move(amendments)},
+                              .amendments = std::move(amendments),
+                              .laws = law.laws},
                              record.trajectory(), record.metrics(), events);
   const std::string started = wall_clock_text();
   const auto start = std::chrono::steady_clock::now();
@@ -61,7 +64,7 @@ Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenari
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - start;
 
   SimulatedRecord result{summary_of(simulation.recorder(), scenario, started, wall_time.count(),
-                                    events ? events->removed() : 0),
+                                    events ? events->removed() : 0, law.name),
                          simulation.coordinator().state() == MissionState::kFailed ||
                              simulation.recorder().facts().no_metric_from.has_value()};
   auto error = record.flush();

@@ -21,16 +21,23 @@ struct SimulatedRecord {
   bool failed = false;  ///< the mission, not its record
 };
 
+/// A law that no scenario can name.
+struct OwnLaw {
+  LawMaker laws = make_law;
+  std::string name{};  ///< for the summary
+};
+
 /// Simulates the mission until it is over or the disk is full, and writes the tables and
 /// summary.json.
 /// @param record  empty; in a folder of prepare_run_directory()
 /// @param look    called every few hundred events; it may end the simulation
 /// @param events  writes the event log, too; may be null
 /// @param amendments  known from the beginning; are_amendments()
+/// @param law     of a program's own; make_law() without
 /// @return        the error if the record is incomplete
 Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
                                       const std::function<void(lab::Simulation&)>& look,
-                                      SimulatedEvents* events = nullptr,
-                                      Amendments amendments = {});
+                                      SimulatedEvents* events = nullptr, Amendments amendments = {},
+                                      const OwnLaw& law = {});
 
 }  // namespace ergocast::cli

@@ -235,6 +235,11 @@ int verify(const fs::path& run_dir) {
   if (!amendments) return report_error(kExitBadInput, amendments.error());
   if (const auto reason = missing_target(run_dir, summary, *amendments))
     return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + *reason);
+  if (const auto law = summary.is_object() ? summary.value("own_law", Json()) : Json();
+      !law.is_null())
+    return report_error(kExitBadInput, run_dir.string() +
+                                           " cannot be verified: its agents followed " +
+                                           law.dump() + ", a law of its user");
   Repetition repetition(*mission, amendments->list());
   if (!summary.is_object()) {
     print_message(run_dir.string() + ": no " + kSummaryFile +

@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/progress_line.h"
 #include "cli/report_error.h"
+#include "cli/study/python_law.h"
 #include "cli/study/study_directory.h"
 #include "cli/study/study_options.h"
 #include "cli/study/study_points.h"
@@ -31,6 +32,12 @@ constexpr std::size_t kMostFailuresNamed = 20;
 
 /// One run: a point and a seed.
 using Run = std::pair<std::size_t, std::uint64_t>;
+
+/// The figures of one run, or why there are none.
+struct RunResult {
+  studies::StudyFigures figures;
+  char problem[600] = "";
+};
 
 /// The missing runs, seed by seed, so that an incomplete table allows comparisons, too.
 std::vector<Run> missing_runs(std::size_t points, const StudyOptions& options,
@@ -54,11 +61,9 @@ class StudyRunner {
       : points_(points), missing_(std::move(missing)), directory_(directory) {}
 
   void run_all(int processes) {
-    Jobs jobs = jobs_with_results<studies::StudyFigures>(
+    Jobs jobs = jobs_with_results<RunResult>(
         [this](std::uint64_t job) { return run_one(missing_[job]); },
-        [this](std::uint64_t job, const studies::StudyFigures& figures) {
-          take(missing_[job], figures);
-        });
+        [this](std::uint64_t job, const RunResult& result) { take(missing_[job], result); });
     jobs.count = missing_.size();
     jobs.processes = processes;
     jobs.lost = [this](std::uint64_t job, const std::string& how) { fail(missing_[job], how); };
@@ -78,12 +83,21 @@ class StudyRunner {
   const std::optional<std::string>& problem() const { return problem_; }
 
  private:
-  studies::StudyFigures run_one(const Run& run) const {
+  RunResult run_one(const Run& run) const {
     const Scenario scenario = points_.scenarios[run.first].with_seed(run.second);
-    return studies::run_study_mission(encode_plan(scenario.mission()));
+    const auto plan = encode_plan(scenario.mission());
+    const std::string& law = points_.laws[run.first];
+    if (law.empty()) return {studies::run_study_mission(plan)};
+    const auto figures = run_under_python_law(law, plan);
+    RunResult result{figures.value_or(studies::StudyFigures())};
+    if (!figures)
+      std::snprintf(result.problem, sizeof result.problem, "%s", figures.error().c_str());
+    return result;
   }
 
-  void take(const Run& run, const studies::StudyFigures& figures) {
+  void take(const Run& run, const RunResult& result) {
+    const studies::StudyFigures& figures = result.figures;
+    if (result.problem[0] != '\0') return fail(run, result.problem);
     if (!figures.complete) return fail(run, "the mission did not come to its last tick");
     if (!std::isfinite(figures.metric)) return fail(run, "phi^2 is not a number");
     ++completed_;

@@ -8,8 +8,12 @@
 #include <set>
 
 #include "cli/command_text.h"
+#include "cli/debian_python.h"
+#include "cli/study/python_law.h"
 #include "plan/plan.h"
 #include "runtime/process/program_options.h"
+#include "studies/study_run.h"
+#include "text/input_file.h"
 #include "text/shell_word.h"
 
 namespace ergocast::cli {
@@ -113,6 +117,11 @@ class Compiler {
   Result<StudyPoints, Problems> run() {
     for (const auto& file : options_.scenarios) compile(file);
     if (!problems_.empty()) return failure(problems_);
+    for (const auto& [law, bytes] : law_files_) {
+      const auto started = PythonLaw::start(law);
+      if (!started) problems_.push_back(started.error());
+    }
+    if (!problems_.empty()) return failure(problems_);
     return std::move(points_);
   }
 
@@ -123,11 +132,15 @@ class Compiler {
       const std::vector<FieldValue> varied = combination(options_.variations, i);
       Overrides overrides{.duration_s = options_.duration_s, .fields = options_.settings};
       overrides.fields.insert(overrides.fields.end(), varied.begin(), varied.end());
+      const std::string law = take_python_law(overrides.fields).value_or("");
       const auto loaded = Scenario::load(file, overrides);
       if (loaded) {
-        add(*loaded, varied, file);
-        points_.missions.push_back("ergocast run " + shell_word(file.string()) +
-                                   options_of(overrides));
+        if (!law.empty()) read_law(law, *loaded);
+        add(*loaded, varied, file, law);
+        points_.missions.push_back(
+            (law.empty() ? std::string("ergocast run ")
+                         : std::string(kPython) + " -m ergocast --law " + shell_word(law) + ' ') +
+            shell_word(file.string()) + options_of(overrides));
       } else {
         complaints.add(loaded.error(), words_of(varied));
       }
@@ -135,16 +148,37 @@ class Compiler {
     complaints.add_to(combinations_, problems_);
   }
 
+  /// Reads a law's file: a study is another one if the law has changed.
+  void read_law(const std::string& law, const Scenario& scenario) {
+    if (!studies::knows_all_places(scenario.mission()))
+      problems_.push_back(law + ": a law in Python needs the places of all agents, and in " +
+                          scenario.name() +
+                          " no agent knows them (remove world.radio_range_m and "
+                          "separation.lease_s, or write the law in C++)");
+    if (law_files_.contains(law)) return;
+    const auto read = read_whole(file_of_law(law), kMostLawBytes);
+    if (!read) problems_.push_back(read.error().sentence(file_of_law(law)));
+    law_files_[law] = read.value_or("");
+  }
+
+  /// A number that identifies a point's mission, with any seed, and its law.
+  std::string hash_of(const Scenario& scenario, const std::string& law) const {
+    auto bytes = encode_plan(scenario.with_seed(0).mission());
+    if (law.empty()) return plan_hash(bytes);
+    for (const char letter : law + '\0' + law_files_.at(law))
+      bytes.push_back(static_cast<std::byte>(letter));
+    return plan_hash(bytes);
+  }
+
   void add(const Scenario& scenario, const std::vector<FieldValue>& fields,
-           const std::filesystem::path& file) {
+           const std::filesystem::path& file, const std::string& law) {
     studies::StudyPoint point;
     point.scenario = scenario.name();
     for (const FieldValue& field : fields) point.values.push_back(field.value);
     point.agents = static_cast<int>(scenario.mission().starts_m.size());
     const Timing& timing = scenario.mission().timing;
     point.duration_s = static_cast<double>(timing.tick_count) * timing.dt_s;
-    // The seed is set for each run.
-    const std::string hash = plan_hash(encode_plan(scenario.with_seed(0).mission()));
+    const std::string hash = hash_of(scenario, law);
     const std::string text = file.string() + (fields.empty() ? "" : " with " + words_of(fields));
     const auto [twin, is_new] = plans_.emplace(hash, text);
     if (!is_new)
@@ -158,11 +192,13 @@ class Compiler {
     points_.identity.study.points.push_back(std::move(point));
     points_.identity.plan_hashes.push_back(hash);
     points_.scenarios.push_back(scenario);
+    points_.laws.push_back(law);
   }
 
   const StudyOptions& options_;
   std::size_t combinations_ = 1;
   std::map<std::string, std::string> plans_;
+  std::map<std::string, std::string> law_files_;  // the bytes of each law in Python
   std::map<std::string, std::filesystem::path> names_;
   StudyPoints points_;
   Problems problems_;

@@ -16,7 +16,8 @@ namespace ergocast::cli {
 struct StudyPoints {
   StudyIdentity identity;
   std::vector<Scenario> scenarios;    ///< one for each point
-  std::vector<std::string> missions;  ///< the command `ergocast run` of each point, without a seed
+  std::vector<std::string> laws;      ///< of each point: one in Python, FILE.py:CLASS, or empty
+  std::vector<std::string> missions;  ///< the command that runs each point, without a seed
 };
 
 /// Returns the points, or all problems of all points, each once.

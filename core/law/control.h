@@ -26,6 +26,7 @@ class Controller final : public Law {
   /// @param kind  of the agents that it steers, core/mission/kinds.h
   explicit Controller(const Mission& mission, int kind = 0);
 
+  LawNeeds needs() const override { return {.serves_all = true}; }
   /// Takes in the known or forecast c_k of the team, mode_count() entries. All later commands use
   /// it.
   void set_coverage(const Coefficients& coverage) override;

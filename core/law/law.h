@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -21,6 +22,16 @@ namespace ergocast {
 struct LawNeeds {
   bool coverage = true;  ///< set_coverage() before each command
   bool team = false;     ///< LawInput::team
+  bool places = false;   ///< LawInput::places
+  /// One object may serve all agents of a kind: a command depends on nothing but its input, the
+  /// last coverage and the numbers. Else each agent has an object of its own.
+  bool serves_all = false;
+};
+
+/// Where an agent is.
+struct Placed {
+  AgentId agent;
+  Eigen::Vector3d x_m;
 };
 
 /// An agent at a tick that counts. Its team are all agents whose coverage counts and that were not
@@ -31,6 +42,9 @@ struct LawInput {
   const Eigen::Vector3d& x_m;     ///< its place
   const BasisAt& at;              ///< the basis there
   std::span<const AgentId> team;  ///< as above, ascending
+  /// Where they are at this tick, the own agent among them; ascending. An agent whose state is not
+  /// received, because it is out of radio range, is left out.
+  std::span<const Placed> places{};
 };
 
 class Law {
@@ -54,6 +68,10 @@ class Law {
   /// B of (6) for the last wanted_mps() [1/m]; 0 for a law without.
   virtual Eigen::Vector3d spectral_gradient() const { return {0, 0, 0}; }
 };
+
+/// Makes the law of an agent of `kind` in a mission: make_law(), or one of a program's own. Agents,
+/// lab/simulation.h, lab/ideal_team.h and studies/study_run.h take it.
+using LawMaker = std::function<std::unique_ptr<Law>(const Mission&, int kind)>;
 
 /// The law of an agent of `kind` (core/mission/kinds.h): that of ControlLaw::kind.
 std::unique_ptr<Law> make_law(const Mission& mission, int kind = 0);

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Ergodic coverage by teams of agents: records, simulations, running teams, and the method.
 
-load() reads a run directory, simulate() simulates a mission, connect() names a running one. The
+load() reads a run directory, simulate() simulates a mission, connect() names a running one, Law is a
+law of your own. The
 classes of the method are those of the C++ code, and compute the same bits. docs/python.md is the
 introduction.
 """
 
-from ergocast._errors import ErgocastError, RecordError, ScenarioError, TeamError
+from ergocast._errors import ErgocastError, LawError, RecordError, ScenarioError, TeamError
+from ergocast._law import Law
 from ergocast._live import Amendment, LiveRun, connect
 from ergocast._native import (
     Basis,
@@ -16,6 +18,7 @@ from ergocast._native import (
     Domain,
     Gaussian,
     IdealTeam,
+    LawInput,
     Mission,
     Region,
     Target,
@@ -35,6 +38,9 @@ __all__ = [
     "ErgocastError",
     "Gaussian",
     "IdealTeam",
+    "Law",
+    "LawError",
+    "LawInput",
     "LiveRun",
     "Mission",
     "RecordError",

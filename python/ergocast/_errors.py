@@ -31,14 +31,20 @@ class ScenarioError(ErgocastError):
         self.problems: list[str] = text.split("\n")
 
 
+class LawError(ErgocastError):
+    """A law of your own that cannot be found, or that wants what no agent may want."""
+
+
 class TeamError(ErgocastError):
     """No team is found, LCM cannot be used, or the team was not seen to obey."""
 
 
 @contextmanager
 def raised_as(kind: type[ErgocastError]) -> Iterator[None]:
-    """Turns a refusal of the C++ part into `kind`, with the same text."""
+    """Turns a refusal of the C++ part into `kind` or LawError, with the same text."""
     try:
         yield
     except _native.Refused as refused:
         raise kind(str(refused)) from None
+    except _native.LawRefused as refused:
+        raise LawError(str(refused)) from None

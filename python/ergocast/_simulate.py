@@ -14,6 +14,7 @@ import numpy as np
 
 from ergocast import _native
 from ergocast._errors import RecordError, ScenarioError, raised_as
+from ergocast._law import LawLike, made
 from ergocast._run import Run
 
 Value = Union[bool, int, float, str, "np.generic"]
@@ -26,6 +27,7 @@ def simulate(
     seed: int | None = None,
     set: Mapping[str, Value] | None = None,
     out: str | os.PathLike[str] | None = None,
+    law: LawLike | None = None,
 ) -> Run:
     """Simulates a mission, as `ergocast simulate` does: the same bytes in the same files.
 
@@ -35,18 +37,22 @@ def simulate(
         paths and values of `ergocast study --vary`.
     out: a new folder, which becomes the run directory with its report; without it no file
         remains.
+    law: one of your own in the place of the scenario's: an object of Law, its class, or
+        "FILE.py:CLASS". What it raises ends the simulation, and leaves an incomplete record.
 
     Other threads can run meanwhile. Ctrl-C ends the mission in order, and raises KeyboardInterrupt.
-    Raises ScenarioError with all problems at once, RecordError if `out` cannot be used.
+    Raises ScenarioError with all problems at once, RecordError if `out` cannot be used, LawError
+    if the law wants what no agent may want.
     """
     compiled = _compile(scenario, seed, set)
+    own, name = (None, "") if law is None else made(law)
     with raised_as(RecordError):
         if out is not None:
-            compiled.simulate(os.fspath(out), True)
+            compiled.simulate(os.fspath(out), True, own, name)
             return Run(out)
         with tempfile.TemporaryDirectory(prefix="ergocast-") as folder:
             run_dir = Path(folder) / "run"
-            compiled.simulate(os.fspath(run_dir), False)
+            compiled.simulate(os.fspath(run_dir), False, own, name)
             return Run(run_dir)
 
 

@@ -173,8 +173,8 @@ inline const std::vector<Rule> kRules = {
      {kCommandLine, kFiles, kSystem}},
     // The Python module: it uses only the command's part that writes a run directory.
     {"python",
-     {"text", "core", "plan", "target", "scenario", "scenario/rules", "runtime/process", "logger",
-      "report", "lab", "cli", "cli/team", "cli/record"},
+     {"text", "core", "plan", "target", "team", "scenario", "scenario/rules", "runtime/process",
+      "logger", "report", "lab", "studies", "cli", "cli/team", "cli/record"},
      {kPython, kFiles}},
     // What the generated reference says of fields and messages.
     {"docs/reference",
@@ -182,6 +182,7 @@ inline const std::vector<Rule> kRules = {
      {kProtobuf, kFiles}},
     // Somebody else's program: it sees the installed headers alone.
     {"examples/embed", {}, {kInstalled, kSystem}},
+    {"examples/law", {}, {kInstalled}},
     // The example to copy: a participant with its main.
     {"examples/driver", {"core", "team"}, {}},
     {"examples/driver/main.cc", {"examples/driver", "runtime/bus", "runtime/process"}, {kLog}},

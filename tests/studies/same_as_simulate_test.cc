@@ -8,11 +8,14 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "core/law/law.h"
 #include "core/mission/amendments.h"
+#include "core/mission/kinds.h"
 #include "lab/ideal_team.h"
 #include "lab/simulation.h"
 #include "plan/plan.h"
@@ -121,6 +124,54 @@ TEST(SameAsSimulate, ForDrawnScenariosWithEveryField) {
   EXPECT_GT(stood_for, kMissions / 3);
   EXPECT_GT(others_that_differ, others / 2) << "of " << others << ": the swarm is needed for these";
   EXPECT_LT(drawn.refused, kMissions);
+}
+
+// ---- laws of a program's own ----
+
+/// Reads all that a law may read: it goes on as before, away from the nearest teammate, and the
+/// more so the more has been covered.
+class Shy final : public Law {
+ public:
+  Shy(const Mission& mission, int kind)
+      : planar_(mission.domain.planar()), u_max_mps_(law_of(mission, kind).u_max_mps) {}
+  LawNeeds needs() const override { return {.team = true, .places = true}; }
+  void set_law(const LawNumbers& numbers) override { u_max_mps_ = numbers.u_max_mps; }
+  void set_coverage(const Coefficients& coverage) override { covered_ = coverage.sum(); }
+
+  Eigen::Vector3d wanted_mps(const LawInput& input) override {
+    EXPECT_TRUE(std::ranges::equal(input.team, input.places, {}, {}, &Placed::agent));
+    for (const Placed& other : input.places) {
+      if (other.agent == input.agent) EXPECT_EQ(other.x_m, input.x_m);
+      const Eigen::Vector3d away_m = input.x_m - other.x_m;
+      if (away_m.norm() > 0) way_ += away_m * (1 + std::abs(covered_)) / away_m.squaredNorm();
+    }
+    if (planar_) way_.z() = 0;
+    way_.normalize();
+    return way_ * u_max_mps_;
+  }
+
+ private:
+  bool planar_;
+  double u_max_mps_, covered_ = 0;
+  Eigen::Vector3d way_{1, 0, 0};
+};
+
+TEST(SameAsSimulate, UnderALawOfAProgramsOwn) {
+  const LawMaker laws = [](const Mission& mission, int kind) {
+    return std::make_unique<Shy>(mission, kind);
+  };
+  Drawn drawn;
+  int stood_for = 0;
+  while (stood_for < 20) {
+    const std::string text = drawn.next();
+    const Mission& mission = drawn.compiled->mission();
+    if (!lab::IdealTeam::stands_for(mission, laws)) continue;
+    ++stood_for;
+    const auto plan = encode_plan(mission);
+    const StudyFigures simulated = studies::run_with_messages(plan, laws);
+    ASSERT_EQ(difference(studies::run_study_mission(plan, laws), simulated), "") << text;
+    ASSERT_NE(difference(studies::run_study_mission(plan), simulated), "") << text;
+  }
 }
 
 // ---- targets that change in flight ----
