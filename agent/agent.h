@@ -78,6 +78,9 @@ class Agent {
   const CoverageTable* coverage() const {
     return mission_run() ? &mission_run()->coverage() : nullptr;
   }
+  /// Where the team has searched, as it knows; null before it is admitted, or if the law does not
+  /// search.
+  const Efforts* efforts() const { return mission_run() ? mission_run()->efforts() : nullptr; }
   /// c_k of the rows that it holds, computed at each call: a law that looks ahead needs only ĉ_k.
   const Coefficients& team_coverage() const;
   /// The coverage that its last command answered to: ĉ_k if the law looks ahead, else c_k.

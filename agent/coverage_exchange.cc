@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "core/law/half_life.h"
 #include "core/law/look_ahead.h"
+#include "core/mission/half_life.h"
 
 namespace ergocast {
 namespace {

@@ -50,8 +50,8 @@ void Guidance::on(const WorldState& world, const RadioRange& radio, const Partic
 void Guidance::note_places(const WorldState& world, const RadioRange& radio, const Box& domain) {
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     if (!radio.receives(id_, vehicle.id)) continue;
-    const Placed now{vehicle.id, domain.nearest(vehicle.position_m)};
-    const auto at = std::ranges::lower_bound(seen_, vehicle.id, {}, &Placed::agent);
+    const TeamPlace now{vehicle.id, domain.nearest(vehicle.position_m)};
+    const auto at = std::ranges::lower_bound(seen_, vehicle.id, {}, &TeamPlace::agent);
     if (at == seen_.end() || at->agent != vehicle.id) {
       seen_.insert(at, now);
     } else {
@@ -76,13 +76,13 @@ bool Guidance::has_state_of(Tick tick) const {
   return !needs_state_ || tick < active_from_ || parts_.tick() > tick || parts_.complete();
 }
 
-Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table,
+Eigen::Vector3d Guidance::wanted_mps(const CoverageTable& table, const Efforts* efforts,
                                      const std::vector<RosterEntry>& roster,
                                      const TargetShift& shift, const AgentStep& step) {
   if (needs_.team || needs_.places) set_team(roster, step);
   if (needs_.places) set_places(step);
   if (needs_.coverage) foresee(table, roster, shift, step);
-  return law_->wanted_mps({id_, step.counted, step.x_m, *step.basis_at, team_, places_});
+  return law_->wanted_mps({id_, step.counted, step.x_m, *step.basis_at, team_, places_, efforts});
 }
 
 void Guidance::set_team(const std::vector<RosterEntry>& roster, const AgentStep& step) {
@@ -98,7 +98,7 @@ void Guidance::set_team(const std::vector<RosterEntry>& roster, const AgentStep&
 void Guidance::set_places(const AgentStep& step) {
   places_.clear();
   for (const AgentId agent : team_) {
-    const auto at = std::ranges::lower_bound(seen_, agent, {}, &Placed::agent);
+    const auto at = std::ranges::lower_bound(seen_, agent, {}, &TeamPlace::agent);
     if (agent == id_) {
       places_.push_back({id_, step.x_m});
     } else if (at != seen_.end() && at->agent == agent) {

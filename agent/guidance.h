@@ -53,8 +53,12 @@ class Guidance {
   /// The velocity that the law wants at a tick that counts.
   /// @param roster  in ticks that count
   /// @param shift  the changes of the target
-  Eigen::Vector3d wanted_mps(const CoverageTable& table, const std::vector<RosterEntry>& roster,
-                             const TargetShift& shift, const AgentStep& step);
+  /// @param efforts  where the team has searched; null if the law does not search
+  Eigen::Vector3d wanted_mps(const CoverageTable& table, const Efforts* efforts,
+                             const std::vector<RosterEntry>& roster, const TargetShift& shift,
+                             const AgentStep& step);
+  /// Whether the law needs to know where the team has searched.
+  bool searches() const { return needs_.search; }
   /// The coverage that wanted_mps() answered to.
   const Coefficients& foreseen() const { return foreseen_; }
 
@@ -78,8 +82,8 @@ class Guidance {
   TeamMetric metric_;
   std::int32_t newest_target_ = -1;
   std::vector<AgentId> team_;
-  std::vector<Placed> seen_;    // in the newest state of the world, ascending
-  std::vector<Placed> places_;  // of the team
+  std::vector<TeamPlace> seen_;    // in the newest state of the world, ascending
+  std::vector<TeamPlace> places_;  // of the team
   std::optional<Forecast> forecast_;
   ArrivedParts parts_;  // of the newest state of the world
   Coefficients foreseen_;

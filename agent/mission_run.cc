@@ -44,6 +44,7 @@ MissionRun::MissionRun(const Participant& me, const RosterEntry& self, const Law
       shift_(me.mission()),
       guidance_(me.mission(), self, laws),
       motion_(me.mission(), self.author, me.follower().revision()) {
+  if (guidance_.searches()) search_.emplace(me.mission(), self);
   last_command_.header.tick = command_before_.header.tick = -1;
   note_roster(me);
 }
@@ -126,6 +127,14 @@ void MissionRun::on(const Contribution& theirs, const Arrival& arrival, Particip
 void MissionRun::on(const Digest& theirs, const Arrival& arrival, Participant& me) {
   if (!arrival.fresh || me.member(theirs.header) == nullptr) return;
   exchange_.on(theirs, step_, me, arrival.now);
+}
+
+void MissionRun::on(const Effort& theirs, const Arrival& arrival, Participant& me) {
+  const RosterEntry* const entry = me.member(theirs.header);
+  if (entry == nullptr || !search_ || step_.tick < 0) return;
+  if (arrival.transmitter == theirs.header.sender) search_->note_received(theirs);
+  const Tick newest = step_.counted + lead(me, arrival.now);
+  if (const auto refusal = search_->merge(theirs, newest)) me.count_refused(*refusal);
 }
 
 void MissionRun::on(const Beacon& beacon, const Arrival& arrival, Participant&) {
@@ -213,6 +222,7 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   const bool covers = !step_.recalled && !ends_.rests(mission, me.id(), step_.counted);
   if (covers) exchange_.add_sample(step_, shift_);
   exchange_.broadcast(false, step_, ends_, me, out);
+  if (search_) search_->begin(step_, covers, me, out);
   return std::nullopt;
 }
 
@@ -222,7 +232,8 @@ AgentId MissionRun::awaited(const Participant& me) const {
   if (!motion_.knows_bodies(step_.tick)) return kWorld;
   if (me.timing().pace == Pace::kRealtime || step_.held) return kUnassigned;
   if (!guidance_.has_state_of(step_.tick)) return kWorld;
-  return exchange_.awaited(step_, radio_, ends_, me);
+  const AgentId awaited = exchange_.awaited(step_, radio_, ends_, me);
+  return awaited == kUnassigned && search_ ? search_->awaited(step_, radio_, me) : awaited;
 }
 
 /// A command of 0 is wanted in a pause: the vehicle brakes, then stands or loiters.
@@ -236,7 +247,8 @@ void MissionRun::answer(Participant& me, Outbox& out) {
   guidance_.note_amendments(me.mission(), me.follower().amendments(), step_.tick);
   Eigen::Vector3d wanted_mps{0, 0, 0};
   if (!step_.held)
-    wanted_mps = guidance_.wanted_mps(exchange_.table(), counted_roster(me), shift_, step_);
+    wanted_mps =
+        guidance_.wanted_mps(exchange_.table(), efforts(), counted_roster(me), shift_, step_);
   last_command_.header.tick = answered_ = step_.tick;
   last_command_.position_m = step_.x_m;
   last_command_.velocity_mps = motion_.command_mps(wanted_mps, step_, me);
@@ -247,6 +259,7 @@ void MissionRun::answer(Participant& me, Outbox& out) {
 void MissionRun::repeat(Participant& me, Outbox& out) {
   repeat_wanted_ = false;
   exchange_.repeat(me, out);
+  if (search_) search_->repeat(me, out);
   if (answered_ == step_.tick) me.publish(Bus::kCommand, last_command_, step_.tick, out);
 }
 

@@ -21,6 +21,7 @@
 #include "agent/coverage_exchange.h"
 #include "agent/guidance.h"
 #include "agent/safe_motion.h"
+#include "agent/search_exchange.h"
 #include "core/base/ids.h"
 #include "core/law/coverage_table.h"
 #include "core/law/target_shift.h"
@@ -69,6 +70,7 @@ class MissionRun {
   void on(const M&, const Arrival&, Participant&) {}  // the other types need no action
   void on(const Contribution& theirs, const Arrival& arrival, Participant& me);
   void on(const Digest& theirs, const Arrival& arrival, Participant& me);
+  void on(const Effort& theirs, const Arrival& arrival, Participant& me);
   void on(const WorldState& world, const Arrival& arrival, Participant& me);
   void on(const Beacon& beacon, const Arrival& arrival, Participant& me);
 
@@ -94,6 +96,8 @@ class MissionRun {
   /// The roster in ticks that count.
   const std::vector<RosterEntry>& counted_roster(const Participant& me) const;
   const CoverageTable& coverage() const { return exchange_.table(); }
+  /// Null if the law does not search.
+  const Efforts* efforts() const { return search_ ? &search_->efforts() : nullptr; }
   const Coefficients& team_coverage() const { return exchange_.team_coverage(); }
   const Coefficients& foreseen_coverage() const { return guidance_.foreseen(); }
   const BeaconBook* beacons() const { return motion_.bodies().beacons(); }
@@ -114,6 +118,7 @@ class MissionRun {
   Tick active_from_;  // from the roster
   RadioRange radio_;
   CoverageExchange exchange_;
+  std::optional<SearchExchange> search_;
   EndSchedule ends_;
   bool has_known_ends_ = false;  // also if they are void by now
   TargetShift shift_;

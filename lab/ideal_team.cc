@@ -65,6 +65,10 @@ IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
     if (follows_walls(mission_)) agents_.back().follower.emplace(mission_, author.agent);
   }
   foresees_ = needs_.coverage && look_ahead_.any();
+  if (needs_.search) efforts_.emplace(mission_);
+  for (const Agent& agent : agents_) {
+    if (efforts_) efforts_->add_row(agent.author);
+  }
   if (any_filtered(mission_)) separation_.emplace(mission_, 0);
   bodies_.resize(separation_ ? agents_.size() : 0);
 }
@@ -72,11 +76,11 @@ IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
 bool IdealTeam::stands_for(const Mission& mission, const LawMaker& laws) {
   const Timing& timing = mission.timing;
   const bool all_is_sent = longest_period_ticks(timing) == 1;
-  const bool all_is_known =
-      !laws(mission, 0)->needs().coverage || (looks_ahead(mission) && mission.dead_reckoning);
+  const LawNeeds needs = laws(mission, 0)->needs();
+  const bool all_is_known = !needs.coverage || (looks_ahead(mission) && mission.dead_reckoning);
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
-         (all_is_sent || all_is_known) && !any_station(mission);
+         (all_is_sent || all_is_known) && !needs.search && !any_station(mission);
 }
 
 void IdealTeam::note(const Amendments& list) {
@@ -113,6 +117,7 @@ void IdealTeam::step() {
   places_.clear();
   for (std::size_t i = 0; needs_.places && i < agents_.size(); ++i)
     places_.push_back({team_[i], agents_[i].x_m});
+  search();
   for (Agent& agent : agents_) {
     if (foresees_) {
       foresee(agent);
@@ -121,7 +126,8 @@ void IdealTeam::step() {
       agent.law->set_coverage(coverage_);
     }
     const Eigen::Vector3d wanted_mps =
-        agent.law->wanted_mps({agent.author.agent, tick_, agent.x_m, *agent.at, team_, places_});
+        agent.law->wanted_mps({agent.author.agent, tick_, agent.x_m, *agent.at, team_, places_,
+                               efforts_ ? &*efforts_ : nullptr});
     agent.next_mps = executed(agent.motion, agent.v_mps, kept_apart(agent, wanted_mps));
     agent.b = agent.law->spectral_gradient();
   }
@@ -132,6 +138,12 @@ void IdealTeam::step() {
     if (edges_ == Edges::kReflect) agent.x_m = reflect(agent.x_m, mission_.domain);
   }
   ++tick_;
+}
+
+void IdealTeam::search() {
+  if (!efforts_) return;
+  efforts_->set_now(tick_);
+  for (const Agent& agent : agents_) efforts_->look(agent.author, tick_, agent.x_m);
 }
 
 void IdealTeam::see_bodies() {

@@ -38,7 +38,7 @@ class IdealTeam {
 
   /// Whether a distributed team would compute the same: it is in lockstep, every agent receives
   /// from every other, and no agent goes home; all coverage is broadcast each tick or known by dead
-  /// reckoning, without rounding.
+  /// reckoning, without rounding. Where teammates have searched is never known at once.
   static bool stands_for(const Mission& mission, const LawMaker& laws = make_law);
 
   /// Takes in the newest list of amendments, of which only targets and laws count: its ticks are
@@ -98,6 +98,7 @@ class IdealTeam {
   double quality(const Agent& agent) const { return sensors_.of(agent.kind).quality; }
   void use_amendments();
   void see_bodies();
+  void search();
   Eigen::Vector3d kept_apart(Agent& agent, const Eigen::Vector3d& v_mps);
 
   Mission mission_;
@@ -121,7 +122,8 @@ class IdealTeam {
   LawNeeds needs_;
   bool foresees_;  // the law reads the forecast coverage
   std::vector<AgentId> team_;
-  std::vector<Placed> places_;  // if the law needs them
+  std::vector<TeamPlace> places_;   // if the law needs them
+  std::optional<Efforts> efforts_;  // the same
   std::vector<Agent> agents_;
   std::optional<SeparationFilter> separation_;
   std::vector<Neighbour> bodies_;

@@ -106,11 +106,12 @@ std::optional<std::string> without_replay(std::string_view channel) {
 std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel) {
   const AgentId sender = header_of(message).sender;
   if (channel == channel_of(message)) return sender;
-  constexpr std::string_view kContribution = "ERGOCAST_CONTRIBUTION_";
-  if (!std::holds_alternative<Contribution>(message) || !channel.starts_with(kContribution)) {
+  // Only what others may relay has a transmitter that is not its sender.
+  if (!std::holds_alternative<Contribution>(message) && !std::holds_alternative<Effort>(message))
     return std::nullopt;
-  }
-  const auto relayer = read_number<AgentId>(channel.substr(kContribution.size()));
+  const std::string& stem = table().stems[message.index()];
+  if (!channel.starts_with(stem)) return std::nullopt;
+  const auto relayer = read_number<AgentId>(channel.substr(stem.size()));
   return relayer >= 0 && relayer < kMaxAgents ? relayer : std::nullopt;
 }
 

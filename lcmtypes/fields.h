@@ -13,6 +13,7 @@
 #include <ergocast/command_t.hpp>
 #include <ergocast/contribution_t.hpp>
 #include <ergocast/digest_t.hpp>
+#include <ergocast/effort_t.hpp>
 #include <ergocast/hello_t.hpp>
 #include <ergocast/low_averages_t.hpp>
 #include <ergocast/low_sums_t.hpp>
@@ -303,6 +304,24 @@ struct Fields<Beacon> {
     io.number(m.number);
     io.holds(m.number != 0);
     for (auto& echo : io.length(m.echoes, m.echo_count)) io.number(echo);
+  }
+};
+
+/// Efforts::merge() checks whether the counts are possible, because it knows the mission.
+template <>
+struct Fields<Effort> {
+  using Generated = effort_t;
+  static constexpr bool kPerAgent = true;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.sender >= 0 && m.header.tick >= 0);
+    io.within(m.part, 0, kMaxEffortParts - 1);
+    io.within(m.parts, 1, kMaxEffortParts);
+    io.holds(m.part < m.parts);
+    for (auto& tile : io.length(m.tiles, m.tile_count)) {
+      io.within(tile.number, 0, static_cast<std::int32_t>(kMaxTiles) - 1);
+      io.count(tile.content.newest_look);
+      io.each_number(tile.content.looks);
+    }
   }
 };
 

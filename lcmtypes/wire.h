@@ -68,6 +68,9 @@ class Writer {
   }
   /// Sums over `time_s` as averages of 16 bits each, which are parts of `range`.
   void averages(const BlockSums& sums, double time_s, std::int32_t range, std::size_t count);
+  void each_number(std::span<const std::uint16_t> values) {
+    for (const std::uint16_t value : values) number(value);
+  }
   void count(std::int64_t value) { number(value); }
   void counts(std::span<const std::int64_t> values) {
     for (const std::int64_t value : values) count(value);
@@ -140,6 +143,9 @@ class Reader {
       std::memcpy(&bits, at + 8 * k, sizeof bits);
       values[k] = std::bit_cast<double>(swapped(bits));
     }
+  }
+  void each_number(std::span<std::uint16_t> values) {
+    for (std::uint16_t& value : values) number(value);
   }
   void sums(BlockSums& values, std::size_t count) { numbers(values.set_all(count)); }
   void averages(BlockSums& sums, double time_s, std::int32_t range, std::size_t count);

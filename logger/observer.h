@@ -3,14 +3,14 @@
 // kinds have footprints or qualities, it is of what the team has seen (core/mission/kinds.h). If
 // the target changes, each moment counts against the target of its own time
 // (core/law/target_shift.h), or with law.history KEEP against the present one. With a half-life it
-// is of what the team remembers (core/law/half_life.h).
+// is of what the team remembers (core/mission/half_life.h).
 #pragma once
 
 #include <cstdint>
 
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
-#include "core/law/half_life.h"
+#include "core/mission/half_life.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
 

@@ -106,7 +106,7 @@ void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
   io.flag({12, "paired_pushes"}, law.paired_pushes);
   io.number({14, "memory_half_life_s", limits::between(0, 1e9), forgets}, law.memory_half_life_s);
   io.choice({15, "history"}, law.history, {"BY_TIME", "KEEP"});
-  io.choice({16, "kind"}, law.kind, {"COVER", "MOW"});
+  io.choice({16, "kind"}, law.kind, {"COVER", "MOW", "SEARCH"});
 }
 
 void list_fields(auto& io, MaybeConst<Timing> auto& timing) {

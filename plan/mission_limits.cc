@@ -90,6 +90,9 @@ bool fits(const ControlLaw& law) {
   return law.perturbation == Perturbation::kConstant || law.noise_ceiling >= law.noise_intensity;
 }
 
+/// Rows of a search are of cells in a plane.
+bool fits(LawKind kind, const Box& domain) { return kind != LawKind::kSearch || domain.planar(); }
+
 /// Some steps are needed between two halvings.
 bool memory_fits(const ControlLaw& law, double dt_s) {
   return law.memory_half_life_s == 0 ||
@@ -252,7 +255,8 @@ bool within_limits(const Mission& mission) {
   list_fields(each, mission);
   return each.ok && fits(mission.domain) && fit_together(mission.basis, mission.domain) &&
          is_target(mission.target_coefficients, mission.cosine_target, mission) &&
-         fits(mission.basis, mission) && fits(mission.law) && fits(mission.timing) &&
+         fits(mission.basis, mission) && fits(mission.law) &&
+         fits(mission.law.kind, mission.domain) && fits(mission.timing) &&
          memory_fits(mission.law, mission.timing.dt_s) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&

@@ -61,7 +61,7 @@ class TeamLaw {
 
   Eigen::Vector3d wanted_mps(const LawInput& input) {
     if (input.tick != tick_) ask(input.tick, input.places);
-    const auto at = std::ranges::lower_bound(places_, input.agent, {}, &Placed::agent);
+    const auto at = std::ranges::lower_bound(places_, input.agent, {}, &TeamPlace::agent);
     if (at == places_.end() || at->agent != input.agent) return {0, 0, 0};  // it has just joined
     return wanted_mps_[static_cast<std::size_t>(at - places_.begin())];
   }
@@ -71,10 +71,10 @@ class TeamLaw {
     return u_max_mps_[static_cast<std::size_t>(planned_kind(mission_, agent))];
   }
 
-  void ask(Tick tick, std::span<const Placed> places) {
+  void ask(Tick tick, std::span<const TeamPlace> places) {
     tick_ = tick;
     places_.assign(places.begin(), places.end());
-    for (const Placed& agent : places_)
+    for (const TeamPlace& agent : places_)
       observer_.see(mission_, tick, planned_kind(mission_, agent.agent), agent.x_m);
     const py::gil_scoped_acquire python;
     take(law_.attr("wanted_mps")(input()));
@@ -93,7 +93,7 @@ class TeamLaw {
                     shown_};
     double* x_m = input.x_m.mutable_data();
     for (py::ssize_t i = 0; i < count; ++i) {
-      const Placed& agent = places_[static_cast<std::size_t>(i)];
+      const TeamPlace& agent = places_[static_cast<std::size_t>(i)];
       input.agents.mutable_at(i) = agent.agent;
       input.u_max_mps.mutable_at(i) = u_max_of(agent.agent);
       x_m = std::copy_n(agent.x_m.data(), axes, x_m);
@@ -143,7 +143,7 @@ class TeamLaw {
   Observer observer_;
   std::vector<double> u_max_mps_;  // of each kind
   Tick tick_ = -1;
-  std::vector<Placed> places_;
+  std::vector<TeamPlace> places_;
   std::vector<Eigen::Vector3d> wanted_mps_;
 };
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/law/half_life.h"
+#include "core/mission/half_life.h"
 #include "core/measure/detection.h"
 #include "core/mission/end_schedule.h"
 #include "core/mission/kinds.h"

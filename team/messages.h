@@ -16,6 +16,7 @@
 #include "core/base/ids.h"
 #include "core/mission/amendments.h"
 #include "core/mission/roster.h"
+#include "core/search/efforts.h"
 #include "plan/plan.h"
 
 namespace ergocast {
@@ -121,6 +122,25 @@ struct Digest {
   std::uint64_t settled_hash = 0;  ///< of what is held of all former members
   std::int32_t entry_count = 0;
   std::array<DigestEntry, kMaxDigestEntriesPerMessage> entries;
+};
+
+struct SentTile {
+  std::int32_t number = 0;
+  EffortTile content;
+};
+/// Limit (Messages): tiles in an EFFORT. Beyond it: a row travels in several messages.
+inline constexpr int kMaxTilesPerMessage = 8;
+inline constexpr int kMaxEffortParts = static_cast<int>(kMaxTiles) / kMaxTilesPerMessage;
+
+/// Where an agent has searched: tiles of its row in core/search/efforts.h, as they are remembered
+/// at the counted tick header.tick. The tiles of one tick travel in parts.
+struct Effort {
+  Header header;  ///< the author's, even if another agent relays its tiles
+  std::int32_t part = 0, parts = 1;
+  std::int32_t tile_count = 0;
+  std::array<SentTile, kMaxTilesPerMessage> tiles{};
+
+  Author author() const { return {header.sender, header.incarnation}; }
 };
 
 /// An agent that has a station (core/mission/station.h) or was recalled may also be kReturning, on
@@ -267,7 +287,7 @@ struct RecordAck {
 inline constexpr Tick kRecordWindowTicks = 64;
 
 using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
-                             WorldState, Command, RecordAck, Digest, Amend, Beacon, Recall>;
+                             WorldState, Command, RecordAck, Digest, Amend, Beacon, Recall, Effort>;
 
 enum class Bus { kSwarm, kWorld, kCommand };
 inline constexpr int kBusCount = 3;

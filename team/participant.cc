@@ -88,11 +88,4 @@ bool Participant::cut_off(Tick newest, Instant now) const {
   return must_be_over(timing, counted(newest), now - last);
 }
 
-void Participant::relay(Bus bus, const Contribution& block, Outbox& out) const {
-  Outgoing& outgoing = out.emplace_back();
-  outgoing.bus = bus;
-  outgoing.relayer = self_.id;
-  outgoing.message.emplace<Contribution>(block).header.run = self_.run;
-}
-
 }  // namespace ergocast

@@ -124,8 +124,14 @@ class Participant {
     outgoing.message.emplace<M>(message).header = {
         self_.run, self_.id, self_.incarnation, ++sequences_[static_cast<std::size_t>(bus)], tick};
   }
-  /// Appends another agent's block unchanged: we are only its transmitter.
-  void relay(Bus bus, const Contribution& block, Outbox& out) const;
+  /// Appends another agent's message unchanged: we are only its transmitter.
+  template <class M>
+  void relay(Bus bus, const M& message, Outbox& out) const {
+    Outgoing& outgoing = out.emplace_back();
+    outgoing.bus = bus;
+    outgoing.relayer = self_.id;
+    outgoing.message.emplace<M>(message).header.run = self_.run;
+  }
 
   void count_refused(Refusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
   const RefusalCounts& refused() const { return refused_; }

@@ -58,7 +58,7 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   const auto subscribes = [&table](Role role, Bus bus, MessageTypes types) {
     table[static_cast<std::size_t>(role)][static_cast<std::size_t>(bus)] = types;
   };
-  subscribes(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop, Beacon>);
+  subscribes(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop, Beacon, Effort>);
   subscribes(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
   subscribes(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop, Amend, Recall>);
   subscribes(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState, RecordAck>);

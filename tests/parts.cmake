@@ -32,6 +32,7 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/noise_test.cc
     core/perturbation_test.cc
     core/potential_test.cc
+    core/search_test.cc
     core/separation_test.cc
     core/speed_limit_test.cc
     core/step_constraints_test.cc
@@ -105,6 +106,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     agent/radio_test.cc
     agent/reckoning_test.cc
     agent/repair_test.cc
+    agent/search_exchange_test.cc
     coordinator/admission_test.cc
     coordinator/after_takeover_test.cc
     coordinator/announcement_test.cc

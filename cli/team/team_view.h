@@ -76,7 +76,7 @@ struct TeamPicture {
   double dt_s = 0;
   std::optional<double> ergodic_metric;  ///< median of the agents' values, in cosines or …
   bool free_domain = false;              ///< … in the modes of the free domain
-  /// How likely an object drawn from the target has been found; nothing: no logger has said so.
+  /// How likely an object drawn from the target has been found; nothing: no logger has reported it.
   std::optional<double> detection_probability;
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;

@@ -106,4 +106,16 @@ std::vector<int> depths(const Rings& rings) {
   return depths;
 }
 
+std::vector<double> crossings_m(const Rings& rings, int axis, double at_m) {
+  std::vector<double> crossings;
+  for_segments(rings, [&](const Segment& edge) {
+    const double from = edge.from_m[axis], to = edge.to_m[axis];
+    if ((from > at_m) == (to > at_m)) return;
+    const double from_m = edge.from_m[1 - axis], to_m = edge.to_m[1 - axis];
+    crossings.push_back(from_m + (at_m - from) / (to - from) * (to_m - from_m));
+  });
+  std::ranges::sort(crossings);
+  return crossings;
+}
+
 }  // namespace ergocast

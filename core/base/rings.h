@@ -54,6 +54,10 @@ double area_m2(const Ring& ring);
 /// Whether `x_m` is inside. On the edge the result may be either.
 bool contains(const Ring& ring, const Eigen::Vector2d& x_m);
 
+/// Where a line across `axis` (0: x, 1: y), at `at_m` along it, crosses edges: along the other
+/// axis, ascending [m].
+std::vector<double> crossings_m(const Rings& rings, int axis, double at_m);
+
 /// How many other rings each ring is inside of.
 /// @pre no edges touch
 std::vector<int> depths(const Rings& rings);

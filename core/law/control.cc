@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Weights the residual once for each coverage, then evaluates field, direction, contraction and
-// perturbation at the position.
+// Weights the residual once for each coverage, then evaluates the field at the position.
 #include "core/law/control.h"
 
 #include <cmath>
 
-#include "core/base/noise.h"
 #include "core/base/require.h"
 #include "core/base/vectorized.h"
-#include "core/law/perturbation.h"
 #include "core/mission/kinds.h"
 
 namespace ergocast {
@@ -26,25 +23,10 @@ Box cube_around(const Box& domain) {
 
 }  // namespace
 
-Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double epsilon,
-                             double u_max_mps) {
-  // hypot, because B falls below 1e-4: its square would lose the smallest residuals.
-  const double b_z = spectral_gradient.z();
-  const double length = std::hypot(std::hypot(spectral_gradient.x(), spectral_gradient.y()),
-                                   b_z == 0 ? epsilon : std::hypot(b_z, epsilon));
-  if (length == 0) return {0, 0, 0};
-  // The division comes first: u_max / length overflows where B is close to 0.
-  return spectral_gradient / length * -u_max_mps;
-}
-
 Controller::Controller(const Mission& mission, int kind)
     : domain_(mission.domain),
       basis_(mission.basis),
-      law_(law_of(mission, kind)),
-      seed_(mission.seed),
-      scale_(law_, mission.timing.dt_s),
-      dt_s_(mission.timing.dt_s),
-      push_ticks_(push_ticks(law_, mission.timing.dt_s)),
+      steering_(mission, kind),
       target_(mission.target_coefficients),
       weights_(steering_weights(mission, kind)),
       energies_(gradient_energies(mission.basis, cube_around(mission.domain))),
@@ -53,19 +35,8 @@ Controller::Controller(const Mission& mission, int kind)
   if (!mission.kinds.empty()) metric_weights_ = sobolev_weights(mission.basis, mission.domain);
 }
 
-void Controller::set_law(const LawNumbers& numbers) {
-  if (numbers == LawNumbers{law_.u_max_mps, law_.noise_intensity, law_.noise_ceiling}) return;
-  law_.u_max_mps = numbers.u_max_mps;
-  law_.noise_intensity = numbers.noise_intensity;
-  law_.noise_ceiling = numbers.noise_ceiling;
-  scale_ = PerturbationScale(law_, dt_s_);
-  push_ticks_ = push_ticks(law_, dt_s_);
-}
-
 void Controller::set_coverage(const Coefficients& coverage) {
-  const double residual_gradient = set_residual(coverage);
-  epsilon_ = law_.epsilon;
-  if (law_.regularization == Regularization::kRelative) epsilon_ *= residual_gradient;
+  epsilon_ = steering_.epsilon(set_residual(coverage));
 }
 
 ERGOCAST_VECTORIZED
@@ -93,35 +64,13 @@ double Controller::set_residual(const Coefficients& coverage) {
 Eigen::Vector3d Controller::command(AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
                                     const BasisAt& at) {
   FieldAt field;
-  if (law_.perturbation == Perturbation::kAdaptive) {
+  if (steering_.needs_curvature()) {
     field = weighted_field(at, basis_, domain_, residual_.data());
   } else {
     field.gradient = weighted_gradient(at, basis_, residual_.data());
   }
   spectral_gradient_ = field.gradient;
-  Eigen::Vector3d velocity = smooth_input(field.gradient, epsilon_, law_.u_max_mps) -
-                             law_.contraction_gain_per_s * (x_m - law_.contraction_center_m);
-  if (domain_.planar()) velocity.z() = 0;  // instead of −0
-  if (law_.max_noise() > 0) {
-    const Eigen::Vector3d xi =
-        normal_in(domain_, seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
-                  static_cast<std::uint64_t>(tick));
-    const Eigen::Vector3d eta = push(agent, tick / push_ticks_);
-    velocity += perturbation(scale_, epsilon_, field, xi, eta);
-  }
-  return velocity;
-}
-
-/// η of one stretch of push_ticks_ ticks.
-Eigen::Vector3d Controller::push(AgentId agent, Tick stretch) {
-  const AgentId drawn = law_.paired_pushes ? agent - agent % 2 : agent;
-  Push& last = pushes_[static_cast<std::uint32_t>(drawn) % pushes_.size()];
-  if (last.drawn != drawn || last.stretch != stretch) {
-    last = {drawn, stretch,
-            normal_in(domain_, seed_, Purpose::kPush, static_cast<std::uint32_t>(drawn),
-                      static_cast<std::uint64_t>(stretch))};
-  }
-  return drawn == agent ? last.eta : Eigen::Vector3d(-last.eta);
+  return steering_.velocity_mps(agent, tick, x_m, field, epsilon_);
 }
 
 double Controller::metric(const Coefficients& coverage) const {

@@ -3,21 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
 #include "core/law/law.h"
-#include "core/law/perturbation.h"
+#include "core/law/steering.h"
 #include "core/mission/law_change.h"
 #include "core/mission/mission.h"
 
 namespace ergocast {
-
-/// u = −u_max B / √(‖B‖² + ε²), (8); for ε = 0 the classical law (5), whose limit we set to u = 0
-/// where B = 0.  ‖u‖ ≤ u_max up to rounding.
-Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double epsilon,
-                             double u_max_mps);
 
 /// Computes one agent's command from the team's coverage. Holds the mission's constant tables and a
 /// K-vector of scratch space; no step allocates.
@@ -32,7 +26,7 @@ class Controller final : public Law {
   void set_coverage(const Coefficients& coverage) override;
 
   /// From now on the law has these numbers.
-  void set_law(const LawNumbers& numbers) override;
+  void set_law(const LawNumbers& numbers) override { steering_.set_law(numbers); }
 
   /// The velocity command of (10) at position `x_m`:
   ///   v = u − k (x − centre) + perturbation,  a function of (seed, agent, tick) and the field.
@@ -52,30 +46,17 @@ class Controller final : public Law {
   double metric(const Coefficients& coverage) const;
 
  private:
-  /// An η, and where it was drawn.
-  struct Push {
-    AgentId drawn = kUnassigned;
-    Tick stretch = -1;
-    Eigen::Vector3d eta{0, 0, 0};
-  };
-
-  Eigen::Vector3d push(AgentId agent, Tick stretch);
   /// Sets the residual λ g (c − μ) in the kind's band; returns the RMS of ‖Σ λ g (c − μ) ∇f‖ over a
   /// domain with all sides as long as the longest [1/m].
   double set_residual(const Coefficients& coverage);
 
   Box domain_;
   Basis basis_;
-  ControlLaw law_;
-  std::uint64_t seed_;
-  PerturbationScale scale_;
-  double dt_s_;
-  Tick push_ticks_;
+  Steering steering_;
   Coefficients target_, weights_, energies_, residual_;
   Coefficients metric_weights_;  // if the weights that it steers by are not those of φ²
   Eigen::Vector3d spectral_gradient_{0, 0, 0};
   double epsilon_ = 0;
-  std::array<Push, kMaxAgents> pushes_;  // the last of each agent: one is held for many ticks
 };
 
 }  // namespace ergocast

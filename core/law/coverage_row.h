@@ -16,7 +16,7 @@
 #include "core/base/ids.h"
 #include "core/base/line_aligned.h"
 #include "core/law/block_layout.h"
-#include "core/law/half_life.h"
+#include "core/mission/half_life.h"
 
 namespace ergocast {
 

@@ -18,7 +18,7 @@
 #include "core/basis/basis.h"
 #include "core/law/block_layout.h"
 #include "core/law/coverage_row.h"
-#include "core/law/half_life.h"
+#include "core/mission/half_life.h"
 
 namespace ergocast {
 

@@ -4,6 +4,7 @@
 
 #include "core/law/control.h"
 #include "core/law/mower.h"
+#include "core/law/searcher.h"
 
 namespace ergocast {
 
@@ -11,6 +12,8 @@ std::unique_ptr<Law> make_law(const Mission& mission, int kind) {
   switch (mission.law.kind) {
     case LawKind::kMow:
       return std::make_unique<Mower>(mission, kind);
+    case LawKind::kSearch:
+      return std::make_unique<Searcher>(mission, kind);
     case LawKind::kCover:
       break;
   }

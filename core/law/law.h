@@ -15,6 +15,7 @@
 #include "core/basis/basis.h"
 #include "core/mission/law_change.h"
 #include "core/mission/mission.h"
+#include "core/search/efforts.h"
 
 namespace ergocast {
 
@@ -23,13 +24,14 @@ struct LawNeeds {
   bool coverage = true;  ///< set_coverage() before each command
   bool team = false;     ///< LawInput::team
   bool places = false;   ///< LawInput::places
+  bool search = false;   ///< LawInput::efforts
   /// One object may serve all agents of a kind: a command depends on nothing but its input, the
   /// last coverage and the numbers. Else each agent has an object of its own.
   bool serves_all = false;
 };
 
 /// Where an agent is.
-struct Placed {
+struct TeamPlace {
   AgentId agent;
   Eigen::Vector3d x_m;
 };
@@ -44,7 +46,8 @@ struct LawInput {
   std::span<const AgentId> team;  ///< as above, ascending
   /// Where they are at this tick, the own agent among them; ascending. An agent whose state is not
   /// received, because it is out of radio range, is left out.
-  std::span<const Placed> places{};
+  std::span<const TeamPlace> places{};
+  const Efforts* efforts = nullptr;  ///< where all agents have searched
 };
 
 class Law {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/law/half_life.h"
+#include "core/mission/half_life.h"
 
 namespace ergocast {
 

@@ -38,4 +38,12 @@ std::size_t Cells::cell_of(const Eigen::Vector3d& x_m) const {
   return column(at.x(), at.z()) + static_cast<std::size_t>(at.y());
 }
 
+Cells::Range Cells::near(int axis, double at_m, double reach_m) const {
+  if (count[axis] == 1) return {0, 0};
+  const double middle = (at_m - domain.origin_m[axis]) / size_m[axis] - 0.5;
+  const double half = reach_m / size_m[axis], last = count[axis] - 1;
+  return {static_cast<int>(std::clamp(std::ceil(middle - half), 0.0, last + 1)),
+          static_cast<int>(std::clamp(std::floor(middle + half), -1.0, last))};
+}
+
 }  // namespace ergocast

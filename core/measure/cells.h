@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 
 #include "core/base/geometry.h"
@@ -42,6 +43,26 @@ struct Cells {
   }
   /// The cell that contains `x_m`. @pre x_m is in the domain
   std::size_t cell_of(const Eigen::Vector3d& x_m) const;
+
+  struct Range {
+    int first, last;  ///< none if last < first
+  };
+  /// The cells along an axis whose middles are at most `reach_m` from `at_m`.
+  Range near(int axis, double at_m, double reach_m) const;
+  /// Calls each(i, j, l) for the cells whose middles are at most `reach_m` from `x_m`.
+  void for_near(const Eigen::Vector3d& x_m, double reach_m, auto&& each) const {
+    const Range layers = near(2, x_m.z(), reach_m), columns = near(0, x_m.x(), reach_m);
+    for (int l = layers.first; l <= layers.last; ++l) {
+      const double up_m = domain.planar() ? 0 : center_m(2, l) - x_m.z();
+      for (int i = columns.first; i <= columns.last; ++i) {
+        const double off_m = center_m(0, i) - x_m.x();
+        const double left_m2 = reach_m * reach_m - off_m * off_m - up_m * up_m;
+        if (left_m2 < 0) continue;
+        const Range rows = near(1, x_m.y(), std::sqrt(left_m2));
+        for (int j = rows.first; j <= rows.last; ++j) each(i, j, l);
+      }
+    }
+  }
 };
 
 }  // namespace ergocast

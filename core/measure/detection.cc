@@ -71,14 +71,6 @@ void Detection::begin_target(std::vector<double> mass, Tick counted) {
   times_s_ = {};
 }
 
-Detection::Range Detection::near(int axis, double at_m, double reach_m) const {
-  if (cells_.count[axis] == 1) return {0, 0};
-  const double middle = (at_m - cells_.domain.origin_m[axis]) / cells_.size_m[axis] - 0.5;
-  const double half = reach_m / cells_.size_m[axis], last = cells_.count[axis] - 1;
-  return {static_cast<int>(std::clamp(std::ceil(middle - half), 0.0, last + 1)),
-          static_cast<int>(std::clamp(std::floor(middle + half), -1.0, last))};
-}
-
 void Detection::look(std::size_t cell, Tick turn) {
   found_ += mass_[cell] * missed_[cell] * (1 - missed_in_look_);
   missed_[cell] *= missed_in_look_;
@@ -89,19 +81,9 @@ void Detection::look(std::size_t cell, Tick turn) {
 void Detection::see(Tick counted, const Eigen::Vector3d& x_m) {
   if (counted % ticks_per_look_ != ticks_per_look_ / 2) return;
   const Tick turn = counted / ticks_per_look_;
-  const Range layers = near(2, x_m.z(), radius_m_), columns = near(0, x_m.x(), radius_m_);
-  const bool planar = cells_.domain.planar();
-  for (int l = layers.first; l <= layers.last; ++l) {
-    const double up_m = planar ? 0 : cells_.center_m(2, l) - x_m.z();
-    for (int i = columns.first; i <= columns.last; ++i) {
-      const double off_m = cells_.center_m(0, i) - x_m.x();
-      const double left_m2 = radius_m_ * radius_m_ - off_m * off_m - up_m * up_m;
-      if (left_m2 < 0) continue;
-      const Range cells = near(1, x_m.y(), std::sqrt(left_m2));
-      for (int j = cells.first; j <= cells.last; ++j)
-        look(cells_.column(i, l) + static_cast<std::size_t>(j), turn);
-    }
-  }
+  cells_.for_near(x_m, radius_m_, [&](int i, int j, int l) {
+    look(cells_.column(i, l) + static_cast<std::size_t>(j), turn);
+  });
 }
 
 void Detection::pass(Tick counted) {

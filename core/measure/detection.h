@@ -66,11 +66,6 @@ class Detection {
   const std::vector<double>& missed() const { return missed_; }
 
  private:
-  struct Range {
-    int first, last;  // none if last < first
-  };
-  /// The cells along an axis whose middles are at most `reach_m` from `at_m`.
-  Range near(int axis, double at_m, double reach_m) const;
   /// A sensor is near a cell.
   void look(std::size_t cell, Tick turn);
 

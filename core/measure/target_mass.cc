@@ -44,22 +44,10 @@ std::vector<double> densities(const Basis& basis, const Coefficients& target, co
   return density;
 }
 
-/// Where the line through `x_m` along y crosses an edge, ascending.
-std::vector<double> crossings_m(const Rings& rings, double x_m) {
-  std::vector<double> crossings;
-  for_segments(rings, [&](const Segment& edge) {
-    const Eigen::Vector2d &from = edge.from_m, &to = edge.to_m;
-    if ((from.x() > x_m) == (to.x() > x_m)) return;
-    crossings.push_back(from.y() + (x_m - from.x()) / (to.x() - from.x()) * (to.y() - from.y()));
-  });
-  std::ranges::sort(crossings);
-  return crossings;
-}
-
 /// Takes the mass out of the cells whose middles are in walls, in a plane.
 void empty_walls(const Rings& walls, const Cells& cells, std::vector<double>& mass) {
   for (int i = 0; i < cells.count.x(); ++i) {
-    const std::vector<double> crossings = crossings_m(walls, cells.center_m(0, i));
+    const std::vector<double> crossings = crossings_m(walls, 0, cells.center_m(0, i));
     std::size_t passed = 0;
     for (int j = 0; j < cells.count.y(); ++j) {
       while (passed < crossings.size() && crossings[passed] < cells.center_m(1, j)) ++passed;

@@ -31,8 +31,9 @@ enum class TargetHistory {
 };
 
 enum class LawKind {
-  kCover,  ///< the input (8), core/law/control.h
-  kMow,    ///< lanes over equal shares of the target, core/law/mower.h
+  kCover,   ///< the input (8), core/law/control.h
+  kMow,     ///< lanes over equal shares of the target, core/law/mower.h
+  kSearch,  ///< towards what is left to find, core/law/searcher.h
 };
 
 /// The input (8) and the dynamics (10): dx = u dt − k (x − centre) dt + σ dW.
@@ -48,9 +49,10 @@ struct ControlLaw {
   Eigen::Vector3d contraction_center_m{0, 0, 0};
   double anticipation =
       0;  ///< a of core/law/look_ahead.h; 0: agents answer to the known coverage c
-  bool ends_with_plan = false;    ///< no agent looks beyond the mission's end
-  bool paired_pushes = false;     ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
-  double memory_half_life_s = 0;  ///< of coverage, core/law/half_life.h; 0: it is never forgotten
+  bool ends_with_plan = false;  ///< no agent looks beyond the mission's end
+  bool paired_pushes = false;   ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
+  double memory_half_life_s =
+      0;  ///< of coverage, core/mission/half_life.h; 0: it is never forgotten
   TargetHistory history = TargetHistory::kByTime;  ///< core/law/target_shift.h
 
   /// What σ never exceeds [m/√s].

@@ -2,8 +2,8 @@
 // The shortest way to a place around walls and closed zones.
 //
 // Without either the way is straight. Else it leads along the cells of core/motion/free_region.h,
-// and its length is never too short. Who follows it moves straight to the farthest of these cells
-// that it can see.
+// and its length is never too short. A body that follows it moves straight to the farthest of these
+// cells that it can see.
 #pragma once
 
 #include <Eigen/Core>

@@ -64,6 +64,7 @@ class Describer {
   bool is_signed = false;
 
   void number(const auto&) { add(""); }
+  void each_number(const auto&) { add(""); }
   void count(const auto&) { add("0 to 2⁴⁸"); }
   void counts(const auto&) { add("each 0 to 2⁴⁸"); }
   void capped_count(const auto&) { add("0 to 2⁴⁸"); }

@@ -191,6 +191,8 @@ class Validator {
     ceiling();
     contraction();
     memory();
+    if (law.kind() == proto::Law::SEARCH && is_box())
+      problem("law.kind", "SEARCH needs a plane, and the domain is a box", "write COVER or MOW");
   }
 
   /// Some steps are needed between two halvings.

@@ -279,6 +279,7 @@ std::vector<Mistake> mistakes_of_free_domains() {
       {kLaw, "world { speed_limit_mps: 100 " + gap + "} " + few + " } law {",
        "basis.free_domain: the free domain has no modes"},
       in_space(kLaw, few + " } law {", "basis.free_domain: needs a plane"),
+      in_space(kLaw, "law { kind: SEARCH", "law.kind: SEARCH needs a plane"),
       kind("footprint_sigma_m: 3", "agents.kind[0].footprint_sigma_m: is a blur of cosines"),
       kind("band { to: 3 }", "agents.kind[0].band: is of cosines"),
   };

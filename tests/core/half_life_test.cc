@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Forgetting by halving: a row is the same whether its author or a receiver halves it, and
 // nothing that is stored or relayed changes.
-#include "core/law/half_life.h"
+#include "core/mission/half_life.h"
 
 #include <gtest/gtest.h>
 

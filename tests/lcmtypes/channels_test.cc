@@ -23,6 +23,7 @@ TEST(Channels, HaveTheDocumentedNames) {
   EXPECT_EQ(channel_of(record_ack()), "ERGOCAST_RECORD_ACK");
   EXPECT_EQ(channel_of(digest()), "ERGOCAST_DIGEST_3");
   EXPECT_EQ(channel_of(beacon()), "ERGOCAST_BEACON_3");
+  EXPECT_EQ(channel_of(effort()), "ERGOCAST_EFFORT_3");
   EXPECT_EQ(channel_of(contribution(), 9), "ERGOCAST_CONTRIBUTION_9") << "repeated by agent 9";
 }
 

@@ -201,10 +201,22 @@ inline Beacon beacon() {
   return m;
 }
 
+inline Effort effort() {
+  Effort m;
+  m.header = header_of_sender(3);
+  m.part = 1;
+  m.parts = 3;
+  m.tile_count = 2;
+  m.tiles[0] = {0, {5, {}}};
+  m.tiles[1] = {static_cast<std::int32_t>(kMaxTiles) - 1, {4711, {}}};
+  m.tiles[1].content.looks[63] = 65535;
+  return m;
+}
+
 inline std::vector<Message> every_message() {
   return {hello(),       mission_part(), contribution(), agent_status(), team_status(), stop(),
           world_state(), command(),      record_ack(),   digest(),       amend(),       averages(),
-          low_sums(),    low_averages(), beacon(),       recall()};
+          low_sums(),    low_averages(), beacon(),       recall(),       effort()};
 }
 
 // ---- bytes ----

@@ -99,7 +99,7 @@ inline Mission rich_mission_in_space() {
   mission.law.contraction_center_m.z() = 9;
   mission.starts_m[0].z() = -6;
   mission.starts_m[1].z() = 41;
-  mission.law.kind = LawKind::kCover;  // lanes are in a plane
+  mission.law.kind = LawKind::kMow;
   return mission;
 }
 

@@ -139,9 +139,9 @@ class Shy final : public Law {
   void set_coverage(const Coefficients& coverage) override { covered_ = coverage.sum(); }
 
   Eigen::Vector3d wanted_mps(const LawInput& input) override {
-    EXPECT_TRUE(std::ranges::equal(input.team, input.places, {}, {}, &Placed::agent));
-    for (const Placed& other : input.places) {
-      if (other.agent == input.agent) EXPECT_EQ(other.x_m, input.x_m);
+    EXPECT_TRUE(std::ranges::equal(input.team, input.places, {}, {}, &TeamPlace::agent));
+    for (const TeamPlace& other : input.places) {
+      EXPECT_TRUE(other.agent != input.agent || other.x_m == input.x_m);
       const Eigen::Vector3d away_m = input.x_m - other.x_m;
       if (away_m.norm() > 0) way_ += away_m * (1 + std::abs(covered_)) / away_m.squaredNorm();
     }

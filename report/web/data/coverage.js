@@ -2,7 +2,7 @@
 // Computes the coverage c_k from positions, for any row at once.
 // The sums are kept every 128 rows. The order is that of the wire: the modes along z count slowest, those
 // along y fastest. Where kinds of agents see differently, each place counts with its kind's quality and
-// footprint. With a half-life, all sums are halved at its ticks, as in core/law/half_life.h.
+// footprint. With a half-life, all sums are halved at its ticks, as in core/mission/half_life.h.
 // After a change of the target each place counts against the target of its own time: c_k is compared with the
 // average of the targets, each weighted by what was covered while it held. With law.history KEEP it is
 // compared with the present target.

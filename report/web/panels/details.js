@@ -143,7 +143,11 @@ function table(columns, objects) {
 
 const AMENDMENT_COLUMNS = [
   ['amendment', 'number', 'Its number in the mission'],
-  ['kind', 'kind', 'What it changes: a pause, the target, the end, a zone that is kept free or is cancelled, or the law'],
+  [
+    'kind',
+    'kind',
+    'What it changes: a pause, the target, the end, a zone that is kept free or is cancelled, or the law',
+  ],
   ['from tick', 'from', 'The first tick of the world at which it holds'],
   ['t [s]', 't', 'Mission time at that tick'],
   ['ticks', 'tick_count', 'Another end: how many ticks the mission has by it'],

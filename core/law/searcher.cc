@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Adds up what is left and where teammates are, in cells.
+#include "core/law/searcher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/require.h"
+#include "core/measure/target_mass.h"
+
+namespace ergocast {
+namespace {
+
+constexpr double kRenewal_s = 1;
+/// a and ℓ, in radii of the sensor.
+constexpr double kSmoothing = 3.2, kSpread = 6;
+
+}  // namespace
+
+Searcher::Searcher(const Mission& mission, int kind)
+    : basis_(in_cosines(mission).basis),
+      walls_(mission.walls),
+      steering_(mission, kind),
+      cells_(mission),
+      spread_m_(kSpread * cells_.radius_m),
+      potential_(cells_.cells, mission.walls, kSmoothing * cells_.radius_m),
+      source_(static_cast<Eigen::Index>(cells_.cells.total())),
+      along_x_(cells_.cells.count.x()),
+      along_y_(cells_.cells.count.y()),
+      renewal_ticks_(std::max<Tick>(1, std::llround(kRenewal_s / mission.timing.dt_s))) {
+  Coefficients uniform = Coefficients::Zero(basis_.mode_count());
+  uniform[0] = 1;
+  const std::vector<double> masses = target_mass(basis_, walls_, uniform, cells_.cells);
+  free_ = Eigen::Map<const Eigen::VectorXd>(masses.data(), source_.size()).cwiseSign();
+  set_target(in_cosines(mission).target_coefficients);
+}
+
+void Searcher::set_target(const Coefficients& target) {
+  prior_ = target_mass(basis_, walls_, target, cells_.cells);
+  turn_ = -1;
+}
+
+Eigen::Vector3d Searcher::wanted_mps(const LawInput& input) {
+  const Tick turn = (input.tick + input.agent) / renewal_ticks_;
+  if (turn != turn_) {
+    turn_ = turn;
+    renew(input);
+  }
+  gradient_ = potential_.gradient(input.x_m);
+  return steering_.velocity_mps(input.agent, input.tick, input.x_m, {.gradient = gradient_}, 0);
+}
+
+void Searcher::renew(const LawInput& input) {
+  ERGOCAST_REQUIRE(input.efforts != nullptr);
+  source_.setZero();
+  add_left(*input.efforts);
+  add_teammates(input);
+  potential_.solve(source_);
+}
+
+/// Subtracts b, as masses of cells. Only differences of efforts count, so exp() does not vanish
+/// everywhere.
+void Searcher::add_left(const Efforts& efforts) {
+  const Cells& cells = cells_.cells;
+  std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max();
+  const auto each = [&](auto&& visit) {
+    std::size_t cell = 0;
+    for (int i = 0; i < cells.count.x(); ++i) {
+      for (int j = 0; j < cells.count.y(); ++j, ++cell) {
+        if (prior_[cell] > 0) visit(cell, efforts.looks(cells_.tile_cell(i, j)));
+      }
+    }
+  };
+  each([&](std::size_t, std::uint32_t looks) { fewest = std::min(fewest, looks); });
+  double left = 0;
+  each([&](std::size_t cell, std::uint32_t looks) {
+    const double mass = prior_[cell] * std::exp(-cells_.nats_per_look * (looks - fewest));
+    source_[static_cast<Eigen::Index>(cell)] = -mass;
+    left += mass;
+  });
+  if (left > 0) source_ /= left;
+}
+
+/// Adds p, as masses of cells. A teammate's Gaussian has its whole mass in free cells.
+void Searcher::add_teammates(const LawInput& input) {
+  const auto columns = along_x_.size(), rows = along_y_.size();
+  for (const TeamPlace& mate : input.places) {
+    if (mate.agent == input.agent) continue;
+    set_gaussian(0, mate.x_m, along_x_);
+    set_gaussian(1, mate.x_m, along_y_);
+    double mass = 0;
+    for (Eigen::Index i = 0; i < columns; ++i)
+      mass += along_x_[i] * along_y_.dot(free_.segment(i * rows, rows));
+    if (!(mass > 0)) continue;
+    const double share = 1 / (mass * static_cast<double>(input.places.size()));
+    for (Eigen::Index i = 0; i < columns; ++i)
+      source_.segment(i * rows, rows).array() +=
+          share * along_x_[i] * along_y_.array() * free_.segment(i * rows, rows).array();
+  }
+}
+
+void Searcher::set_gaussian(int axis, const Eigen::Vector3d& x_m, Eigen::VectorXd& along) const {
+  for (int cell = 0; cell < cells_.cells.count[axis]; ++cell) {
+    const double off = (cells_.cells.center_m(axis, cell) - x_m[axis]) / spread_m_;
+    along[cell] = std::exp(-off * off / 2);
+  }
+}
+
+}  // namespace ergocast

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The law that searches: each agent goes to where much is left to find and no teammate is near.
+//
+//   b_i ∝ m_i exp(−E_i)      what is left: the target's mass of a cell, and the looks of all agents
+//   p   = (1/N) Σ_j G_j      what teammates take care of: a Gaussian of width ℓ around each
+//
+// The agent descends the potential u of core/search/search_field.h with the source p − b, always at
+// full speed: law.epsilon counts as 0. It solves for u each second, agents in turn. Without p all
+// agents would go to the same place. Contraction and noise are those of the default law.
+//
+// Where all has been searched alike, b is the target again: the law goes on for ever.
+//
+// a = 3.2 r and ℓ = 6 r with the sensor's radius r of core/search/search_cells.h; each was varied
+// over a factor of three (docs/search.md).
+#pragma once
+
+#include <vector>
+
+#include "core/law/law.h"
+#include "core/law/steering.h"
+#include "core/search/search_cells.h"
+#include "core/search/search_field.h"
+
+namespace ergocast {
+
+class Searcher final : public Law {
+ public:
+  /// @pre a plane
+  explicit Searcher(const Mission& mission, int kind = 0);
+
+  LawNeeds needs() const override {
+    return {.coverage = false, .team = true, .places = true, .search = true};
+  }
+  void set_target(const Coefficients& target) override;
+  void set_law(const LawNumbers& numbers) override { steering_.set_law(numbers); }
+  /// @pre input.efforts is there
+  Eigen::Vector3d wanted_mps(const LawInput& input) override;
+  Eigen::Vector3d spectral_gradient() const override { return gradient_; }
+
+ private:
+  void renew(const LawInput& input);
+  void add_left(const Efforts& efforts);
+  void add_teammates(const LawInput& input);
+  void set_gaussian(int axis, const Eigen::Vector3d& x_m, Eigen::VectorXd& along) const;
+
+  Basis basis_;  // (2)
+  Rings walls_;
+  Steering steering_;
+  SearchCells cells_;
+  double spread_m_;
+  SearchField potential_;
+  std::vector<double> prior_;  // mass of each cell
+  Eigen::VectorXd free_;       // 1 for each cell that is not in a wall, else 0
+  Eigen::VectorXd source_;
+  Eigen::VectorXd along_x_, along_y_;  // a Gaussian at the middles of columns and rows
+  Tick renewal_ticks_, turn_ = -1;
+  Eigen::Vector3d gradient_{0, 0, 0};
+};
+
+}  // namespace ergocast

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where all agents have searched, as one agent knows it: a state-based CRDT (a replicated value
+// whose copies merge in any order) of counts.
+//
+// One row per (agent, incarnation): for each cell, how often this agent has looked at it. A row is
+// kept in tiles of 8 × 8 cells, each with the counted tick of its newest look. A tile with a later
+// tick replaces one with an earlier tick, so loss, repetition and reordering need no protocol.
+// Counts are integers, so their sum over all rows does not depend on the order of merging.
+//
+// If the mission forgets (law.memory_half_life_s), all counts are halved and rounded down at
+// counted ticks H, 2H, 3H …, as core/mission/half_life.h says.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/mission/half_life.h"
+#include "core/mission/mission.h"
+#include "core/search/search_cells.h"
+
+namespace ergocast {
+
+struct EffortTile {
+  Tick newest_look = -1;  ///< counted; −1: this agent has never looked here
+  std::array<std::uint16_t, kTileCells> looks{};
+};
+
+class Efforts {
+ public:
+  /// @pre a plane
+  explicit Efforts(const Mission& mission);
+
+  const SearchCells& cells() const { return cells_; }
+
+  /// Adds an empty row, if `author` has none.
+  void add_row(const Author& author);
+  /// The counted tick has come: all counts are as they are remembered at it. An earlier tick has no
+  /// effect.
+  void set_now(Tick counted);
+  /// The agent's sensor is at `x_m` at tick `counted`, and looks if it is time to look, once at
+  /// each tick, also if ticks are counted again. Does not allocate. @pre `author` has a row
+  void look(const Author& author, Tick counted, const Eigen::Vector3d& x_m);
+
+  /// Takes in a tile as its author had it at tick `sent`. A tile that is not newer than the one
+  /// held has no effect.
+  /// @return false without effect: no agent can have looked so often
+  /// @pre tile < cells().tile_count()
+  bool merge(const Author& author, std::size_t tile, EffortTile theirs, Tick sent);
+
+  std::size_t row_count() const { return rows_.size(); }
+  const Author& author(std::size_t row) const { return rows_[row].author; }
+  const EffortTile& tile(std::size_t row, std::size_t tile) const { return rows_[row].tiles[tile]; }
+  /// The row of `author`; null: there is none.
+  const std::vector<EffortTile>* row_of(const Author& author) const;
+
+  /// How often all agents have looked at a cell, each up to cells().most_looks.
+  std::uint32_t looks(const TileCell& cell) const { return sums_[cell.tile][cell.slot]; }
+
+ private:
+  struct Row {
+    Author author;
+    std::vector<EffortTile> tiles;
+    Tick newest_look = -1;  // that look() has done
+  };
+  Row& row(const Author& author);
+  bool possible(const EffortTile& tile, Tick sent) const;
+  void add(std::size_t tile, const EffortTile& counts);
+
+  SearchCells cells_;
+  HalfLife half_life_;
+  std::int64_t halvings_ = 0;
+  std::vector<Row> rows_;  // ascending by author
+  std::vector<std::array<std::uint32_t, kTileCells>> sums_;
+};
+
+}  // namespace ergocast

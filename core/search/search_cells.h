@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The cells in which a team notes where it has searched.
+//
+// Rows of them have to fit into few messages, so they are larger than the cells of core/measure: at
+// most 64 along the longer side of the domain. A sensor that sees less than three quarters of a
+// cell is replaced by one that sees so much, with a lower rate: its rate times its area is the
+// same.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/base/ids.h"
+#include "core/measure/cells.h"
+#include "core/mission/mission.h"
+
+namespace ergocast {
+
+/// Cells of a tile along each axis. A tile travels as one.
+inline constexpr int kTileSide = 8;
+inline constexpr std::size_t kTileCells = std::size_t{kTileSide} * kTileSide;
+/// Limit (Team): cells of a search along the longer side of the domain. Beyond it: a sensor with a
+/// small radius is replaced by one that sees three quarters of a cell at a lower rate.
+inline constexpr int kMaxSearchCellsPerSide = 64;
+inline constexpr std::size_t kMaxTiles =
+    std::size_t{kMaxSearchCellsPerSide / kTileSide} * (kMaxSearchCellsPerSide / kTileSide);
+
+/// A cell as rows have it: they are in tiles.
+struct TileCell {
+  std::size_t tile, slot;
+};
+
+struct SearchCells {
+  /// @pre a plane
+  explicit SearchCells(const Mission& mission);
+
+  Cells cells;
+  int tile_rows, tile_columns;
+  double radius_m;           ///< of the sensor
+  Tick ticks_per_look;       ///< sensors look once in so many ticks, for all of them
+  double nats_per_look;      ///< −ln of the share of objects that one look misses
+  std::uint16_t most_looks;  ///< of one agent that count in a cell: about 8 nats, at least 1
+
+  std::size_t tile_count() const {
+    return static_cast<std::size_t>(tile_rows) * static_cast<std::size_t>(tile_columns);
+  }
+  /// The cell in column `i`, along x, and row `j`, along y.
+  TileCell tile_cell(int i, int j) const {
+    return {static_cast<std::size_t>(i / kTileSide * tile_rows + j / kTileSide),
+            static_cast<std::size_t>(i % kTileSide * kTileSide + j % kTileSide)};
+  }
+  /// Whether sensors look at a tick that counts.
+  bool looks_at(Tick counted) const { return counted % ticks_per_look == ticks_per_look / 2; }
+  /// How often an agent can have looked by a tick that counts, that one included.
+  std::int64_t looks_by(Tick counted) const {
+    return counted < 0 ? 0 : (counted + ticks_per_look - ticks_per_look / 2) / ticks_per_look;
+  }
+};
+
+}  // namespace ergocast
