@@ -31,6 +31,7 @@ const char* const kLateBlocks =
 const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20";
 const char* const kPauses = "pauses_per_s = 0.3\npause_max_s = 5";
 const char* const kTargets = "targets_per_s = 0.3";
+const char* const kManyTargets = "targets_per_s = 1";
 const char* const kTargetsAndPauses = "targets_per_s = 0.3\npauses_per_s = 0.3\npause_max_s = 5";
 const char* const kEnds = "ends_per_s = 0.3";
 const char* const kManyEnds = "ends_per_s = 1";
@@ -199,7 +200,7 @@ const Plant kPlants[] = {
     {Invariant::kForecastOfWhatIsKnown, "a forecast halves nothing", "", kHalfLife},
     {Invariant::kForecastOfWhatIsKnown, "a forecast halves nothing", "", kHalfLifeByRowsAlone},
     {Invariant::kForecastOfWhatIsKnown, "former targets are not halved", kTargets, kHalfLife},
-    {Invariant::kForecastOfWhatIsKnown, "former targets are not halved", kTargets,
+    {Invariant::kForecastOfWhatIsKnown, "former targets are not halved", kManyTargets,
      kHalfLifeByRowsAlone},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},

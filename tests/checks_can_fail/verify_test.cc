@@ -95,6 +95,8 @@ std::vector<Lie> lies_of_the_summary() {
        [](const fs::path& run) {
          call_it_a_run(run, [](Json& s) { s["agents"][0].erase("id"); });
        }},
+      {"its agents followed \"Spiral\", a law of its user", 2,
+       [](const fs::path& run) { edit_summary(run, [](Json& s) { s["own_law"] = "Spiral"; }); }},
       {"summary.json, /ticks", 1,
        [](const fs::path& run) { edit_summary(run, [](Json& s) { s["ticks"] = 49; }); }},
       {"summary.json, /scenario_hash", 1,
