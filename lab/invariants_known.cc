@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/law/look_ahead.h"
 #include "core/mission/kinds.h"
 #include "lab/invariants.h"
 
@@ -25,7 +26,7 @@ void Invariants::received(const TableView& listener, const Message& message) {
     if (listener.amendments != nullptr) shadow->second.note_targets(mission_, *listener.amendments);
     return;
   }
-  if (mission_.law.anticipation <= 0) return;
+  if (!looks_ahead(mission_)) return;
   const bool is_block = std::holds_alternative<Contribution>(message);
   if (!is_block && !std::holds_alternative<WorldState>(message)) return;
   shadows_.at(listener.self).receive(mission_, listener, message);
@@ -36,7 +37,7 @@ void Invariants::answered(double t_s, const TableView& holder,
   check_steps(t_s, holder);
   if (x_m) check_sample(t_s, holder, *x_m);
   const bool looks_ahead =
-      mission_.law.anticipation > 0 && holder.foreseen != nullptr && !holder.held;
+      ergocast::looks_ahead(mission_) && holder.foreseen != nullptr && !holder.held;
   if (looks_ahead) shadows_.at(holder.self).answer(mission_, holder);
   // This costs as much as the control step itself. Every few ticks is enough to find a lasting
   // error.

@@ -50,8 +50,8 @@ std::string framed(const std::string& content) {
 }
 
 constexpr std::array<const char*, std::variant_size_v<Message>> kKinds{
-    "hello",   "mission",    "contribution", "agent_status", "team_status", "stop",  "world",
-    "command", "record_ack", "digest",       "amend",        "beacon",      "recall"};
+    "hello",   "mission",    "contribution", "agent_status", "team_status", "stop",   "world",
+    "command", "record_ack", "digest",       "amend",        "beacon",      "recall", "effort"};
 static_assert(kKinds.back() != nullptr, "each kind of message has its name");
 
 void datagrams(const Seeds& seeds) {

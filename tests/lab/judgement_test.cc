@@ -96,6 +96,9 @@ TEST(Laboratory, MissesEachMessageThatARoleDoesNotSubscribeTo) {
                                 "separation { distance_m: 6 lease_s: 3 }\n"
                                 "world { speed_limit_mps: 10 }\ntime { command_hold_s: 0");
   EXPECT_EQ(problem(run_trial(hearsay, 1, lab::drawn(1))), "");
+  // In lockstep no agent that searches goes on without its teammates' looks.
+  const Scenario searching = team(Pace::kLockstep, "law {", "law { kind: SEARCH ");
+  EXPECT_EQ(problem(run_trial(searching, 1, lab::drawn(1))), "");
   for (const Heard& heard : heard_in_the_laboratory()) {
     // A world receives states only where bodies keep a distance.
     const bool of_bodies =
@@ -103,7 +106,11 @@ TEST(Laboratory, MissesEachMessageThatARoleDoesNotSubscribeTo) {
     bool missed = false;
     for (std::uint64_t seed = 1; seed <= (never_missed(heard) ? 1 : 40) && !missed; ++seed) {
       const bool of_places = MessageTypes{1} << heard.type == kTypes<Beacon>;
-      const Scenario& scenario = of_places ? hearsay : of_bodies ? crowded : real_time;
+      const bool of_looks = MessageTypes{1} << heard.type == kTypes<Effort>;
+      const Scenario& scenario = of_places   ? hearsay
+                                 : of_looks  ? searching
+                                 : of_bodies ? crowded
+                                             : real_time;
       missed = run_trial(scenario, seed, lab::drawn(seed), without(heard)).violation.has_value();
     }
     EXPECT_EQ(missed, !never_missed(heard))
