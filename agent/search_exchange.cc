@@ -93,6 +93,9 @@ void SearchExchange::relay_one_row(Tick counted, Participant& me, Outbox& out) {
     tile_turn_ = 0;
     ++row_turn_;
   }
+  // The author may be ahead of us.
+  for (const SentTile& tile : effort.tiles)
+    effort.header.tick = std::max(effort.header.tick, tile.content.newest_look);
   if (effort.tile_count > 0) me.relay(Bus::kSwarm, effort, out);
 }
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/mission/half_life.h"
 #include "core/measure/detection.h"
 #include "core/mission/end_schedule.h"
+#include "core/mission/half_life.h"
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
