@@ -132,9 +132,9 @@ void MissionRun::on(const Digest& theirs, const Arrival& arrival, Participant& m
 void MissionRun::on(const Effort& theirs, const Arrival& arrival, Participant& me) {
   const RosterEntry* const entry = me.member(theirs.header);
   if (entry == nullptr || !search_ || step_.tick < 0) return;
-  if (arrival.transmitter == theirs.header.sender) search_->note_received(theirs);
   const Tick newest = step_.counted + lead(me, arrival.now);
-  if (const auto refusal = search_->merge(theirs, newest)) me.count_refused(*refusal);
+  if (const auto refusal = search_->merge(theirs, newest)) return me.count_refused(*refusal);
+  if (arrival.transmitter == theirs.header.sender) search_->note_received(theirs);
 }
 
 void MissionRun::on(const Beacon& beacon, const Arrival& arrival, Participant&) {

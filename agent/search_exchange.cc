@@ -102,8 +102,9 @@ void SearchExchange::relay_one_row(Tick counted, Participant& me, Outbox& out) {
 void SearchExchange::note_received(const Effort& theirs) {
   Arrived& arrived = arrived_[theirs.author()];
   if (theirs.header.tick < arrived.tick) return;
-  if (theirs.header.tick > arrived.tick)
-    arrived = {theirs.header.tick, (std::uint32_t{1} << theirs.parts) - 1};
+  // A forged message may have named another number of parts: the newest one decides.
+  if (theirs.header.tick > arrived.tick || theirs.parts != arrived.parts)
+    arrived = {theirs.header.tick, theirs.parts, (std::uint32_t{1} << theirs.parts) - 1};
   arrived.missing &= ~(std::uint32_t{1} << theirs.part);
 }
 
@@ -127,7 +128,9 @@ AgentId SearchExchange::awaited(const AgentStep& step, const RadioRange& radio,
     const Tick due = last_due(entry.author.agent, step.counted);
     if (due < std::max<Tick>(0, me.counted(entry.active_from))) continue;
     const Arrived* const arrived = arrived_.find(entry.author);
-    if (arrived == nullptr || arrived->tick < due || arrived->missing != 0)
+    // An author is never ahead in lockstep, so a later tick is forged, and nothing waits for it.
+    if (arrived == nullptr || arrived->tick < due ||
+        (arrived->tick == due && arrived->missing != 0))
       return entry.author.agent;
   }
   return kUnassigned;

@@ -48,6 +48,7 @@ class SearchExchange {
   /// What has arrived of the newest sending of a teammate.
   struct Arrived {
     Tick tick = -1;
+    std::int32_t parts = 0;
     std::uint32_t missing = 0;  // a bit for each part
   };
 

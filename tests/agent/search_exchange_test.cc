@@ -98,6 +98,23 @@ TEST(SearchExchange, LooksOfAStoppedAgentReachAnotherThatComesLater) {
   EXPECT_EQ(wrong_cells(*team[2].efforts(), right, author_of(0)), 0);
 }
 
+/// In lockstep agents wait for what teammates have to send, but not for what nobody will send.
+TEST(SearchExchange, ForgedPartsStallNobody) {
+  Mission mission = searching();
+  mission.timing.pace = Pace::kLockstep;
+  for (const Tick forged_tick : {Tick{0}, Tick{30}}) {
+    LiveTeam team(mission);
+    run_ticks(team, mission, 0, 1);
+    Effort forged;
+    forged.header = {kRun, 0, author_of(0).incarnation, 1000, forged_tick};
+    forged.parts = kMaxEffortParts;
+    give(team[1], forged, at(50ms), 0);
+    run_ticks(team, mission, 1, 60);
+    EXPECT_EQ(team[1].tick(), 59);
+    EXPECT_EQ(status_after(team[1], at(7s)).answered_tick, 59) << forged_tick;
+  }
+}
+
 TEST(SearchExchange, ForgedRowsAreRefusedAndHaveNoEffect) {
   const Mission mission = searching();
   LiveTeam team(mission);
