@@ -47,7 +47,8 @@ struct LawInput {
   /// Where they are at this tick, the own agent among them; ascending. An agent whose state is not
   /// received, because it is out of radio range, is left out.
   std::span<const TeamPlace> places{};
-  const Efforts* efforts = nullptr;  ///< where all agents have searched
+  const Efforts* efforts =
+      nullptr;  ///< where all agents have searched; null if the law does not ask
 };
 
 class Law {

@@ -10,8 +10,7 @@
 //
 // Where all has been searched alike, b is the target again: the law goes on for ever.
 //
-// a = 3.2 r and ℓ = 6 r with the sensor's radius r of core/search/search_cells.h; each was varied
-// over a factor of three (docs/search.md).
+// a = 3.2 r and ℓ = 6 r with the sensor's radius r of core/search/search_cells.h.
 #pragma once
 
 #include <vector>
@@ -28,9 +27,7 @@ class Searcher final : public Law {
   /// @pre a plane
   explicit Searcher(const Mission& mission, int kind = 0);
 
-  LawNeeds needs() const override {
-    return {.coverage = false, .team = true, .places = true, .search = true};
-  }
+  LawNeeds needs() const override { return {.coverage = false, .places = true, .search = true}; }
   void set_target(const Coefficients& target) override;
   void set_law(const LawNumbers& numbers) override { steering_.set_law(numbers); }
   /// @pre input.efforts is there

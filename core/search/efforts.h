@@ -51,7 +51,6 @@ class Efforts {
 
   std::size_t row_count() const { return rows_.size(); }
   const Author& author(std::size_t row) const { return rows_[row].author; }
-  const EffortTile& tile(std::size_t row, std::size_t tile) const { return rows_[row].tiles[tile]; }
   /// The row of `author`; null: there is none.
   const std::vector<EffortTile>* row_of(const Author& author) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Chooses cells that the sensor sees several of at once.
+// Chooses cells with the sensor's radius as their side, if there are not too many.
 #include "core/search/search_cells.h"
 
 #include <algorithm>
@@ -11,12 +11,11 @@
 namespace ergocast {
 namespace {
 
-constexpr double kSearchCellsPerRadius = 1;
 constexpr double kLeastRadiusPerSearchCell = 0.75;
 constexpr double kMostNats = 8;
 
 double side_m(const Mission& mission) {
-  return std::max(sensor_radius_m(mission) / kSearchCellsPerRadius,
+  return std::max(sensor_radius_m(mission),
                   mission.domain.size_m.maxCoeff() / kMaxSearchCellsPerSide);
 }
 

@@ -19,7 +19,9 @@ std::array<int, 2> next(int axis, int i, int j) {
 }  // namespace
 
 SearchField::SearchField(const Cells& cells, const Rings& walls, double smoothing_m)
-    : cells_(cells), u_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cells.total()))) {
+    : cells_(cells),
+      u_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cells.total()))),
+      ordered_(u_) {
   find_links(walls);
   std::vector<Eigen::Triplet<double>> entries;
   const auto index = [&](int i, int j) { return static_cast<int>(cells_.column(i, 0)) + j; };
@@ -42,6 +44,7 @@ SearchField::SearchField(const Cells& cells, const Rings& walls, double smoothin
   Eigen::SparseMatrix<double> equation(u_.size(), u_.size());
   equation.setFromTriplets(entries.begin(), entries.end());
   solver_.compute(equation);
+  diagonal_ = solver_.vectorD();  // which returns a copy
 }
 
 void SearchField::find_links(const Rings& walls) {
@@ -61,7 +64,14 @@ void SearchField::find_links(const Rings& walls) {
   }
 }
 
-void SearchField::solve(const Eigen::VectorXd& source) { u_ = solver_.solve(source); }
+/// The steps of solver_.solve(), without its temporary vectors.
+void SearchField::solve(const Eigen::VectorXd& source) {
+  ordered_.noalias() = solver_.permutationP() * source;
+  solver_.matrixL().solveInPlace(ordered_);
+  ordered_.array() /= diagonal_.array();
+  solver_.matrixU().solveInPlace(ordered_);
+  u_.noalias() = solver_.permutationPinv() * ordered_;
+}
 
 /// The slope of u from a cell to the next one; 0 at sides and walls.
 double SearchField::slope(int axis, int i, int j) const {

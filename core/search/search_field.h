@@ -24,7 +24,7 @@ class SearchField {
   /// Prepares the solution for a map; takes milliseconds for 64 × 64 cells.
   SearchField(const Cells& cells, const Rings& walls, double smoothing_m);
 
-  /// Solves for a source p − b, one number a cell.
+  /// Solves for a source p − b, one number a cell. Does not allocate.
   void solve(const Eigen::VectorXd& source);
   /// ∇u at a place: mean slopes at the middles of cells, and bilinear between them.
   Eigen::Vector3d gradient(const Eigen::Vector3d& x_m) const;
@@ -44,7 +44,8 @@ class SearchField {
   Cells cells_;
   std::array<std::vector<char>, 2> links_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
-  Eigen::VectorXd u_;
+  Eigen::VectorXd diagonal_;     // of the factors
+  Eigen::VectorXd u_, ordered_;  // ordered_: in the order of the factors
 };
 
 }  // namespace ergocast

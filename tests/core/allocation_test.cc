@@ -16,6 +16,7 @@
 #include "core/law/control.h"
 #include "core/law/coverage_table.h"
 #include "core/law/forecast.h"
+#include "core/law/searcher.h"
 #include "core/motion/push.h"
 #include "core/motion/separation.h"
 #include "core/motion/wall_following.h"
@@ -239,6 +240,25 @@ TEST(Allocations, KeepingOutOfWallsMakesNone) {
   for (Tick tick = 0; tick < 60; ++tick)
     EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
   EXPECT_TRUE(follower.follows());
+}
+
+TEST(Allocations, SearchingMakesNone) {
+  Mission mission = full_mission(Regularization::kRelative, Perturbation::kAdaptive, 1);
+  mission.law.kind = LawKind::kSearch;
+  Searcher law(mission);
+  Efforts efforts(mission);
+  efforts.add_row(test::author_of(0));
+  const std::vector<AgentId> team{0, 1};
+  const auto step = [&](Tick tick) {
+    const Eigen::Vector3d x_m(100 + static_cast<double>(tick), 500, 0);
+    const TeamPlace places[] = {{0, x_m}, {1, {700, 300, 0}}};
+    const BasisAt at(x_m, mission.domain, mission.basis);
+    efforts.look(test::author_of(0), tick, x_m);
+    law.wanted_mps({0, tick, x_m, at, team, places, &efforts});
+  };
+  const Tick second = std::llround(1 / mission.timing.dt_s);
+  for (Tick tick = 0; tick < 3 * second; ++tick)
+    EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
 }
 
 TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {

@@ -24,6 +24,23 @@ TEST_F(Searching, IsTheSameMissionAsItsSimulation) {
   EXPECT_EQ(text_of(out() / "trajectories.csv"), text_of(simulated / "trajectories.csv"));
 }
 
+TEST_F(Searching, FindsMoreThanTheDefaultLawAndThanAgentsThatDoNotShare) {
+  const auto found = [&](const std::string& law) {
+    const auto run = folder_ / law;
+    EXPECT_EQ(
+        ergocast({"simulate",
+                  std::filesystem::path(ERGOCAST_SOURCE_DIR) / "studies/law/random.textproto",
+                  "--seed", "1", "--set", "law.kind=" + law, "--duration", "600", "--out", run}),
+        0)
+        << output();
+    return nlohmann::json::parse(text_of(run / "summary.json"))["detection"]["probability"]
+        .get<double>();
+  };
+  const double search = found("SEARCH");
+  EXPECT_GT(search, found("COVER") + 0.05);
+  EXPECT_GT(search, 0.95);
+}
+
 TEST_F(Searching, GoesOnAfterAnAgentWasKilled) {
   Child mission = launch_held(scenario("duration_s: 60"),
                               {"--lockstep", "--set", "law.kind=SEARCH", "--lcm-url", kUrl});
