@@ -14,7 +14,6 @@
 #include <optional>
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "agent/agent.h"
@@ -96,7 +95,7 @@ class Simulation {
   /// Has the coordinator end the mission in order.
   void end(std::string reason);
   /// Has an operator give the team another target.
-  void change_target(TargetChange target) { operator_.want_target(std::move(target)); }
+  void change_target(const TargetChange& target) { operator_.want_target(target); }
 
   // ---- processes ----
 

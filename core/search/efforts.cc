@@ -79,8 +79,10 @@ bool Efforts::merge(const Author& author, std::size_t tile, EffortTile theirs, T
   // A tile from after the next halving comes too early; it will be sent again.
   if (theirs.newest_look <= ours.newest_look || half_life_.halvings(sent) > halvings_) return true;
   halve(theirs, halvings_ - half_life_.halvings(sent));
-  for (std::size_t slot = 0; slot < kTileCells; ++slot)
-    sums_[tile][slot] += std::uint32_t{theirs.looks[slot]} - ours.looks[slot];
+  for (std::size_t slot = 0; slot < kTileCells; ++slot) {
+    sums_[tile][slot] -= ours.looks[slot];
+    sums_[tile][slot] += theirs.looks[slot];
+  }
   ours = theirs;
   return true;
 }
