@@ -158,7 +158,7 @@ std::string each(int period, const std::string& text = kScenario) {
   return with(text, "time {", "time { broadcast_period_ticks: " + std::to_string(period));
 }
 
-constexpr std::size_t kContribution = 2, kWorldState = 6;
+constexpr std::size_t kContribution = 2, kWorldState = 6, kEffort = type_index<Effort>();
 
 TEST(MessageLoss, HowOftenAgentsBroadcastDoesNotShowWhereTheyReckon) {
   for (const int period : {1, 2, 7, 40, 1000}) {
@@ -212,6 +212,8 @@ struct Knowing {
   bool dead_reckoning;
   int period;
 };
+void PrintTo(const Knowing& knowing, std::ostream* out) { *out << knowing.name; }
+
 std::string scenario_of(const Knowing& knowing) {
   std::string text = with(kScenario, "u_max_mps: 5", std::string("u_max_mps: 5 ") + knowing.law);
   text = with(
@@ -226,9 +228,8 @@ TEST_P(EachLaw, LossesChangeNoTrajectory) {
   const std::string text = scenario_of(GetParam());
   const Outcome clean = simulated({}, text);
   EXPECT_EQ(clean.state, MissionState::kEnded) << clean.reason;
-  for (const std::size_t kind : {kContribution, kWorldState}) {
-    EXPECT_TRUE(simulated(dropping(kind, 33), text).trajectory == clean.trajectory) << kKinds[kind];
-  }
+  for (const std::size_t kind : {kContribution, kWorldState, kEffort})
+    EXPECT_TRUE(simulated(dropping(kind, 33), text).trajectory == clean.trajectory) << kind;
   const auto anything = [count = std::uint64_t{0}](const Message&, int) mutable {
     return random_words(6, Purpose::kFault, 0, ++count).first % 100 < 10;
   };
@@ -237,16 +238,18 @@ TEST_P(EachLaw, LossesChangeNoTrajectory) {
 
 INSTANTIATE_TEST_SUITE_P(
     MessageLoss, EachLaw,
-    ::testing::Values(Knowing{"Classical", "anticipation: 0", false, 1},
-                      Knowing{"ClassicalSeldom", "anticipation: 0", false, 7},
-                      Knowing{"FromRows", "anticipation: 2", false, 1},
-                      Knowing{"FromRowsSeldom", "anticipation: 2", false, 7},
-                      Knowing{"Reckoning", "anticipation: 2", true, 1},
-                      Knowing{"ReckoningSeldom", "anticipation: 2 ends_with_plan: true", true, 7},
-                      Knowing{"ClassicalForgetting", "anticipation: 0 memory_half_life_s: 1.3",
-                              false, 7},
-                      Knowing{"FromRowsForgetting", "memory_half_life_s: 1.3", false, 7},
-                      Knowing{"ReckoningForgetting", "memory_half_life_s: 1.3", true, 7}),
+    ::testing::Values(
+        Knowing{"Classical", "anticipation: 0", false, 1},
+        Knowing{"ClassicalSeldom", "anticipation: 0", false, 7},
+        Knowing{"FromRows", "anticipation: 2", false, 1},
+        Knowing{"FromRowsSeldom", "anticipation: 2", false, 7},
+        Knowing{"Reckoning", "anticipation: 2", true, 1},
+        Knowing{"ReckoningSeldom", "anticipation: 2 ends_with_plan: true", true, 7},
+        Knowing{"ClassicalForgetting", "anticipation: 0 memory_half_life_s: 1.3", false, 7},
+        Knowing{"FromRowsForgetting", "memory_half_life_s: 1.3", false, 7},
+        Knowing{"ReckoningForgetting", "memory_half_life_s: 1.3", true, 7},
+        Knowing{"Searching", "kind: SEARCH", true, 7},
+        Knowing{"SearchingForgetting", "kind: SEARCH memory_half_life_s: 1.3", true, 7}),
     [](const auto& knowing) { return std::string(knowing.param.name); });
 
 bool is_command_of(const Message& message, AgentId agent) {
