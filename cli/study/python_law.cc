@@ -18,6 +18,7 @@
 #include <string_view>
 
 #include "cli/debian_python.h"
+#include "cli/study/receive_whole.h"
 #include "runtime/process/program_options.h"
 #include "runtime/process/shipped_folder.h"
 
@@ -38,18 +39,6 @@ except ModuleNotFoundError as missing:
 _study.serve(sys.argv[2], answers))";
 /// More than the figures of a mission, or an error.
 constexpr std::uint64_t kMostAnswerBytes = 1 << 20;
-
-bool receive_whole(int socket, void* to, std::size_t size) {
-  auto* bytes = static_cast<std::byte*>(to);
-  while (size > 0) {
-    const ssize_t got = read(socket, bytes, size);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    bytes += got;
-    size -= static_cast<std::size_t>(got);
-  }
-  return true;
-}
 
 bool send_whole(int socket, const void* from, std::size_t size) {
   const auto* bytes = static_cast<const std::byte*>(from);

@@ -2,6 +2,7 @@
 // Forks workers. Each does a range of jobs and sends results of fixed size through its own pipe.
 #include "cli/study/workers.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -16,6 +17,8 @@
 #include <deque>
 #include <system_error>
 #include <vector>
+
+#include "cli/study/receive_whole.h"
 
 namespace ergocast::cli {
 namespace {
@@ -54,8 +57,8 @@ struct Worker {
 }
 
 Worker hire(const JobRange& range, const Jobs& jobs) {
-  int ends[2];
-  if (pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  int ends[2];  // no program that a worker starts gets them
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe2");
   std::fflush(nullptr);
   const pid_t pid = fork();
   if (pid < 0) throw std::system_error(errno, std::generic_category(), "fork");
@@ -74,18 +77,6 @@ std::string how_it_died(int status, unsigned patience_s) {
     return "no end after " + std::to_string(patience_s) + " s of processor time";
   }
   return std::string("its process was killed by SIG") + signal_name(WTERMSIG(status));
-}
-
-/// Whether `size` bytes arrived before the end of the pipe.
-bool read_whole(int pipe, std::byte* to, std::size_t size) {
-  while (size > 0) {
-    const ssize_t got = read(pipe, to, size);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    to += got;
-    size -= static_cast<std::size_t>(got);
-  }
-  return true;
 }
 
 class Pool {
@@ -134,7 +125,7 @@ class Pool {
   bool listen(Worker& worker) {
     Parcel parcel;
     const std::size_t size = sizeof(std::uint64_t) + jobs_.result_bytes;
-    if (read_whole(worker.pipe, parcel.data(), size)) {
+    if (receive_whole(worker.pipe, parcel.data(), size)) {
       std::uint64_t job = 0;
       std::memcpy(&job, parcel.data(), sizeof job);
       worker.jobs.first = job + 1;
