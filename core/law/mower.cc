@@ -10,7 +10,6 @@
 #include "core/measure/detection.h"
 #include "core/measure/target_mass.h"
 #include "core/mission/kinds.h"
-#include "core/motion/vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -51,13 +50,11 @@ CellRange slice(CellRange lane, int axis, int index) {
 Mower::Mower(const Mission& mission, int kind)
     : basis_(in_cosines(mission).basis),
       walls_(mission.walls),
-      vehicle_(vehicle_of(mission, kind)),
-      speed_limit_mps_(speed_limit_mps(mission, kind)),
-      dt_s_(mission.timing.dt_s),
-      push_m_(kPushDeviations * mission.disturbance_intensity * std::sqrt(dt_s_)),
+      motion_(motion_of_kind(mission, kind)),
+      push_m_(kPushDeviations * mission.disturbance_intensity * std::sqrt(motion_.dt_s)),
       cells_(measure_cells(mission)),
       radius_m_(sensor_radius_m(mission)),
-      way_(mission, motion_of_kind(mission, kind)) {
+      way_(mission, motion_) {
   set_speed(law_of(mission, kind).u_max_mps);
   set_target(in_cosines(mission).target_coefficients);
 }
@@ -74,10 +71,10 @@ void Mower::set_law(const LawNumbers& numbers) {
 }
 
 void Mower::set_speed(double u_max_mps) {
-  speed_mps_ = speed_limit_mps_ > 0 ? std::min(u_max_mps, speed_limit_mps_) : u_max_mps;
-  reach_m_ =
-      std::max(speed_mps_ * dt_s_ / 2, kTurnsToCorner * turn_radius_m(vehicle_, speed_mps_)) +
-      push_m_;
+  const double limit_mps = motion_.speed_limit_mps;
+  speed_mps_ = limit_mps > 0 ? std::min(u_max_mps, limit_mps) : u_max_mps;
+  const double turn_m = kTurnsToCorner * turn_radius_m(motion_.vehicle, speed_mps_);
+  reach_m_ = std::max(speed_mps_ * motion_.dt_s / 2, turn_m) + push_m_;
 }
 
 Eigen::Vector3d Mower::wanted_mps(const LawInput& input) {
@@ -93,7 +90,7 @@ Eigen::Vector3d Mower::wanted_mps(const LawInput& input) {
   Eigen::Vector3d way_m = to_m - input.x_m;
   if (cells_.domain.planar()) way_m.z() = 0;
   const double distance_m = length_of(way_m);
-  if (distance_m <= speed_mps_ * dt_s_) return way_m / dt_s_;
+  if (distance_m <= speed_mps_ * motion_.dt_s) return way_m / motion_.dt_s;
   return way_m * (speed_mps_ / distance_m);
 }
 
@@ -216,24 +213,23 @@ void Mower::put_in_order(const Eigen::Vector3d& x_m) {
 /// The lane whose end is the nearest one in sight, or that to which the way is shortest, and
 /// whether that is its last end. Nothing if no way leads to any lane.
 std::optional<std::pair<std::size_t, bool>> Mower::nearest_lane(const Eigen::Vector3d& x_m) {
-  std::vector<std::pair<std::size_t, bool>> ends;
-  const auto place_m = [&](const auto& end) {
+  using End = std::pair<std::size_t, bool>;
+  std::vector<std::pair<double, End>> ends;  // how far away each is
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    ends.push_back({length_of(lanes_[i].from_m - x_m), {i, false}});
+    ends.push_back({length_of(lanes_[i].to_m - x_m), {i, true}});
+  }
+  std::ranges::sort(ends);
+  const auto place_m = [&](const End& end) {
     return end.second ? lanes_[end.first].to_m : lanes_[end.first].from_m;
   };
-  for (std::size_t i = 0; i < lanes_.size(); ++i) {
-    ends.emplace_back(i, false);
-    ends.emplace_back(i, true);
-  }
-  std::ranges::stable_sort(ends, {},
-                           [&](const auto& end) { return length_of(place_m(end) - x_m); });
-  const auto seen =
-      std::ranges::find_if(ends, [&](const auto& end) { return way_.is_clear(x_m, place_m(end)); });
-  if (seen != ends.end()) return *seen;
+  for (const auto& [away_m, end] : ends)
+    if (way_.is_clear(x_m, place_m(end))) return end;
   if (ends.empty()) return std::nullopt;
   way_.lead_to(x_m);
-  const auto length_m = [&](const auto& end) { return way_.length_m(place_m(end)); };
-  const auto nearest = std::ranges::min_element(ends, {}, length_m);
-  return std::isfinite(length_m(*nearest)) ? std::optional(*nearest) : std::nullopt;
+  for (auto& [away_m, end] : ends) away_m = way_.length_m(place_m(end));
+  const auto& [away_m, end] = *std::ranges::min_element(ends, {}, &std::pair<double, End>::first);
+  return std::isfinite(away_m) ? std::optional(end) : std::nullopt;
 }
 
 void Mower::aim(std::size_t corner, const LawInput& input) {
@@ -242,7 +238,8 @@ void Mower::aim(std::size_t corner, const LawInput& input) {
   is_aimed_ = true;
   double way_m = length_of(corners_m_[corner] - input.x_m);
   if (!sees_corner(input.x_m)) way_m = way_.length_m(input.x_m);
-  const double ticks = kPatience * way_m / (speed_mps_ * dt_s_);
+  if (!std::isfinite(way_m)) way_m = 0;  // no way leads there
+  const double ticks = kPatience * way_m / (speed_mps_ * motion_.dt_s);
   give_up_ =
       input.tick + static_cast<Tick>(std::min(ticks, kMostPatience_ticks)) + kMorePatience_ticks;
 }

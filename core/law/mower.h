@@ -18,7 +18,7 @@
 // what has been covered.
 //
 // A corner that an agent does not reach in three times the time that it should take and 100 ticks
-// more, for example in a closed zone, is left out.
+// more, for example in a closed zone, is left out. One to which no way leads is left out after 100.
 #pragma once
 
 #include <cstddef>
@@ -30,6 +30,7 @@
 #include "core/basis/basis.h"
 #include "core/law/equal_shares.h"
 #include "core/law/law.h"
+#include "core/motion/vehicle.h"
 #include "core/motion/way_around.h"
 
 namespace ergocast {
@@ -38,7 +39,8 @@ class Mower final : public Law {
  public:
   explicit Mower(const Mission& mission, int kind = 0);
 
-  LawNeeds needs() const override { return {.coverage = false, .team = true}; }
+  static constexpr LawNeeds kNeeds{.coverage = false, .team = true};
+  LawNeeds needs() const override { return kNeeds; }
   void set_target(const Coefficients& target) override;
   void set_law(const LawNumbers& numbers) override;
   Eigen::Vector3d wanted_mps(const LawInput& input) override;
@@ -67,8 +69,8 @@ class Mower final : public Law {
 
   Basis basis_;  // (2)
   Rings walls_;
-  VehicleLimits vehicle_;
-  double speed_limit_mps_, dt_s_, push_m_;  // what a tick's disturbance may add
+  Motion motion_;
+  double push_m_;  // what a tick's disturbance may add
   Cells cells_;
   RangeSums mass_;
   double radius_m_, speed_mps_ = 0, reach_m_ = 0;

@@ -232,6 +232,20 @@ TEST(Mower, HasThePatienceOfItsRealSpeed) {
               10 * static_cast<double>(fast_ticks - 100), 10);
 }
 
+TEST(Mower, LeavesOutCornersToWhichNoWayLeads) {
+  const Mission mission = rooms();
+  Mower law(mission);
+  wanted_mps(law, mission, 0, {100, 50, 0});
+  for (Tick tick = 1; tick < 1000; ++tick) wanted_mps(law, mission, tick, {18, 27, 0});
+  const Vector3d first = wanted_mps(law, mission, 1000, {100, 50, 0}).normalized();
+  bool left_out = false;
+  for (Tick tick = 1001; tick < 1101; ++tick) {
+    const Vector3d next = wanted_mps(law, mission, tick, {100, 50, 0}).normalized();
+    left_out = left_out || (next - first).norm() > 1e-9;
+  }
+  EXPECT_TRUE(left_out);
+}
+
 TEST(Mower, HasTheMostPatienceAtNextToNoSpeed) {
   Mission mission = field();
   mission.law.u_max_mps = 1e-30;
