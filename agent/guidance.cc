@@ -16,10 +16,11 @@ Guidance::Guidance(const Mission& mission, const RosterEntry& self, const LawMak
       law_(laws(mission, self.kind)),
       law_numbers_(law_numbers(mission, self.kind, nullptr)),
       needs_(law_->needs()),
-      needs_state_(needs_.places || (looks_ahead(mission) && mission.dead_reckoning)),
+      needs_state_(needs_.places ||
+                   (needs_.coverage && looks_ahead(mission) && mission.dead_reckoning)),
       metric_(mission),
       foreseen_(Coefficients::Zero(mission.basis.mode_count())) {
-  if (looks_ahead(mission)) forecast_.emplace(mission, self.author);
+  if (needs_.coverage && looks_ahead(mission)) forecast_.emplace(mission, self.author);
 }
 
 void Guidance::on(const WorldState& world, const RadioRange& radio, const Participant& me) {

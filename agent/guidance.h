@@ -78,14 +78,14 @@ class Guidance {
   std::unique_ptr<Law> law_;
   LawNumbers law_numbers_;  // of law_
   LawNeeds needs_;
-  bool needs_state_;  // of the tick: places, or dead reckoning
+  bool needs_state_;  // of the tick: places, or a forecast by dead reckoning
   TeamMetric metric_;
   std::int32_t newest_target_ = -1;
   std::vector<AgentId> team_;
-  std::vector<TeamPlace> seen_;    // in the newest state of the world, ascending
-  std::vector<TeamPlace> places_;  // of the team
-  std::optional<Forecast> forecast_;
-  ArrivedParts parts_;  // of the newest state of the world
+  std::vector<TeamPlace> seen_;       // in the newest state of the world, ascending
+  std::vector<TeamPlace> places_;     // of the team
+  std::optional<Forecast> forecast_;  // if the law reads it
+  ArrivedParts parts_;                // of the newest state of the world
   Coefficients foreseen_;
 };
 

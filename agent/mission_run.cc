@@ -61,8 +61,8 @@ std::optional<MissionOver> MissionRun::evicted(const Participant& me, Tick tick)
 // ---- what the agent learns ----
 
 /// Prepares here what depends on roster and amendments, because a control step must not allocate.
-/// Only these are computed in the step in which they change: the ways round zones, and what a law
-/// plans for team and target (core/law/mower.h).
+/// Only these are computed in the step that needs them: ways around zones and walls, and what a law
+/// reads or plans of a new team or target (core/law/mower.h).
 void MissionRun::note_roster(const Participant& me) {
   const MissionFollower& known = me.follower();
   const RosterEntry* const own = known.entry_of(me.incarnation());

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "core/law/control.h"
 #include "core/law/forecast.h"
@@ -307,6 +308,24 @@ TEST(AgentInLockstep, WaitsForNoPartThatItDoesNotNeed) {
     for (AgentId id = 1; id < 20; ++id) receive(agent, words_of(mission, id, 0, 3));
     EXPECT_EQ(only<Command>(deliver(agent, parts_of_twenty(0)[0])).size(), 1u);
   }
+}
+
+/// A law that reads nothing.
+class Blind : public Law {
+ public:
+  LawNeeds needs() const override { return {.coverage = false}; }
+  void set_law(const LawNumbers& /*numbers*/) override {}
+  Eigen::Vector3d wanted_mps(const LawInput& /*input*/) override { return {1, 0, 0}; }
+};
+
+TEST(AgentInLockstep, WaitsForNoStateThatItsLawDoesNotRead) {
+  const Mission mission = looking_ahead(20, true, Pace::kLockstep);
+  announce(mission);
+  Agent agent(identity_of(0),
+              [](const Mission&, int /*kind*/) { return std::make_unique<Blind>(); });
+  give(agent, mission_part(0, MissionState::kRunning, roster_of(20)), at(0s));
+  for (AgentId id = 1; id < 20; ++id) receive(agent, words_of(mission, id, 0, 3));
+  EXPECT_EQ(only<Command>(deliver(agent, parts_of_twenty(0)[0])).size(), 1u);
 }
 
 // ---- teammates that stopped ----
