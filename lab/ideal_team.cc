@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "core/base/geometry.h"
@@ -46,7 +47,8 @@ IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
     if (law == nullptr || !needs_.serves_all) {
       laws_.push_back(laws(mission_, kind));
       law = laws_.back().get();
-      needs_ = law->needs();
+      if (laws_.size() == 1) needs_ = law->needs();
+      if (law->needs() != needs_) throw std::logic_error("the laws of a mission differ in needs()");
     }
     team_.push_back(author.agent);
     agents_.push_back({author,
@@ -69,14 +71,14 @@ IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
   for (const Agent& agent : agents_) {
     if (efforts_) efforts_->add_row(agent.author);
   }
+  if (needs_.places) places_.reserve(agents_.size());
   if (any_filtered(mission_)) separation_.emplace(mission_, 0);
   bodies_.resize(separation_ ? agents_.size() : 0);
 }
 
-bool IdealTeam::stands_for(const Mission& mission, const LawMaker& laws) {
+bool IdealTeam::stands_for(const Mission& mission, const LawNeeds& needs) {
   const Timing& timing = mission.timing;
   const bool all_is_sent = longest_period_ticks(timing) == 1;
-  const LawNeeds needs = laws(mission, 0)->needs();
   const bool all_is_known = !needs.coverage || (looks_ahead(mission) && mission.dead_reckoning);
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&

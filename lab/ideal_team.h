@@ -33,20 +33,25 @@ enum class Edges {
 
 class IdealTeam {
  public:
+  /// Throws std::logic_error if laws of the mission differ in their needs().
   explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect,
                      const LawMaker& laws = make_law);
 
   /// Whether a distributed team would compute the same: it is in lockstep, every agent receives
   /// from every other, and no agent goes home; all coverage is broadcast each tick or known by dead
   /// reckoning, without rounding. Where teammates have searched is never known at once.
-  static bool stands_for(const Mission& mission, const LawMaker& laws = make_law);
+  /// @param needs  of the mission's laws
+  static bool stands_for(const Mission& mission, const LawNeeds& needs);
+  /// The same under make_law().
+  static bool stands_for(const Mission& mission) { return stands_for(mission, law_needs(mission)); }
 
   /// Takes in the newest list of amendments, of which only targets and laws count: its ticks are
   /// those that count. A change of the target is for the ticks to come. A distributed team computes
   /// the same bits if it also broadcasts all coverage each tick, else the same up to rounding.
   void note(const Amendments& list);
 
-  /// One tick: samples, commands from the common c_k, motion. Does not allocate.
+  /// One tick: samples, commands from the common c_k, motion. Only the laws allocate. After an
+  /// exception of a law, the mission has ended.
   void step();
 
   /// Steps up to `t_s`, calling `each` after every one.

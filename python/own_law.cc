@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/mission/kinds.h"
+#include "core/mission/station.h"
 #include "logger/observer.h"
 #include "plan/plan.h"
 #include "python/arrays.h"
@@ -33,7 +34,7 @@ struct TeamInput {
 /// How much faster than u_max a velocity may be: what rounding does to a vector of that length.
 constexpr double kRounding = 1e-9;
 
-/// What ergocast raises as LawError.
+/// In Python ergocast.LawError.
 struct LawRefused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -60,6 +61,8 @@ class TeamLaw {
   }
 
   Eigen::Vector3d wanted_mps(const LawInput& input) {
+    if (failed_)
+      throw LawRefused(where() + "it failed, and the mission has ended (begin another one)");
     if (input.tick != tick_) ask(input.tick, input.places);
     const auto at = std::ranges::lower_bound(places_, input.agent, {}, &TeamPlace::agent);
     if (at == places_.end() || at->agent != input.agent) return {0, 0, 0};  // it has just joined
@@ -73,11 +76,20 @@ class TeamLaw {
 
   void ask(Tick tick, std::span<const TeamPlace> places) {
     tick_ = tick;
+    failed_ = true;
     places_.assign(places.begin(), places.end());
-    for (const TeamPlace& agent : places_)
-      observer_.see(mission_, tick, planned_kind(mission_, agent.agent), agent.x_m);
+    for (const auto& [id, x_m] : places_) {
+      if (!rests(mission_, id, tick))
+        observer_.see(mission_, tick, planned_kind(mission_, id), x_m);
+    }
     const py::gil_scoped_acquire python;
     take(law_.attr("wanted_mps")(input()));
+    failed_ = false;
+  }
+
+  /// Begins an error.
+  std::string where() const {
+    return name_ + ".wanted_mps() at tick " + std::to_string(tick_) + ": ";
   }
 
   TeamInput input() const {
@@ -103,28 +115,35 @@ class TeamLaw {
 
   /// Checks the velocities, and takes them in.
   void take(const py::object& returned) {
-    const std::string where = name_ + ".wanted_mps() at tick " + std::to_string(tick_) + ": ";
     const py::ssize_t axes = axes_of(mission_.domain);
     const auto shape = "(" + std::to_string(places_.size()) + ", " + std::to_string(axes) + ")";
-    require(!returned.is_none(), where + "returned None, not velocities of shape " + shape);
-    const Numbers rows = Numbers::ensure(returned);
-    if (!rows) PyErr_Clear();
-    require(bool(rows),
-            where + "returned no numbers, but velocities of shape " + shape + " are wanted");
+    require(!returned.is_none(), where() + "returned None, not velocities of shape " + shape);
+    const Numbers rows = numbers_in(returned, shape);
     require(rows.ndim() == 2 && rows.shape(0) == static_cast<py::ssize_t>(places_.size()) &&
                 rows.shape(1) == axes,
-            where + "the shape of the velocities must be " + shape + ", not " + shape_text(rows));
+            where() + "the shape of the velocities must be " + shape + ", not " + shape_text(rows));
     wanted_mps_.clear();
     for (std::size_t i = 0; i < places_.size(); ++i) {
       Eigen::Vector3d v_mps(0, 0, 0);
       std::copy_n(rows.data(static_cast<py::ssize_t>(i)), axes, v_mps.data());
-      check_velocity(v_mps, places_[i].agent, where);
+      check_velocity(v_mps, places_[i].agent);
       wanted_mps_.push_back(v_mps);
     }
   }
 
-  void check_velocity(const Eigen::Vector3d& v_mps, AgentId agent, const std::string& where) const {
-    const std::string who = where + "agent " + std::to_string(agent);
+  /// Other errors of an object that makes its numbers itself stay what they are.
+  Numbers numbers_in(const py::object& returned, const std::string& shape) const {
+    try {
+      return Numbers(returned);
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
+    }
+    throw LawRefused(where() + "returned no numbers, but velocities of shape " + shape +
+                     " are wanted");
+  }
+
+  void check_velocity(const Eigen::Vector3d& v_mps, AgentId agent) const {
+    const std::string who = where() + "agent " + std::to_string(agent);
     require(v_mps.allFinite(), who + " wants a velocity that is not finite");
     const double speed_mps = length_of(v_mps), u_max_mps = u_max_of(agent);
     require(speed_mps <= u_max_mps * (1 + kRounding),
@@ -143,6 +162,7 @@ class TeamLaw {
   Observer observer_;
   std::vector<double> u_max_mps_;  // of each kind
   Tick tick_ = -1;
+  bool failed_ = false;  // no velocities of tick_
   std::vector<TeamPlace> places_;
   std::vector<Eigen::Vector3d> wanted_mps_;
 };
@@ -178,15 +198,21 @@ py::bytes study_figures(const py::bytes& plan, const py::object& law) {
 
 LawMaker laws_of(const py::object& law, const Mission& mission) {
   if (law.is_none()) return make_law;
-  require(studies::knows_all_places(mission),
-          "a law in Python needs the places of all agents, and in this mission no agent knows them "
-          "(remove world.radio_range_m and separation.lease_s)");
-  auto team = std::make_shared<TeamLaw>(law, mission);
+  const py::tuple made = py::module_::import("ergocast._law").attr("made")(law);
+  if (const auto why = studies::why_not_in_python(mission)) throw LawRefused(*why);
+  auto team = std::make_shared<TeamLaw>(made[0], mission);
   return [team](const Mission&, int kind) { return std::make_unique<MemberLaw>(team, kind); };
 }
 
 void add_own_laws(py::module_& module) {
-  py::register_exception<LawRefused>(module, "LawRefused", PyExc_ValueError);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const LawRefused& problem) {
+      const py::object kind = py::module_::import("ergocast._errors").attr("LawError");
+      PyErr_SetString(kind.ptr(), problem.what());
+    }
+  });
   py::class_<TeamInput>(module, "LawInput", "The agents of a tick, as ergocast.Law gets them.")
       .def_readonly("tick", &TeamInput::tick, "The tick, among those that count.")
       .def_readonly("t_s", &TeamInput::t_s, "Its time [s].")

@@ -175,12 +175,13 @@ void add_ideal_team(py::module_& module) {
 
 Bit for bit a lockstep mission for which stands_for() is true, several times as fast.
 edges: "reflect", or "none": agents leave the domain, as in the paper's theorems.
-law: an object of ergocast.Law, or None: the law of the mission.)")
+law: one of your own, as in simulate(), or None: the law of the mission.)")
       .def(py::init(&make_ideal_team), "mission"_a, "edges"_a = "reflect", "law"_a = py::none())
       .def_static(
           "stands_for", [](const Mission& mission) { return IdealTeam::stands_for(mission); },
           "mission"_a, "Whether a distributed team would compute the same.")
-      .def("step", &step, "count"_a = 1, "Runs `count` ticks: samples, commands, motion.")
+      .def("step", &step, "count"_a = 1,
+           "Runs `count` ticks. After an error of the law, the mission has ended.")
       .def_property_readonly("tick", &IdealTeam::tick, "Steps done.")
       .def_property_readonly("t_s", &IdealTeam::t_s, "The time that they took [s].")
       .def_property_readonly("positions_m", &rows<&IdealTeam::x_m>,

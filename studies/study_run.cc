@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -23,6 +24,8 @@
 
 namespace ergocast::studies {
 namespace {
+
+using namespace std::string_literals;
 
 /// The broadcasts of the whole team: each agent sends its coverage at its first tick, and in its
 /// turns.
@@ -153,14 +156,25 @@ StudyFigures run_with_messages(std::span<const std::byte> plan, const LawMaker& 
   return observer.figures();
 }
 
+StudyFigures run_study_mission(std::span<const std::byte> plan) {
+  const Mission mission = decode_plan_with_table(plan).value();
+  if (lab::IdealTeam::stands_for(mission)) return run_without_messages(mission);
+  return run_with_messages(plan);
+}
+
 StudyFigures run_study_mission(std::span<const std::byte> plan, const LawMaker& laws) {
   const Mission mission = decode_plan_with_table(plan).value();
-  if (lab::IdealTeam::stands_for(mission, laws)) return run_without_messages(mission, laws);
+  if (lab::IdealTeam::stands_for(mission, laws(mission, 0)->needs()))
+    return run_without_messages(mission, laws);
   return run_with_messages(plan, laws);
 }
 
-bool knows_all_places(const Mission& mission) {
-  return mission.radio_range_m == 0 && !uses_beacons(mission);
+std::optional<std::string> why_not_in_python(const Mission& mission) {
+  std::string fields = mission.radio_range_m > 0 ? "world.radio_range_m" : "";
+  if (uses_beacons(mission)) fields += (fields.empty() ? "" : " and ") + "separation.lease_s"s;
+  if (fields.empty()) return std::nullopt;
+  return "a law in Python needs the places of all agents, and in " + mission.name +
+         " no agent knows them (remove " + fields + ", or write the law in C++)";
 }
 
 }  // namespace ergocast::studies

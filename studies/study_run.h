@@ -9,7 +9,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "core/base/ids.h"
 #include "core/law/law.h"
@@ -67,13 +69,15 @@ struct StudyFigures {
 /// (IdealTeam), else with the real cores and codec in virtual time (Simulation), for either pace.
 /// @param laws  makes the agents' laws
 /// @pre the plan decodes
-StudyFigures run_study_mission(std::span<const std::byte> plan, const LawMaker& laws = make_law);
+StudyFigures run_study_mission(std::span<const std::byte> plan);
+StudyFigures run_study_mission(std::span<const std::byte> plan, const LawMaker& laws);
 
 /// The two ways to run a mission. They agree on every mission that IdealTeam stands for.
 StudyFigures run_without_messages(const Mission& mission, const LawMaker& laws = make_law);
 StudyFigures run_with_messages(std::span<const std::byte> plan, const LawMaker& laws = make_law);
 
-/// Whether every agent receives the places of all others at each tick.
-bool knows_all_places(const Mission& mission);
+/// Why no law in Python can steer the mission, with the remedy; nothing if one can. Every agent has
+/// to receive the places of all others at each tick.
+std::optional<std::string> why_not_in_python(const Mission& mission);
 
 }  // namespace ergocast::studies

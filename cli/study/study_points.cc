@@ -79,11 +79,12 @@ std::string words_of(const std::vector<FieldValue>& fields) {
 class Complaints {
  public:
   void add(const std::vector<Problem>& problems, const std::string& point) {
-    for (const Problem& problem : problems) {
-      const auto [found, is_new] = first_.emplace(to_string(problem), Seen{point, 0});
-      if (is_new) order_.push_back(found->first);
-      ++found->second.times;
-    }
+    for (const Problem& problem : problems) add(to_string(problem), point);
+  }
+  void add(const std::string& problem, const std::string& point) {
+    const auto [found, is_new] = first_.emplace(problem, Seen{point, 0});
+    if (is_new) order_.push_back(problem);
+    ++found->second.times;
   }
   void add_to(std::size_t points, Problems& out) const {
     for (const std::string& text : order_) {
@@ -135,7 +136,9 @@ class Compiler {
       const std::string law = take_python_law(overrides.fields).value_or("");
       const auto loaded = Scenario::load(file, overrides);
       if (loaded) {
-        if (!law.empty()) read_law(law, *loaded);
+        if (!law.empty()) read_law(law);
+        const auto why = law.empty() ? std::nullopt : studies::why_not_in_python(loaded->mission());
+        if (why) complaints.add(law + ": " + *why, words_of(varied));
         add(*loaded, varied, file, law);
         points_.missions.push_back(
             (law.empty() ? std::string("ergocast run ")
@@ -149,12 +152,7 @@ class Compiler {
   }
 
   /// Reads a law's file: a study is another one if the law has changed.
-  void read_law(const std::string& law, const Scenario& scenario) {
-    if (!studies::knows_all_places(scenario.mission()))
-      problems_.push_back(law + ": a law in Python needs the places of all agents, and in " +
-                          scenario.name() +
-                          " no agent knows them (remove world.radio_range_m and "
-                          "separation.lease_s, or write the law in C++)");
+  void read_law(const std::string& law) {
     if (law_files_.contains(law)) return;
     const auto read = read_whole(file_of_law(law), kMostLawBytes);
     if (!read) problems_.push_back(read.error().sentence(file_of_law(law)));

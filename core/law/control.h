@@ -20,7 +20,8 @@ class Controller final : public Law {
   /// @param kind  of the agents that it steers, core/mission/kinds.h
   explicit Controller(const Mission& mission, int kind = 0);
 
-  LawNeeds needs() const override { return {.serves_all = true}; }
+  static constexpr LawNeeds kNeeds{.serves_all = true};
+  LawNeeds needs() const override { return kNeeds; }
   /// Takes in the known or forecast c_k of the team, mode_count() entries. All later commands use
   /// it.
   void set_coverage(const Coefficients& coverage) override;

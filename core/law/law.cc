@@ -20,4 +20,16 @@ std::unique_ptr<Law> make_law(const Mission& mission, int kind) {
   return std::make_unique<Controller>(mission, kind);
 }
 
+LawNeeds law_needs(const Mission& mission) {
+  switch (mission.law.kind) {
+    case LawKind::kMow:
+      return Mower::kNeeds;
+    case LawKind::kSearch:
+      return Searcher::kNeeds;
+    case LawKind::kCover:
+      break;
+  }
+  return Controller::kNeeds;
+}
+
 }  // namespace ergocast

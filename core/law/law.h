@@ -28,6 +28,8 @@ struct LawNeeds {
   /// One object may serve all agents of a kind: a command depends on nothing but its input, the
   /// last coverage and the numbers. Else each agent has an object of its own.
   bool serves_all = false;
+
+  bool operator==(const LawNeeds&) const = default;
 };
 
 /// Where an agent is.
@@ -66,18 +68,21 @@ class Law {
   virtual void set_law(const LawNumbers& numbers) = 0;
 
   /// The velocity that the agent wants [m/s], at most u_max but for noise and contraction. In a
-  /// plane v_z is 0. While team and target stay the same, it allocates only for a
-  /// new way around walls.
+  /// plane v_z is 0. While team and target stay the same, it allocates only for a new way around
+  /// walls.
   virtual Eigen::Vector3d wanted_mps(const LawInput& input) = 0;
   /// B of (6) for the last wanted_mps() [1/m]; 0 for a law without.
   virtual Eigen::Vector3d spectral_gradient() const { return {0, 0, 0}; }
 };
 
 /// Makes the law of an agent of `kind` in a mission: make_law(), or one of a program's own. Agents,
-/// lab/simulation.h, lab/ideal_team.h and studies/study_run.h take it.
+/// lab/simulation.h, lab/ideal_team.h and studies/study_run.h take it. The laws of all kinds of a
+/// mission have the same needs().
 using LawMaker = std::function<std::unique_ptr<Law>(const Mission&, int kind)>;
 
 /// The law of an agent of `kind` (core/mission/kinds.h): that of ControlLaw::kind.
 std::unique_ptr<Law> make_law(const Mission& mission, int kind = 0);
+/// The needs() of that law, without making it.
+LawNeeds law_needs(const Mission& mission);
 
 }  // namespace ergocast

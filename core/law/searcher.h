@@ -27,7 +27,8 @@ class Searcher final : public Law {
   /// @pre a plane
   explicit Searcher(const Mission& mission, int kind = 0);
 
-  LawNeeds needs() const override { return {.coverage = false, .places = true, .search = true}; }
+  static constexpr LawNeeds kNeeds{.coverage = false, .places = true, .search = true};
+  LawNeeds needs() const override { return kNeeds; }
   void set_target(const Coefficients& target) override;
   void set_law(const LawNumbers& numbers) override { steering_.set_law(numbers); }
   /// @pre input.efforts is there

@@ -19,6 +19,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int)
     parser.add_argument("--out", metavar="DIR", help="the run directory: new")
     options = parser.parse_args()
+    for field in options.set:
+        if "=" not in field:
+            parser.error(f"--set {field}: is not FIELD=VALUE")
     fields = dict(field.split("=", 1) for field in options.set)
     if options.duration is not None:
         fields["time.duration_s"] = options.duration

@@ -41,10 +41,8 @@ class TeamError(ErgocastError):
 
 @contextmanager
 def raised_as(kind: type[ErgocastError]) -> Iterator[None]:
-    """Turns a refusal of the C++ part into `kind` or LawError, with the same text."""
+    """Turns a refusal of the C++ part into `kind`, with the same text."""
     try:
         yield
     except _native.Refused as refused:
         raise kind(str(refused)) from None
-    except _native.LawRefused as refused:
-        raise LawError(str(refused)) from None

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import inspect
 import os
@@ -52,18 +53,29 @@ def made(law: LawLike) -> tuple[Law, str]:
 
 
 def class_in(place: str) -> type[Law]:
-    """The class that FILE.py:CLASS names. Errors of the file itself stay what they are."""
+    """The class that FILE.py:CLASS names. Errors of the file itself stay what they are.
+
+    While it is loaded, the file can import what lies beside it.
+    """
     file, colon, name = place.rpartition(":")
     if not colon or not name.isidentifier():
         raise LawError(f"{place} is not FILE.py:CLASS, such as my_law.py:Spiral")
     path = Path(file).resolve()
-    spec = importlib.util.spec_from_file_location(path.stem, path)
+    # Its own name could be that of another module.
+    alias = "ergocast_law_" + hashlib.sha256(os.fsencode(path)).hexdigest()[:16]
+    spec = importlib.util.spec_from_file_location(alias, path)
     if spec is None or spec.loader is None or not path.is_file():
         raise LawError(f"there is no Python file {file}")
     module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module
-    sys.path.insert(0, str(path.parent))  # for what lies beside it
-    spec.loader.exec_module(module)
+    sys.modules[alias] = module
+    sys.path.insert(0, str(path.parent))
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[alias]
+        raise
+    finally:
+        sys.path.remove(str(path.parent))
     found = getattr(module, name, None)
     if not (inspect.isclass(found) and issubclass(found, Law)):
         laws = [each for each, value in vars(module).items()

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ergocast._law import Law
+from ergocast._law import Law, LawLike
 
 _Floats = npt.NDArray[np.float64]
 
@@ -14,7 +14,6 @@ __version__: str
 STUDY_FIGURES_BYTES: int
 
 class Refused(ValueError): ...
-class LawRefused(ValueError): ...
 
 class Domain:
     def __init__(
@@ -119,7 +118,7 @@ class CoverageTable:
     def covered_s(self) -> float: ...
 
 class IdealTeam:
-    def __init__(self, mission: Mission, edges: str = ..., law: Law | None = ...) -> None: ...
+    def __init__(self, mission: Mission, edges: str = ..., law: LawLike | None = ...) -> None: ...
     @staticmethod
     def stands_for(mission: Mission) -> bool: ...
     def step(self, count: int = ...) -> None: ...

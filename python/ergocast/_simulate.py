@@ -40,7 +40,8 @@ def simulate(
     law: one of your own in the place of the scenario's: an object of Law, its class, or
         "FILE.py:CLASS". What it raises ends the simulation, and leaves an incomplete record.
 
-    Other threads can run meanwhile. Ctrl-C ends the mission in order, and raises KeyboardInterrupt.
+    Other threads can run meanwhile. Ctrl-C raises KeyboardInterrupt, and ends the mission in order,
+    unless it interrupts `law`.
     Raises ScenarioError with all problems at once, RecordError if `out` cannot be used, LawError
     if the law wants what no agent may want.
     """

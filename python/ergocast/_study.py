@@ -38,7 +38,7 @@ def _answer(answers: int, good: bool, content: bytes) -> None:
 
 def _text_of(problem: Exception, place: str) -> str:
     """One line: the error, and the last line of the law's file that led to it."""
-    if isinstance(problem, (LawError, _native.LawRefused)):
+    if isinstance(problem, LawError):
         return str(problem)
     file = os.path.realpath(place.rpartition(":")[0])
     lines = [

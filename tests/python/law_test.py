@@ -122,6 +122,87 @@ class InSimulations(unittest.TestCase):
         with self.assertRaises(ZeroDivisionError):
             ergocast.simulate(SCENARIO, set=SHORT, law=Returns(lambda v, tick: v + 1 // (tick - 7)))
 
+    def test_after_an_error_the_mission_has_ended(self):
+        mission = ergocast.compile_mission(SCENARIO, set=SHORT)
+
+        def interrupted(v, tick):
+            raise KeyboardInterrupt
+
+        for bad, kind in ((lambda v, tick: None, ergocast.LawError), (lambda v, tick: v + 30, ergocast.LawError),
+                          (lambda v, tick: [][0], IndexError), (interrupted, KeyboardInterrupt)):
+            for last in (0, 3):
+                law = Returns(lambda v, tick: bad(v, tick) if tick == last else v + 1)
+                team = ergocast.IdealTeam(mission, law=law)
+                team.step(last)
+                before_m = team.positions_m
+                with self.assertRaises(kind):
+                    team.step()
+                for _ in range(2):
+                    with self.assertRaisesRegex(ergocast.LawError, f"Returns.* tick {last}.*the mission has ended"):
+                        team.step()
+                self.assertTrue(np.array_equal(team.positions_m, before_m))
+                self.assertEqual(team.tick, last)
+
+    def test_agents_that_rest_by_plan_cover_nothing(self):
+        text = (SCENARIO.parent / "home_by_dusk.textproto").read_text()
+        text = text.replace("count: 4", "count: 2").replace("duration_s: 120", "duration_s: 40")
+        text = text.replace("    station { x_m: 22  y_m: 4 }\n    station { x_m: 30  y_m: 4 }\n  }",
+                            '  }\n  kind { name: "others"  count: 2 }')
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "dusk.textproto"
+            file.write_text(text)
+            law = Seen((0.5, 1))
+            run = ergocast.simulate(file, law=law)
+        self.assertEqual([call[0] for call in law.calls], list(range(400)))
+        for tick in (100, 279, 280, 399):
+            self.assertTrue(np.allclose(law.calls[tick][4], run.coverage(tick), rtol=0, atol=1e-12), tick)
+
+    def test_an_ideal_team_takes_what_a_simulation_takes(self):
+        mission = ergocast.compile_mission(SCENARIO, set=SHORT)
+        for law in (Seen, f"{SPIRAL}:Spiral"):
+            ergocast.IdealTeam(mission, law=law).step()
+        for law, why in ((7, "is no ergocast.Law"), (dict, "is no ergocast.Law"), ("missing.py:Spiral", "no Python file")):
+            with self.assertRaisesRegex(ergocast.LawError, why):
+                ergocast.IdealTeam(mission, law=law)
+        distant = ergocast.compile_mission(SCENARIO, set={**SHORT, "world.radio_range_m": 500})
+        with self.assertRaisesRegex(ergocast.LawError, "needs the places of all agents"):
+            ergocast.IdealTeam(distant, law=Seen())
+
+    def test_what_an_array_raises_stays_what_it_is(self):
+        class Raises:
+            def __init__(self, error):
+                self.error = error
+
+            def __array__(self, *arguments, **more):
+                raise self.error
+
+        for error in (KeyboardInterrupt(), MemoryError(), ZeroDivisionError()):
+            with self.assertRaises(type(error)):
+                ergocast.simulate(SCENARIO, set=SHORT, law=Returns(lambda v, tick: Raises(error)))
+        self.assertIn("returned no numbers", self.refusal(Returns(lambda v, tick: Raises(TypeError()))))
+
+    def test_a_file_replaces_no_module(self):
+        import random
+
+        path = list(sys.path)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "random.py"
+            (Path(folder) / "beside_the_law.py").write_text("import ergocast\nclass Base(ergocast.Law):\n    pass\n")
+            for body in ("from beside_the_law import Base\nclass Mine(Base):\n    pass\n", "raise OSError\n"):
+                file.write_text(body)
+                for _ in range(2):
+                    with self.assertRaises(NotImplementedError if "Mine" in body else OSError):
+                        ergocast.simulate(SCENARIO, set=SHORT, law=f"{file}:Mine")
+                    self.assertIs(sys.modules["random"], random)
+                    self.assertEqual(sys.path, path)
+            self.assertFalse([name for name in sys.modules if getattr(sys.modules[name], "__file__", "") == str(file)])
+
+    def test_the_command_refuses_a_field_without_a_value(self):
+        done = subprocess.run([sys.executable, "-m", "ergocast", SCENARIO, "--set", "foo"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--set foo: is not FIELD=VALUE", done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+
 
 class InStudies(unittest.TestCase):
     def setUp(self):
@@ -185,6 +266,13 @@ class InStudies(unittest.TestCase):
         self.law_file("        return now.x_m + now.u_max_mps[0]\n")
         self.assertIn("agent 0 wants ", self.study("COVER,my_law.py:Mine", out="fast", code=4))
 
+    def test_its_process_has_no_pipe_of_the_study(self):
+        self.law_file("        import os\n"
+                      "        files = [f'/proc/self/fd/{each}' for each in os.listdir('/proc/self/fd') if int(each) > 2]\n"
+                      "        assert not [file for file in files if 'pipe:' in os.path.realpath(file)]\n"
+                      "        return 0 * now.x_m\n")
+        self.study("COVER,my_law.py:Mine")
+
     def test_a_law_that_cannot_be_used_is_refused_before_the_first_mission(self):
         self.law_file("        return 0 * now.x_m\n")
         (self.folder / "broken.py").write_text("import ergocast\nclass Mine(ergocast.Law:\n")
@@ -193,8 +281,9 @@ class InStudies(unittest.TestCase):
                          ("broken.py:Mine", "broken.py:Mine: SyntaxError")):
             self.assertIn(why, self.study(f"COVER,{law}", code=2))
             self.assertFalse((self.folder / "study").exists())
-        printed = self.study("COVER,my_law.py:Mine", "--set", "world.radio_range_m=300", code=2)
-        self.assertIn("needs the places of all agents", printed)
+        printed = self.study("COVER,my_law.py:Mine", "--vary", "law.epsilon=0.1,0.2,0.3",
+                             "--set", "world.radio_range_m=300", code=2)
+        self.assertEqual(printed.count("needs the places of all agents"), 1)
 
 
 if __name__ == "__main__":

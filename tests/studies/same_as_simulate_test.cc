@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "scenario/scenario.h"
 #include "studies/study_run.h"
 #include "tests/support/drawn_scenario.h"
+#include "tests/support/team.h"
 #include "tests/support/temp_folder.h"
 
 namespace ergocast::test {
@@ -165,12 +167,37 @@ TEST(SameAsSimulate, UnderALawOfAProgramsOwn) {
   while (stood_for < 20) {
     const std::string text = drawn.next();
     const Mission& mission = drawn.compiled->mission();
-    if (!lab::IdealTeam::stands_for(mission, laws)) continue;
+    if (!lab::IdealTeam::stands_for(mission, laws(mission, 0)->needs())) continue;
     ++stood_for;
     const auto plan = encode_plan(mission);
     const StudyFigures simulated = studies::run_with_messages(plan, laws);
     ASSERT_EQ(difference(studies::run_study_mission(plan, laws), simulated), "") << text;
     ASSERT_NE(difference(studies::run_study_mission(plan), simulated), "") << text;
+  }
+}
+
+TEST(IdealTeam, RefusesLawsThatDifferInTheirNeeds) {
+  Mission mission = small_mission(3);
+  mission.kinds.resize(2);
+  mission.kinds[0].count = 2;
+  mission.kinds[1].count = 1;
+  const auto laws_until = [&](int first_shy) -> LawMaker {
+    return [first_shy](const Mission& planned, int kind) -> std::unique_ptr<Law> {
+      if (kind >= first_shy) return std::make_unique<Shy>(planned, kind);
+      return make_law(planned, kind);
+    };
+  };
+  using lab::Edges, lab::IdealTeam;
+  EXPECT_NO_THROW(IdealTeam(mission, Edges::kReflect, laws_until(0)));
+  EXPECT_THROW(IdealTeam(mission, Edges::kReflect, laws_until(1)), std::logic_error);
+  EXPECT_NO_THROW(IdealTeam(mission, Edges::kReflect, laws_until(2)));
+}
+
+TEST(LawNeeds, AreThoseOfTheLawThatIsMade) {
+  Mission mission = small_mission(2);
+  for (const LawKind kind : {LawKind::kCover, LawKind::kMow, LawKind::kSearch}) {
+    mission.law.kind = kind;
+    EXPECT_EQ(law_needs(mission), make_law(mission)->needs()) << static_cast<int>(kind);
   }
 }
 
