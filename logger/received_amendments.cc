@@ -23,6 +23,17 @@ void push_over(std::vector<Change>& changes, const Change& change) {
 
 }  // namespace
 
+Tick cancelled_at(std::int32_t number, std::span<const Zone> listed,
+                  std::span<const Amendment> known) {
+  const auto zone = std::ranges::find(listed, number, &Zone::number);
+  if (zone != listed.end()) return zone->cancelled;
+  const auto cancels = [number](const Amendment& one) {
+    return one.kind == AmendmentKind::kReopen && one.hash == static_cast<std::uint64_t>(number);
+  };
+  const auto named = std::ranges::find_if(known, cancels);
+  return named == known.end() ? -1 : named->from;
+}
+
 ReceivedAmendments::ReceivedAmendments(std::vector<ReceivedAmendment> all, std::vector<Hold> holds)
     : all_(std::move(all)), holds_(std::move(holds)) {}
 
@@ -52,21 +63,14 @@ void ReceivedAmendments::note(const Amendments& list) {
   note_cancelled(list);
 }
 
-/// Notes which zones are cancelled. A list has only zones that had not ended; for others the
-/// amendments tell it. One that is void cancels nothing.
+/// Notes which zones are cancelled. An amendment that is void cancels nothing.
 void ReceivedAmendments::note_cancelled(const Amendments& list) {
-  for (ReceivedAmendment& one : all_) {
-    if (!one.zone || one.is_void) continue;
-    const std::int32_t number = one.amendment.number;
-    const auto cancels = [number](const ReceivedAmendment& other) {
-      return other.amendment.kind == AmendmentKind::kReopen && !other.is_void &&
-             other.amendment.hash == static_cast<std::uint64_t>(number);
-    };
-    const auto named = std::ranges::find_if(all_, cancels);
-    one.zone->cancelled = named == all_.end() ? -1 : named->amendment.from;
-    const auto listed = std::ranges::find(list.zones, number, &Zone::number);
-    if (listed != list.zones.end()) one.zone->cancelled = listed->cancelled;
-  }
+  std::vector<Amendment> known;
+  for (const ReceivedAmendment& one : all_)
+    if (!one.is_void) known.push_back(one.amendment);
+  for (ReceivedAmendment& one : all_)
+    if (one.zone && !one.is_void)
+      one.zone->cancelled = cancelled_at(one.amendment.number, list.zones, known);
 }
 
 /// Marks what the list lacks. It names its newest amendments; older ones are as they were.

@@ -6,7 +6,9 @@
 // later.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/mission/amendments.h"
@@ -26,6 +28,12 @@ struct ReceivedAmendment {
 
   bool operator==(const ReceivedAmendment&) const = default;
 };
+
+/// From which tick on the zone of an amendment is cancelled; −1: it is not.
+/// @param listed  the zones of the newest list, which has only those that had not ended
+/// @param known   all amendments that are known; of a zone that has left the list they tell it
+Tick cancelled_at(std::int32_t number, std::span<const Zone> listed,
+                  std::span<const Amendment> known);
 
 class ReceivedAmendments {
  public:

@@ -406,7 +406,6 @@ Json page_zones(std::span<const Zone> zones, const Box& domain) {
                     {"from", zone.from},
                     {"until", zone.end()},
                     {"corners_m", std::move(corners)}});
-    if (zone.cancelled >= 0) list.back()["cancelled"] = true;
     if (!domain.planar())
       list.back()["heights_m"] = {zone.low_m - domain.origin_m.z(),
                                   zone.high_m - domain.origin_m.z()};

@@ -99,8 +99,7 @@ std::optional<std::string> why_not_cancelled(const MonitoredRun& team, const Ame
   const auto& zones = team.amendments().zones;
   const auto zone = std::ranges::find(zones, number, &Zone::number);
   if (zone != zones.end() && zone->cancelled >= 0)
-    return "another operator has cancelled that zone: it ends at " +
-           team.mission_time(zone->cancelled);
+    return "another order was first: that zone ends at " + team.mission_time(zone->cancelled);
   if (can_reopen(team.amendments(), number, earliest_tick(team, 0))) return std::nullopt;
   return "that zone ends by itself before all agents can know of an earlier end";
 }

@@ -64,8 +64,11 @@ void Control::attend(Instant now) {
     const auto text = links_.first.receive();
     if (!text) break;
     const auto request = ControlRequest::parse(*text);
-    const bool counts = request && (!slept || request->act == ControlAct::kStopNow);
-    if (counts) desk_.receive(*request, team_, now);
+    if (!request) continue;
+    if (slept)
+      desk_.receive_late(*request, team_, now);
+    else
+      desk_.receive(*request, team_, now);
   }
   Outbox out;
   desk_.advance(team_, now, out);

@@ -60,6 +60,14 @@ bool amends(ControlAct act) { return act == ControlAct::kTarget || act == Contro
 
 bool recalls(ControlAct act) { return act == ControlAct::kHome || act == ControlAct::kOut; }
 
+bool needs_number(ControlAct act) {
+  return act != ControlAct::kStopNow && act != ControlAct::kHere;
+}
+
+bool are_one(const ControlRequest& one, const ControlRequest& other) {
+  return one.operator_id == other.operator_id && one.number == other.number;
+}
+
 }  // namespace
 
 bool ControlDesk::Numbers::is_new(const ControlRequest& request) {
@@ -79,14 +87,15 @@ bool ControlDesk::Numbers::is_new(const ControlRequest& request) {
 // ---- requests ----
 
 void ControlDesk::receive(const ControlRequest& request, const MonitoredRun& team, Instant now) {
-  if (request.act != ControlAct::kStopNow && !numbers_.is_new(request)) {
-    refused_ = {request, "the page has sent a later request: reload it if it has not"};
+  if (needs_number(request.act) && !numbers_.is_new(request)) {
+    if (!is_answered(request))
+      refuse(request, "a later request of this page came first: give the order again");
     return;
   }
   if (const auto why = why_refused(request, team, now)) {
     // The sign that a browser is still there is no order.
     if (request.act == ControlAct::kHere) return;
-    refused_ = {request, *why};
+    refuse(request, *why);
     if (over_rate_ <= 1)
       note(called(request) + " asks for: " + what(request) + ": refused: " + *why);
     return;
@@ -96,6 +105,29 @@ void ControlDesk::receive(const ControlRequest& request, const MonitoredRun& tea
   if (request.act == ControlAct::kTake || request.act == ControlAct::kRelease)
     return change_operator(request, team, now);
   give(request, team, now);
+}
+
+void ControlDesk::receive_late(const ControlRequest& request, const MonitoredRun& team,
+                               Instant now) {
+  if (request.act == ControlAct::kStopNow) return receive(request, team, now);
+  if (request.act == ControlAct::kHere) return;
+  if (numbers_.is_new(request))
+    refuse(request, "the process that gives the orders has slept: give the order again");
+}
+
+/// Whether the state has the answer to an earlier copy of a request.
+bool ControlDesk::is_answered(const ControlRequest& request) const {
+  if (request.act == ControlAct::kTake && is_held_by(request)) return true;
+  if (request.act == ControlAct::kRelease && !is_held_by(request)) return true;
+  return std::ranges::any_of(
+             acts_, [&request](const Act& act) { return are_one(act.request, request); }) ||
+         std::ranges::any_of(refused_,
+                             [&request](const auto& one) { return are_one(one.first, request); });
+}
+
+void ControlDesk::refuse(const ControlRequest& request, std::string why) {
+  if (refused_.size() == kMostRefused) refused_.pop_front();
+  refused_.emplace_back(request, std::move(why));
 }
 
 std::optional<std::string> ControlDesk::why_refused(const ControlRequest& request,
@@ -176,12 +208,13 @@ void ControlDesk::give(const ControlRequest& request, const MonitoredRun& team, 
   const bool is_known = std::ranges::any_of(acts_, [&request](const Act& act) {
     const bool stands = act.request.act == ControlAct::kStopNow && act.report.state == State::kDone;
     // A page repeats a stop at once, under its number, until it sees the answer.
-    const bool is_repeated =
-        act.request.operator_id == request.operator_id && act.request.number == request.number;
-    return (!act.over() || stands || is_repeated) && act.request.act == request.act &&
-           act.request.agent == request.agent;
+    return (!act.over() || stands || are_one(act.request, request)) &&
+           act.request.act == request.act && act.request.agent == request.agent;
   });
-  if (is_known && !amends(request.act)) return;
+  if (is_known && !amends(request.act)) {
+    if (request.act != ControlAct::kStopNow) refuse(request, "it is being carried out already");
+    return;
+  }
   end_contradicted(request);
   make_room();
   note(called(request) + " asks for: " + what(request) + ", at " + team.mission_time(team.tick()));
@@ -333,11 +366,13 @@ nlohmann::ordered_json ControlDesk::state() const {
                     {"text", act.report.text}});
   }
   state["acts"] = std::move(acts);
-  state["refused"] = refused_ ? Json{{"operator", refused_->first.operator_id},
-                                     {"number", refused_->first.number},
-                                     {"what", what(refused_->first)},
-                                     {"text", refused_->second}}
-                              : Json(nullptr);
+  Json refused = Json::array();
+  for (const auto& [request, why] : refused_)
+    refused.push_back({{"operator", request.operator_id},
+                       {"number", request.number},
+                       {"what", what(request)},
+                       {"text", why}});
+  state["refused"] = std::move(refused);
   return state;
 }
 

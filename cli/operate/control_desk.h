@@ -7,10 +7,14 @@
 // Only requests of the operator with control become orders. The exception is a stop at once, for
 // which the page's token suffices.
 //
-// A request counts once: its number must exceed all earlier numbers of the same operator. A request
-// for control or for an order names the newest tick that the page has shown. That tick must be
-// recent (team/command_window.h). A stop at once is obeyed at any tick, because a late one is safer
-// than none. A page repeats it under one number until it sees the answer.
+// A request counts once: its number must exceed all earlier numbers of the same operator. So a page
+// can repeat a request under its number as long as it has seen no answer. Each order has one: it
+// appears among the acts, or is refused. The sign that a browser is still there needs no new
+// number.
+//
+// A request for control or for an order names the newest tick that the page has shown. That tick
+// must be recent (team/command_window.h). A stop at once is obeyed at any tick, because a late one
+// is safer than none.
 //
 // What was ordered elsewhere, on another page or by a command, appears among the acts as soon as
 // MISSION names it.
@@ -58,6 +62,9 @@ class ControlDesk {
 
   /// Turns a request into an order, or refuses it.
   void receive(const ControlRequest& request, const MonitoredRun& team, Instant now);
+  /// Refuses a request that came while advance() was not called for some seconds. A stop at once is
+  /// received.
+  void receive_late(const ControlRequest& request, const MonitoredRun& team, Instant now);
   /// Call if advance() was not called for some seconds: the operator's browser is not to blame.
   void wake(Instant now);
   /// Appends the messages that are due, and judges what the team has reported. Call at least ten
@@ -70,12 +77,16 @@ class ControlDesk {
   /// Whether no order waits for anything.
   bool is_settled() const;
 
-  /// What every page shows: {"over": true after end(), "operator", "acts", "refused"}.
+  /// What every page shows: {"over": true after end(), "operator", "acts", "refused"}. The newest
+  /// of a list is the last.
   nlohmann::ordered_json state() const;
   /// Lines for the log since the last call: each request, its operator, its time and its outcome.
   std::vector<std::string> take_lines() { return std::exchange(lines_, {}); }
 
  private:
+  /// The most refused requests that pages receive: so one does not hide another of the same moment.
+  static constexpr std::size_t kMostRefused = 8;
+
   struct Operator {
     std::uint32_t id;
     std::string name;
@@ -102,6 +113,8 @@ class ControlDesk {
   std::optional<std::string> why_refused(const ControlRequest& request, const MonitoredRun& team,
                                          Instant now);
   std::optional<std::string> why_not_amended(ControlAct act) const;
+  bool is_answered(const ControlRequest& request) const;
+  void refuse(const ControlRequest& request, std::string why);
   bool within_rate(Instant now);
   bool is_held_by(const ControlRequest& request) const;
   void change_operator(const ControlRequest& request, const MonitoredRun& team, Instant now);
@@ -121,8 +134,8 @@ class ControlDesk {
   Numbers numbers_;
   CommandWindow window_;
   NamedChanges changes_;
-  std::deque<Act> acts_;                                           // the newest last
-  std::optional<std::pair<ControlRequest, std::string>> refused_;  // the last, and the reason
+  std::deque<Act> acts_;                                        // the newest last
+  std::deque<std::pair<ControlRequest, std::string>> refused_;  // and why; the newest last
   std::vector<std::string> lines_;
   std::int64_t elsewhere_ = 0;  // how many acts were given elsewhere
   bool ended_ = false;

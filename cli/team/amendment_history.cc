@@ -7,13 +7,13 @@
 #include <span>
 #include <utility>
 
+#include "logger/received_amendments.h"
 #include "report/page.h"
 
 namespace ergocast {
 namespace {
 
-/// Takes in the newest zones, and forgets those whose amendments are not known any more. A list has
-/// only zones that had not ended.
+/// Takes in the newest zones, and forgets those whose amendments are not known any more.
 void replace_zones(std::span<const Zone> listed, std::span<const Amendment> known,
                    std::vector<Zone>& zones) {
   std::erase_if(zones, [&](const Zone& zone) {
@@ -23,6 +23,7 @@ void replace_zones(std::span<const Zone> listed, std::span<const Amendment> know
   });
   zones.insert(zones.end(), listed.begin(), listed.end());
   std::ranges::sort(zones, {}, &Zone::number);
+  for (Zone& zone : zones) zone.cancelled = cancelled_at(zone.number, listed, known);
 }
 
 /// Replaces those from the amendment `first` on, and forgets those before `oldest`.
@@ -65,7 +66,7 @@ void AmendmentHistory::add_new(Cursor& cursor, const Mission& mission,
   for (auto at = targets_.end() - static_cast<std::ptrdiff_t>(fresh); at != targets_.end(); ++at)
     targets[page_target_name(at->hash)] = at->coefficients;
   frame["amendments"] = page_amendments(amendments_, laws_, mission);
-  if (!zones_.empty()) frame["zones"] = page_zones(zones_, mission.domain);
+  frame["zones"] = page_zones(zones_, mission.domain);
   cursor = {changes_, targets_ever_};
 }
 

@@ -13,7 +13,7 @@ namespace ergocast {
 struct ExportedChange {
   Amendment amendment;
   double t_s = 0;    ///< of its tick, as tracks have it
-  std::string text;  ///< "another law: u_max_mps 8"
+  std::string text;  ///< "law u_max_mps 8"
 };
 
 /// All amendments of the record that are not void, ascending by number.

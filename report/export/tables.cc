@@ -122,7 +122,11 @@ class Tables {
 
   void amendments() {
     const std::vector<ExportedChange> changes = changes_of(record_);
-    if (changes.empty()) return;
+    if (changes.empty()) {
+      std::error_code none;
+      fs::remove(folder_ / "amendments.csv", none);  // of an earlier record
+      return;
+    }
     table("amendments.csv", "number,kind,from_tick,t_s,change,by", [&](std::ostream& file) {
       for (const auto& [amendment, t_s, text] : changes)
         file << amendment.number << ',' << to_string(amendment.kind) << ',' << amendment.from << ','

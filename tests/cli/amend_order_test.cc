@@ -13,6 +13,10 @@ namespace {
 using namespace test;
 using State = OrderReport::State;
 
+Zone zone_lasting(Tick ticks) {
+  return {.until = ticks, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+}
+
 class Amended : public ::testing::Test {
  protected:
   Amended() { announce(mission_); }
@@ -45,6 +49,16 @@ class Amended : public ::testing::Test {
 
   /// The newest amendment is the one that was sent last.
   void name_as_sent() { list_.recent.back().ordered_by = sent_.back().header.incarnation; }
+  /// The order of a zone that was named, closed from tick 5 on and free `notice` ticks later.
+  AmendOrder zone_named(Tick notice) {
+    const Zone zone = zone_lasting(60);
+    announce_list();
+    AmendOrder order(wish_of(zone), notice, now_);
+    turn(order, 20ms);
+    name_zone(list_, 0, 5, notice, zone);
+    name_as_sent();
+    return order;
+  }
   static void expect_report(const OrderReport& report, State state, const std::string& text) {
     EXPECT_EQ(report.state, state) << report.text;
     EXPECT_NE(report.text.find(text), std::string::npos) << report.text;
@@ -291,7 +305,7 @@ TEST_F(Amended, TheListNamesWhatHoldsAndWhatHeld) {
 }
 
 TEST_F(Amended, TheListNamesZonesThatHaveEnded) {
-  const Zone zone{.until = 10, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  const Zone zone = zone_lasting(10);
   name_zone(list_, 0, 5, 3, zone);
   announce_list();
   const auto text = [&] {
@@ -310,7 +324,7 @@ TEST_F(Amended, TheListNamesZonesThatHaveEnded) {
 }
 
 TEST_F(Amended, AZoneIsCancelled) {
-  const Zone zone{.until = 60, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  const Zone zone = zone_lasting(60);
   name_zone(list_, 0, 5, 3, zone);  // until 68
   announce_list();
   move_to(20);
@@ -337,8 +351,9 @@ TEST_F(Amended, AZoneIsCancelled) {
             "amendment 1, the end of the zone of amendment 0, holds since tick 22, t = 2.2 s");
   EXPECT_NE(text(0).find("was closed from tick 5, t = 0.5 s until tick 22"), std::string::npos)
       << text(0);
-  // Another operator cannot do it again, and none can shortly before the end.
-  EXPECT_TRUE(why_impossible(team_, wish_of_reopening(0), 0));
+  // It cannot be done again, nor shortly before the end.
+  EXPECT_EQ(why_impossible(team_, wish_of_reopening(0), 0),
+            "another order was first: that zone ends at tick 22, t = 2.2 s");
   name_zone(list_, 22, 25, 3, zone);  // until 88
   announce_list();
   move_to(86);
@@ -346,13 +361,8 @@ TEST_F(Amended, AZoneIsCancelled) {
 }
 
 TEST_F(Amended, AZoneDoesNotFailBecauseAnotherIsCancelled) {
-  const Zone zone{.until = 60, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
-  announce_list();
-  AmendOrder order(wish_of(zone), 30, now_);
-  turn(order, 20ms);
-  name_zone(list_, 0, 5, 30, zone);
-  name_as_sent();
-  name_zone(list_, 0, 5, 30, zone);
+  AmendOrder order = zone_named(30);
+  name_zone(list_, 0, 5, 30, zone_lasting(60));
   name_reopening(list_, 10, 1);
   announce_list();
   move_to(7);
@@ -360,12 +370,7 @@ TEST_F(Amended, AZoneDoesNotFailBecauseAnotherIsCancelled) {
 }
 
 TEST_F(Amended, AZoneThatIsCancelledBeforeItIsFreeFails) {
-  const Zone zone{.until = 60, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
-  announce_list();
-  AmendOrder order(wish_of(zone), 30, now_);
-  turn(order, 20ms);
-  name_zone(list_, 0, 5, 30, zone);
-  name_as_sent();
+  AmendOrder order = zone_named(30);
   name_reopening(list_, 10, 0);
   announce_list();
   move_to(7);
@@ -378,7 +383,7 @@ TEST_F(Amended, AZoneThatIsCancelledBeforeItIsFreeFails) {
 }
 
 TEST_F(Amended, ThereIsNoPlaceForANinthZone) {
-  const Zone zone{.until = 50, .corners_m = {{100, 100}, {400, 100}, {400, 400}}};
+  const Zone zone = zone_lasting(50);
   for (std::size_t i = 0; i < kMaxZones; ++i) name_zone(list_, 0, 5, 3, zone);
   announce_list();
   move_to(6);

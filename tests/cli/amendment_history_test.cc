@@ -32,7 +32,6 @@ TEST(AmendmentHistory, HasZonesThatHaveLeftTheListAndCancelledOnes) {
   name_reopening(list, 20, 0);
   const auto cancelled = frame(list);
   EXPECT_EQ(cancelled["zones"][0]["until"], 20);
-  EXPECT_EQ(cancelled["zones"][0]["cancelled"], true);
   EXPECT_EQ(cancelled["amendments"][1]["kind"], "reopen");
   EXPECT_EQ(cancelled["amendments"][1]["zone"], 0);
   name_zone(list, 30, 30, 3, triangle(200));
@@ -58,6 +57,37 @@ TEST(AmendmentHistory, ForgetsAZoneThatANewerListLacks) {
   history.add_new(cursor, mission, json);
   ASSERT_EQ(json["zones"].size(), 1U);
   EXPECT_EQ(json["zones"][0]["number"], 1);
+}
+
+TEST(AmendmentHistory, SendsThatNoZoneIsLeft) {
+  const Mission mission = small_mission(1);
+  AmendmentHistory history;
+  AmendmentHistory::Cursor cursor;
+  nlohmann::ordered_json first, second;
+  Amendments list;
+  name_zone(list, 0, 5, 3, triangle(100));
+  history.note(list);
+  history.add_new(cursor, mission, first);
+  EXPECT_EQ(first["zones"].size(), 1U);
+  history.note({});  // of a coordinator that does not know it
+  history.add_new(cursor, mission, second);
+  EXPECT_EQ(second["zones"], nlohmann::ordered_json::array());
+}
+
+TEST(AmendmentHistory, KnowsOfACancellationThoughNoListHasTheZoneAnyMore) {
+  const Mission mission = small_mission(1);
+  AmendmentHistory history;
+  AmendmentHistory::Cursor cursor;
+  Amendments list;
+  name_zone(list, 0, 5, 3, triangle(100));  // until 58
+  history.note(list);
+  name_reopening(list, 20, 0);
+  name_zone(list, 30, 30, 3, triangle(200));
+  ASSERT_EQ(list.zones.size(), 1U);
+  history.note(list);  // the list in between was lost
+  nlohmann::ordered_json json;
+  history.add_new(cursor, mission, json);
+  EXPECT_EQ(json["zones"][0]["until"], 20);
 }
 
 }  // namespace

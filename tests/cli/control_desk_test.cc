@@ -62,7 +62,7 @@ class Desk : public ::testing::Test {
   json operator_name() const { return state()["operator"]; }
   std::string refusal() const {
     const json refused = state()["refused"];
-    return refused.is_null() ? "" : refused["text"].get<std::string>();
+    return refused.empty() ? "" : refused.back()["text"].get<std::string>();
   }
   template <class M>
   int sent() const {
@@ -195,6 +195,56 @@ TEST_F(Desk, ANumberCountsOnce) {
   EXPECT_EQ(lines_.back(), "control: bert takes control from anna at tick 100, t = 10.0 s");
 }
 
+// A page repeats what it has seen no answer to.
+TEST_F(Desk, ARepeatedRequestIsObeyedOnceAndHasOneAnswer) {
+  ask(ControlAct::kPause);
+  desk_.receive(last_, team_, now_);
+  EXPECT_EQ(state()["refused"].size(), 1U);
+  ask(ControlAct::kTake);
+  desk_.receive(last_, team_, now_);
+  for (const ControlAct act : {ControlAct::kPause, ControlAct::kZone}) {
+    ask(act);
+    for (int i = 0; i < 3; ++i) desk_.receive(last_, team_, now_);
+  }
+  EXPECT_EQ(drawn_.size(), 1U);
+  EXPECT_EQ(state()["acts"].size(), 2U);
+  ask(ControlAct::kRelease);
+  desk_.receive(last_, team_, now_);
+  EXPECT_EQ(state()["refused"].size(), 1U) << state();
+}
+
+TEST_F(Desk, NoAnswerHidesAnother) {
+  ask(ControlAct::kTake);
+  ask(ControlAct::kPause);
+  ask(ControlAct::kPause);
+  EXPECT_EQ(refusal(), "it is being carried out already");
+  const std::int64_t number = last_.number;
+  ask(ControlAct::kResume, 2);
+  EXPECT_EQ(refusal(), "anna has control now");
+  EXPECT_EQ(state()["refused"][0]["number"], number);
+  for (int i = 0; i < 20; ++i) ask(ControlAct::kResume, 2);
+  EXPECT_EQ(state()["refused"].size(), 8U);
+}
+
+TEST_F(Desk, WhatCameWhileThisProcessSleptIsRefusedButForAStop) {
+  ask(ControlAct::kTake);
+  const auto late = [this](ControlAct act) {
+    last_.act = act;
+    last_.number = ++numbers_;
+    desk_.receive_late(last_, team_, now_);
+    advance();
+  };
+  late(ControlAct::kHere);
+  EXPECT_EQ(refusal(), "");
+  late(ControlAct::kPause);
+  EXPECT_EQ(refusal(), "the process that gives the orders has slept: give the order again");
+  desk_.receive(last_, team_, now_);  // a second copy
+  EXPECT_EQ(state()["acts"].size(), 0U);
+  EXPECT_EQ(state()["refused"].size(), 1U);
+  late(ControlAct::kStopNow);
+  EXPECT_EQ(sent<Stop>(), 2);
+}
+
 TEST_F(Desk, ARequestThatNamesAnOldTickIsRefused) {
   ask(ControlAct::kTake);
   for (int i = 0; i < 4; ++i) {
@@ -248,8 +298,21 @@ TEST_F(Desk, AStopAtOnceNeedsNoNumberAndIsSaidOnce) {
   ask(ControlAct::kStopNow);
   EXPECT_EQ(sent<Stop>(), 2);
   numbers_ = 0;
-  ask(ControlAct::kHere);
+  ask(ControlAct::kPause);
   EXPECT_NE(refusal().find("a later request"), std::string::npos);
+}
+
+// A browser sends over several connections.
+TEST_F(Desk, ASignOfTheBrowserMayOvertakeAnOrder) {
+  ask(ControlAct::kTake);
+  numbers_ += 1;
+  ask(ControlAct::kHere);
+  numbers_ -= 2;
+  ask(ControlAct::kPause);
+  EXPECT_EQ(sent<Amend>(), 1) << refusal();
+  numbers_ -= 1;
+  ask(ControlAct::kHere);
+  EXPECT_EQ(refusal(), "");
 }
 
 TEST_F(Desk, ARepeatedStopAtOnceIsObeyedOnceEvenIfItHasFailed) {

@@ -175,7 +175,7 @@ TEST(Amending, NamesAnEnd) {
   EXPECT_EQ(status[0].tick_count, 500);
   give(coordinator, wish_of_end(600, 0, 2), at(2s));
   give(coordinator, world_where(12, {11, 11}), at(2s));
-  EXPECT_EQ(coordinator.amendments().named, 1) << "another operator was first";
+  EXPECT_EQ(coordinator.amendments().named, 1) << "another order was first";
   give(coordinator, world_where(499, {498, 498}), at(3s));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
   give(coordinator, world_where(500, {499, 499}), at(3s));

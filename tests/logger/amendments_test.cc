@@ -32,6 +32,10 @@ std::int32_t target_at(const ReceivedAmendments& heard, Tick tick) {
   return found == nullptr ? -1 : found->amendment.number;
 }
 
+Zone zone_lasting(Tick ticks) {
+  return {.until = ticks, .corners_m = {{100, 100}, {200, 100}, {200, 200}}};
+}
+
 // ---- what was received ----
 
 TEST(ReceivedAmendments, AllTargetsAreKeptThoughAListHasTwo) {
@@ -112,9 +116,8 @@ TEST(ReceivedAmendments, AllZonesAreKeptThoughAListHasThoseInForce) {
   ReceivedAmendments heard;
   Amendments list;
   for (int i = 0; i < 20; ++i) {
-    Zone zone;
-    zone.until = 5;
-    zone.corners_m = {{100, 100}, {200, 100}, {200, 200.0 + i}};
+    Zone zone = zone_lasting(5);
+    zone.corners_m[2].y() = 200.0 + i;
     name_zone(list, 10 * i, 10 * i, 2, zone);
     ASSERT_EQ(list.zones.size(), 1U);
     heard.note(list);
@@ -126,9 +129,7 @@ TEST(ReceivedAmendments, AllZonesAreKeptThoughAListHasThoseInForce) {
 TEST(ReceivedAmendments, AZoneIsCancelledAsLongAsAnAmendmentSaysSo) {
   ReceivedAmendments heard;
   Amendments list;
-  Zone zone;
-  zone.until = 100;
-  zone.corners_m = {{100, 100}, {200, 100}, {200, 200}};
+  const Zone zone = zone_lasting(100);
   name_zone(list, 10, 10, 2, zone);
   const Amendments before = list;
   name_reopening(list, 30, 0);
@@ -224,10 +225,7 @@ TEST_F(AmendmentsFile, HasZones) {
 TEST_F(AmendmentsFile, HasCancelledZones) {
   ReceivedAmendments heard;
   Amendments list;
-  Zone zone;
-  zone.until = 50;
-  zone.corners_m = {{100, 100}, {200, 100}, {200, 200}};
-  name_zone(list, 10, 10, 2, zone);
+  name_zone(list, 10, 10, 2, zone_lasting(50));
   name_reopening(list, 30, 0);
   heard.note(list);
   const std::string text = amendments_text(heard, 0.1);

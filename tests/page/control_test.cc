@@ -251,7 +251,7 @@ TEST_F(ControlledPage, ShowsEachOrderThatFailedOrIsUnfinishedAndSpeaksItOnce) {
      " { childList: true, characterData: true, subtree: true });"
      "window.act = (number, what, state, over, text) =>"
      " ({ operator: 5, name: 'bert', number, what, at: '', state, over, text });"
-     "window.show = acts => ergocast.showControl({ operator: null, acts, refused: null })");
+     "window.show = acts => ergocast.showControl({ operator: null, acts, refused: [] })");
   // Shown and read in one script: the next message of the real team shows its own orders.
   js("window.texts = acts => { show(acts);"
      " const acted = [...document.querySelectorAll('#controlActs li')].map(li => li.textContent);"
@@ -269,6 +269,59 @@ TEST_F(ControlledPage, ShowsEachOrderThatFailedOrIsUnfinishedAndSpeaksItOnce) {
             "agent 3 home by bert: agent 3 rests|resume by bert: still no answer");
   EXPECT_EQ(js("return spoken.filter(text => text.includes('no answer')).length"), 1);
   EXPECT_EQ(js("return spoken.filter(text => text.includes('agent 3')).length"), 2);
+  browser_->click("#stopNow");
+  end_with_the_mission();
+}
+
+// The server's answers are the test's own; it obeys nothing but a stop.
+TEST_F(ControlledPage, SaysWhatBecameOfEachOrder) {
+  control();
+  take_control();
+  js("const real = window.fetch; window.answer = { status: 503 }; window.numbers = [];"
+     "window.fetch = (url, options) => {"
+     " const { act, number, operator } = JSON.parse(options.headers['X-Ergocast-Request']);"
+     " if (['here', 'stop-now'].includes(act)) return real(url, options);"
+     " numbers.push(number); window.operator = operator;"
+     " return answer ? Promise.resolve(new Response('busy', answer)) :"
+     "   Promise.reject(new TypeError('lost')); }");
+  // Shown and read in one script: the next message of the real team shows its own orders.
+  js("window.show = (acts, refused) => {"
+     " ergocast.showControl({ operator: { id: operator }, refused: refused.map(one =>"
+     "   ({ operator, ...one })), acts: acts.map(one =>"
+     "   ({ operator, name: '', at: '', over: true, state: 'done', text: 'yes', ...one })) });"
+     " return ['controlText', 'controlNotice'].map(id =>"
+     "   document.getElementById(id).textContent).join('|'); }");
+  order("pause");
+  EXPECT_TRUE(becomes("controlNotice", "^Pause: not sent: busy$"));
+  EXPECT_EQ(text("controlText"), "Pause: not sent");
+
+  js("answer = { status: 202 }");
+  order("resume");
+  EXPECT_EQ(text("controlText"), "Resume: sent");
+  EXPECT_EQ(js("return show([], [{ number: numbers[1], what: 'resume', text: 'too late' },"
+               " { operator: 5, number: 1, what: 'pause', text: 'bert has control' }])"),
+            "Resume: refused|Resume: refused: too late");
+
+  // It is not known whether it was received: the next press repeats it under its number.
+  js("answer = null");
+  order("pause");
+  EXPECT_TRUE(becomes("controlNotice", "^Pause: not answered. Press again: it is obeyed once.$"));
+  EXPECT_EQ(text("controlText"), "Pause: not answered");
+  js("answer = { status: 503 }");
+  order("pause");
+  EXPECT_TRUE(becomes("controlNotice", "^Pause: not answered. Press again"));
+  js("answer = { status: 202 }");
+  order("pause");
+  EXPECT_EQ(js("return new Set(numbers.slice(2)).size"), 1);
+  EXPECT_TRUE(becomes("controlNotice", "^Pause: not answered. Press again"));  // nor is this one
+  EXPECT_EQ(js("return show([{ number: numbers[2], what: 'pause' }], [])"), "pause: yes|");
+  order("pause");
+  EXPECT_GT(js("return numbers.at(-1)"), js("return numbers[2]"));
+
+  // It can no longer be obeyed, because a later one was.
+  order("resume");
+  EXPECT_EQ(js("return show([{ number: numbers.at(-1), what: 'resume' }], [])"),
+            "resume: yes|Pause: not obeyed, because a later order came first. Press again.");
   browser_->click("#stopNow");
   end_with_the_mission();
 }
@@ -424,15 +477,22 @@ TEST_F(ControlledPage, AnotherOperatorTakesOverVisibly) {
 TEST_F(ControlledPage, APressIsNotLostSilentlyWhenThePagesProcessIsKilled) {
   control();
   take_control();
+  js("const { S } = ergocast, ticks = window.ticks = []; let facts = S.facts;"
+     "Object.defineProperty(S, 'facts', { get: () => facts, set(value) { facts = value;"
+     " ticks.push(value?.state?.world_tick ?? null); } })");
   signal_to({"ergocast run-page"}, SIGSTOP);
   order("pause");
   kill_next({"ergocast run-page"});
-  ASSERT_TRUE(becomes("control", "4 of 4 stand|may not have been sent")) << text("control");
+  ASSERT_TRUE(
+      becomes("control", "4 of 4 stand|[Nn]ot answered|not sent|refused|control from|no longer"))
+      << text("control");
   if (text("controlText").find("stand") == std::string::npos) {
     if (text("holder") != "You have control") take_control();
     order("pause");
   }
   EXPECT_TRUE(becomes("controlText", "4 of 4 stand"));
+  // After the new connection, too, each order names a tick.
+  EXPECT_EQ(js("return ticks.includes(null)"), false) << js("return ticks");
   browser_->click("#stopNow");
   end_with_the_mission();
   EXPECT_EQ(summary()["restarts"], 0);  // the mission has not noticed

@@ -2,6 +2,9 @@
 // A page of a real-time team, on which a target or a zone is drawn.
 #pragma once
 
+#include <iterator>
+#include <regex>
+
 #include "tests/page/page_in_a_browser.h"
 
 namespace ergocast::test {
@@ -19,8 +22,7 @@ class DrawingInABrowser : public PageInABrowser {
     browser_->open(control == Control::kTaken ? address() : kAddress);
     ASSERT_TRUE(browser_->becomes("return window.ergocast?.S.facts?.state?.world_tick > 100"));
     if (control == Control::kTaken) {
-      browser_->click("#take");
-      ASSERT_TRUE(becomes("holder", "You have control"));
+      take_control();
     }
     ASSERT_TRUE(browser_->becomes("return !document.getElementById('drawTarget').hidden"));
     // A warning that the machine is slow would move the map between two presses.
@@ -51,9 +53,53 @@ class DrawingInABrowser : public PageInABrowser {
     for (const auto& [right, down] : corners) browser_->drag("#drawn", 0, 0, right, down);
     browser_->drag("#drawn", 0, 0, corners[0].first, corners[0].second);
   }
+  /// On a slow machine a request may name an old tick, or not be sent: it is then repeated.
+  void take_control() {
+    EXPECT_TRUE(eventually([&] {
+      js("document.getElementById('take').click()");
+      EXPECT_TRUE(browser_->becomes(
+          "const text = id => document.getElementById(id).textContent;"
+          "return text('holder') === 'You have control' || text('controlNotice') !== ''"));
+      return text("holder") == "You have control";
+    })) << text("controlNotice");
+  }
   /// Both presses in one script, so that no machine is too slow for the second one.
-  void send() {
+  void press_send() {
     js("const button = document.getElementById('sendDrawn'); button.click(); button.click()");
+  }
+  /// Sends what is drawn, until the team's process has received it.
+  void send() {
+    const int before = received();
+    press_send();
+    expect_received(before + 1);
+  }
+  /// How many targets and zones of this page have become orders.
+  int received() const {
+    static const std::regex order("control: .* asks for: new (target|zone), at ");
+    const std::string text = printed();
+    return static_cast<int>(
+        std::distance(std::sregex_iterator(text.begin(), text.end(), order), {}));
+  }
+  /// On a slow machine an order may be refused, or not be sent, and the page says so: it is then
+  /// sent again.
+  void expect_received(int count) {
+    EXPECT_TRUE(eventually([&] {
+      if (received() >= count) return true;
+      if (text("holder") != "You have control") {
+        take_control();
+        if (received() >= count) return true;
+        press_send();
+        return false;
+      }
+      // Seen and pressed in one script: the answer may come at any time.
+      js("const { textContent: notice } = document.getElementById('controlNotice');"
+         "const button = document.getElementById('sendDrawn');"
+         "if (/refused: |not sent|not answered/.test(notice) && button.checkVisibility()) {"
+         " button.click(); button.click(); }");
+      return false;
+    })) << text("controlNotice")
+        << '\n'
+        << printed();
   }
   /// Types into a field.
   void type(const std::string& id, const std::string& value) {

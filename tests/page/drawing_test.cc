@@ -62,16 +62,21 @@ TEST_F(DrawnTargetInABrowser, IsMovedComparedAndSent) {
 
 TEST_F(DrawnTargetInABrowser, IsShownAsSentUntilTheServerShowsIt) {
   open_page(Control::kTaken);
+  const int before = received();
+  js("const real = window.fetch; window.fetch = (url, options) => {"
+     " window.id = JSON.parse(options.headers['X-Ergocast-Request']).operator;"
+     " return real(url, options); }");
   browser_->click("#drawTarget");
   browser_->drag("#drawn", 60, 0);
   EXPECT_EQ(
       js("const button = document.getElementById('sendDrawn'); button.click(); button.click();"
-         "ergocast.showControl({ operator: null, refused: null, acts: [{ operator: 1, number: "
-         "1,"
+         "ergocast.showControl({ operator: { id }, refused: [], acts: [{ operator: 1, number: 1,"
          "  name: 'anna', what: 'pause', over: true, state: 'done', text: 'all stand' }] });"
          "return document.getElementById('controlText').textContent"),
       "New target: sent");
+  expect_received(before + 1);
   EXPECT_TRUE(browser_->becomes("return ergocast.S.run.targets.length === 2"));
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.drawing === null"));
   expect_no_errors();
   end_mission();
 }

@@ -245,6 +245,34 @@ TEST_F(DrawnZoneInABrowser, WithoutControlThePageShowsTheCommand) {
   end_mission();
 }
 
+// A request is slow: it arrives after the next press.
+TEST_F(DrawnZoneInABrowser, IsNotDoubledByAPressAfterAnOrderWithoutAnAnswer) {
+  open_page(Control::kTaken);
+  js("const real = window.fetch; let slow = null; window.late = false;"
+     "window.fetch = async (url, options) => {"
+     " const { act } = JSON.parse(options.headers['X-Ergocast-Request']);"
+     " if (act !== 'zone' || late) return real(url, options);"
+     " if (!slow) { slow = options; throw new TypeError('lost'); }"
+     " late = true; await real(url, slow);"
+     " while (!ergocast.S.run.zones.length && document.getElementById('controlNotice').hidden)"
+     "  await new Promise(done => setTimeout(done, 20));"
+     " const answer = await real(url, options); window.repeated = true; return answer; }");
+  browser_->click("#drawZone");
+  browser_->press("\uE007");  // Enter
+  type("zoneFor", "1000000");
+  press_send();
+  EXPECT_TRUE(becomes("controlNotice", "^New zone: not answered. Press again"));
+  send();
+  EXPECT_TRUE(browser_->becomes("return window.repeated"));
+  EXPECT_TRUE(becomes("controlText", "new zone: amendment 0, .* in it$")) << text("controlText");
+  // An order that comes later is answered.
+  browser_->click("#release");
+  EXPECT_TRUE(becomes("holder", "No operator has control"));
+  EXPECT_EQ(received(), 1) << printed();
+  expect_no_errors();
+  end_mission();
+}
+
 TEST_F(DrawnZoneInABrowser, InABoxHasItsHeights) {
   open_page(Control::kTaken, scenario_file("cube_corners"));
   browser_->click("#drawZone");

@@ -48,6 +48,13 @@ class AttackedControl : public RunningMission {
         stream.read_until([&](const std::string& all) { return all.find(key) != all.npos; });
     return std::stoll(text.substr(text.rfind(key) + key.size()));
   }
+  /// Waits until the events of a page that opens now have that text.
+  static bool shows(const std::string& part) {
+    HttpConnection stream(kPort);
+    stream.send("GET /events HTTP/1.1\r\nHost: 127.0.0.1:8765\r\n\r\n");
+    const auto has = [&part](const std::string& all) { return all.find(part) != all.npos; };
+    return has(stream.read_until(has));
+  }
   bool take_control() {
     return post(asking("take", shown_tick())) == 202 && says("anna takes control");
   }
@@ -149,6 +156,7 @@ TEST_F(AttackedControl, RequestsToAProcessThatSleepsDoNotCountButForAStop) {
   std::this_thread::sleep_for(std::chrono::seconds(6));
   mission.send(SIGCONT);
   EXPECT_TRUE(says("this process has slept")) << printed();
+  EXPECT_TRUE(shows("the process that gives the orders has slept"));
   EXPECT_TRUE(eventually([&] { return post(asking("stop-now", 0)) == 202; }));
   EXPECT_TRUE(says("stop now of anna")) << printed();
   EXPECT_FALSE(printed("asks for: pause")) << printed();

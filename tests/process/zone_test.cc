@@ -70,7 +70,11 @@ TEST_P(ZoneInEitherPace, SendsTheTeamOutAndKeepsItOut) {
 TEST_P(ZoneInEitherPace, IsCancelled) {
   Child mission = launch_endless(scenario(), {GetParam(), "--lcm-url", kUrl});
   ASSERT_TRUE(moves_on(200000)) << printed();
-  ASSERT_EQ(amend({"--zone", square(), "--for", "1000000s"}), 0) << output();
+  // On a slow machine agents leave later.
+  if (const int code = amend({"--zone", square(), "--for", "1000000s"}); code != 0) {
+    ASSERT_EQ(code, 4) << output();
+    ASSERT_TRUE(answered(" in it")) << output();
+  }
   ASSERT_EQ(amend({"--list"}), 0) << output();
   EXPECT_TRUE(answered("(--cancel undoes it)")) << output();
   ASSERT_EQ(amend({"--cancel", "0"}), 0) << output();

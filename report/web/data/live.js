@@ -158,7 +158,8 @@ export function watchLive(page) {
       message.stride,
       Math.ceil(message.mission.tick_count / message.stride) + 1,
     );
-    if (before && facts.run === message.run_id) {
+    const same = before && facts.run === message.run_id;
+    if (same) {
       run.history = before.history;
       run.times = before.times;
       run.wordsSpoken = before.wordsSpoken;
@@ -172,7 +173,7 @@ export function watchLive(page) {
       late: 0,
       authenticated: message.authenticated,
       replay: message.replay,
-      state: null,
+      state: same ? facts.state : null, // so an order always names a tick that was shown
     };
     page.began(run, facts);
   });

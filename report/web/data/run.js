@@ -50,7 +50,7 @@ export class Run {
     this.summary = null;
     // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
     this.amendments = [];
-    // {number, closed, from, until: ticks, corners_m, heights_m, cancelled}, ascending
+    // {number, closed, from, until: ticks, corners_m, heights_m}, ascending
     this.zones = [];
     this.received = new Map(); // coefficients of new targets, by hash
     this.targets = [plannedTarget(mission)]; // ascending by row

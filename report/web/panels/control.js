@@ -6,7 +6,7 @@ import { $, capital, element, isTyped, put } from '../text.js';
 const CONFIRM_MS = 3000, // time for the second press
   HERE_MS = 3000, // an operator whose browser is silent for 10 s loses control
   SEND_MS = 5000,
-  SHOWN_MS = 3000, // time for the server to show an order
+  ANSWER_MS = 6000, // time for the server to show an order or why it is refused
   STOP_MS = 700, // between repeats of Stop now
   MOST_STOPS = 4; // requests at once; a browser has six connections to a server
 
@@ -24,13 +24,15 @@ const token = takeToken();
 const me = { id: crypto.getRandomValues(new Uint32Array(1))[0] || 1, number: 0, mine: false };
 let armed = null, // {button, name, order, timer}: the button that waits for its second press
   stopping = null, // {request, tries, waiting, timer}: Stop now, until the team's answer is seen
-  pending = null, // {number, until}: an order that the server does not show yet
   last = { acts: [] }, // the state that came last
+  hiddenNotice = '', // the one that SILENT has replaced
   over = false,
-  shownRefusal = 0,
   chosenByPin;
 const spokenActs = new Set(), // operator, number, act and state of each that was spoken
-  failures = new Set(); // the numbers of this page's requests that were not sent, refused or have failed
+  shownRefusals = new Set(), // numbers
+  // By number, of which it is not known what became of them: {act, label, content, copies, timer, notice}. The
+  // next press repeats such a request under its number, so it is obeyed once.
+  unanswered = new Map();
 
 function takeToken() {
   const wishes = new URLSearchParams(location.hash.slice(1)),
@@ -75,9 +77,6 @@ function fitting(name) {
   return letters.join('');
 }
 
-// Whether a request of this page, by its number, has had no effect.
-export const hasFailed = number => failures.has(number);
-
 // Whether this page may give orders now, and whether it may take control.
 export const hasControl = () => me.mine;
 export const mayTakeControl = () => token !== null && !over && !$('control').hidden;
@@ -85,7 +84,7 @@ export const mayTakeControl = () => token !== null && !over && !$('control').hid
 const requestOf = (act, more = {}) => ({
   operator: me.id,
   name: fitting($('operatorName').value.trim()),
-  number: ++me.number,
+  number: act === 'here' ? Math.max(1, me.number) : ++me.number, // a sign overtakes no order
   tick: S.facts?.state?.world_tick ?? 0,
   act,
   ...more,
@@ -99,20 +98,79 @@ const post = request =>
     signal: AbortSignal.timeout(SEND_MS),
   });
 
-// Sends a request; `more` has what only this act needs.
-async function send(act, more = {}) {
-  const request = requestOf(act, more);
+// Sends a request; `more` has what only this act needs. Returns its number.
+function send(act, label, more = {}) {
+  const content = JSON.stringify([act, more]),
+    [before, { copies } = { copies: 0 }] = [...unanswered].find(([, one]) => one.content === content) ?? [],
+    request = requestOf(act, more),
+    number = (request.number = before ?? request.number);
+  forget(number);
   notice('');
-  try {
-    const answer = await post(request);
-    if (answer.status === 202) return;
-    failures.add(request.number);
-    complain(`${wordsOf(act)}: not sent: ${(await answer.text()).trim()}`);
-  } catch {
-    failures.add(request.number);
-    complain(
-      `${wordsOf(act)}: no answer from the page’s server: the order may not have been sent. Press again.`,
-    );
+  const timer = setTimeout(() => missAnswer(number), ANSWER_MS);
+  unanswered.set(number, { act, label, content, copies: copies + 1, timer });
+  post(request).then(
+    async answer => {
+      if (answer.status !== 202) fail(number, (await answer.text()).trim());
+    },
+    () => missAnswer(number),
+  );
+  return number;
+}
+
+function forget(number) {
+  clearTimeout(unanswered.get(number)?.timer);
+  unanswered.delete(number);
+}
+
+const isOrder = ({ act }) => act !== 'take' && act !== 'release';
+
+// The server has not accepted a copy of a request.
+function fail(number, why) {
+  const one = unanswered.get(number);
+  if (!one) return;
+  if (--one.copies > 0) return missAnswer(number);
+  forget(number);
+  if (isOrder(one)) say(`${one.label}: not sent`);
+  complain(`${one.label}: not sent: ${why}`);
+}
+
+// The request may have been lost, or may still arrive.
+function missAnswer(number) {
+  const one = unanswered.get(number);
+  if (!one) return;
+  clearTimeout(one.timer);
+  if (isOrder(one)) say(`${one.label}: not answered`);
+  one.notice = `${one.label}: not answered. Press again: it is obeyed once.`;
+  complain(one.notice);
+}
+
+// The server has answered: what the page has said meanwhile about the order goes.
+function settle(number) {
+  if ($('controlNotice').textContent === unanswered.get(number).notice) notice('');
+  forget(number);
+}
+
+// Notes which requests the server has answered. It obeys none after a later one.
+function noteAnswers({ operator, acts, refused }) {
+  const answered = acts
+    .filter(act => act.operator === me.id && act.what !== 'stop now')
+    .map(act => act.number);
+  const newest = Math.max(0, ...answered);
+  for (const [number, { act, label }] of unanswered) {
+    const isHolder = operator?.id === me.id;
+    if (answered.includes(number) || act === (isHolder ? 'take' : 'release')) settle(number);
+    else if (number < newest && !refused.some(one => one.operator === me.id && one.number === number)) {
+      settle(number);
+      complain(`${label}: not obeyed, because a later order came first. Press again.`);
+    }
+  }
+  for (const { operator: id, number, what, text } of refused) {
+    if (id !== me.id || shownRefusals.has(number)) continue;
+    shownRefusals.add(number);
+    const one = unanswered.get(number);
+    if (one) settle(number);
+    if (one && isOrder(one)) say(`${capital(what)}: refused`);
+    complain(`${capital(what)}: refused: ${text}`);
   }
 }
 
@@ -203,11 +261,15 @@ export function press(button, order, name = button.dataset.label) {
 // Sends an order, which is shown as sent until the server shows it. Returns its number.
 export function give(act, label, more = {}) {
   say(`${capital(label)}: sent`);
-  send(act, more);
-  pending = { number: me.number, until: performance.now() + SHOWN_MS };
-  setTimeout(() => !over && showActs(last), SHOWN_MS);
-  return me.number;
+  return send(act, capital(label), more);
 }
+
+// Whether an order of this page, by its number, is being obeyed.
+export const isObeyed = number =>
+  last.acts.some(
+    act =>
+      act.operator === me.id && act.number === number && ['answered', 'obeyed', 'done'].includes(act.state),
+  );
 
 function pressOrder(button) {
   const { act, label } = button.dataset,
@@ -219,8 +281,9 @@ function pressOrder(button) {
 
 // Another operator loses control by the press, so that needs a second one.
 function pressTake() {
-  if (last.operator) press($('take'), () => send('take'));
-  else send('take');
+  const take = () => send('take', wordsOf('take'));
+  if (last.operator) press($('take'), take);
+  else take();
 }
 
 // A first press ends with any other act, so the second one confirms only what is still in sight.
@@ -312,7 +375,6 @@ function showActs({ acts }) {
       i === acts.length - 1 ||
       ((act.state === 'failed' || !act.over) && !acts.slice(i + 1).some(({ what }) => what === act.what)),
   );
-  for (const act of acts) if (act.operator === me.id && act.state === 'failed') failures.add(act.number);
   const spoken = [];
   for (const act of shown) {
     const key = [act.operator, act.number, act.what, act.state].join();
@@ -320,10 +382,7 @@ function showActs({ acts }) {
     spokenActs.add(key);
   }
   if (spoken.length) speak(spoken.join('. '));
-  const waits =
-    pending?.until > performance.now() &&
-    !acts.some(act => act.operator === me.id && act.number >= pending.number) &&
-    shownRefusal < pending.number;
+  const waits = [...unanswered.values()].some(isOrder);
   const newest = shown.pop();
   if (newest && (waits || stopping)) {
     if (newest.state === 'failed' || !newest.over) shown.push(newest);
@@ -337,23 +396,23 @@ function showActs({ acts }) {
   $('controlActs').hidden = !shown.length;
 }
 
-function showRefusal(refused) {
-  if (refused?.operator !== me.id || refused.number <= shownRefusal) return;
-  shownRefusal = refused.number;
-  failures.add(refused.number);
-  complain(`${capital(refused.what)}: refused: ${refused.text}`);
-}
-
 const SILENT = 'The process that gives the orders does not answer: no order is carried out.';
 
 // Shows the state of control that the server sends: {over, operator, acts, refused}, or {silent}.
 export function showControl(state) {
-  if (state.silent) return complain(SILENT);
-  if ($('controlNotice').textContent === SILENT) notice('');
-  last = { ...state, acts: state.acts ?? last.acts };
-  const { operator, acts, refused } = last;
+  const shown = $('controlNotice').textContent;
+  if (state.silent) {
+    if (shown !== SILENT) hiddenNotice = shown;
+    return complain(SILENT);
+  }
+  if (shown === SILENT) notice(hiddenNotice);
+  last = { ...state, acts: state.acts ?? last.acts, refused: state.refused ?? [] };
+  const { operator, acts } = last;
   if (stopping && acts.some(answersStop)) endStopping();
-  if (state.over) return endControl();
+  if (state.over) {
+    noteAnswers(last);
+    return endControl();
+  }
   $('control').hidden = false;
   $('readOnly').hidden = token !== null;
   $('stopNow').hidden = $('take').parentElement.hidden = token === null;
@@ -365,19 +424,20 @@ export function showControl(state) {
     showHolder(operator);
     listAgents();
   }
-  showRefusal(refused);
+  noteAnswers(last);
   showActs(last);
 }
 
 // The mission has ended: what the last orders achieved stays.
 export function endControl() {
-  const unanswered = stopping !== null && !last.acts.some(answersStop);
+  const waited = [...unanswered.values()].filter(isOrder).map(({ label }) => label);
+  if (stopping !== null && !last.acts.some(answersStop)) waited.push('Stop now');
   disarm();
   endStopping();
   over = true;
   me.mine = false;
-  pending = null;
-  notice(unanswered ? 'Stop now: the mission ended before the team had answered.' : '');
+  for (const number of [...unanswered.keys()]) forget(number);
+  notice(waited.map(label => `${label}: the mission ended before the team had answered.`).join(' '));
   for (const node of [$('stopNow'), $('take').parentElement, $('orders'), $('readOnly')]) node.hidden = true;
   document.body.classList.remove('controlled');
   put($('holder'), 'The mission has ended');
@@ -385,13 +445,13 @@ export function endControl() {
   const newest = last.acts[last.acts.length - 1];
   if (newest) speak(textOf(newest));
   $('control').classList.add('ended');
-  $('control').hidden = !newest && !unanswered;
+  $('control').hidden = !newest && !waited.length;
 }
 
 export function connectControl() {
   $('stopNow').onclick = stopNow;
   $('take').onclick = pressTake;
-  $('release').onclick = () => send('release');
+  $('release').onclick = () => send('release', wordsOf('release'));
   for (const button of document.querySelectorAll('#orders [data-act]')) {
     button.dataset.label = button.textContent;
     button.onclick = () => pressOrder(button);

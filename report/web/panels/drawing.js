@@ -2,7 +2,7 @@
 // Opens the layer on which a new target or a new zone is drawn, and sends or copies what is drawn there.
 import { S, ask } from './state.js';
 import { layout } from './screen.js';
-import { complain, give, hasControl, hasFailed, mayTakeControl, press } from './control.js';
+import { complain, give, hasControl, isObeyed, mayTakeControl, press } from './control.js';
 import { connectDrawnPointer, removeChosen } from './drawn_pointer.js';
 import { showView } from './space_controls.js';
 import { connectTarget, targetDrawing } from './target_drawing.js';
@@ -140,8 +140,7 @@ export function followDrawing() {
     if ($(button).hidden === possible) $(button).hidden = !possible;
   if (!S.drawing) return;
   showLayer();
-  if (sent && hasFailed(sent.number)) sent = null;
-  if (!possible || (sent && kind().newest() > sent.newest)) close();
+  if (!possible || (sent && isObeyed(sent.number) && kind().newest() > sent.newest)) close();
   else if (performance.now() - describedAt > DESCRIBE_MS) describe();
 }
 

@@ -94,5 +94,14 @@ TEST_F(ExportedMap, TablesAndMcapHaveWhatHasChanged) {
   EXPECT_NE(mcap.find("amendment 1: law u_max_mps 3"), std::string::npos);
 }
 
+TEST_F(ExportedMap, TablesLeaveNoChangesOfAnEarlierRecord) {
+  map_of("quadrimodal_corners");
+  std::filesystem::create_directories(out() / "export");
+  std::ofstream(out() / "export/amendments.csv") << "of another record";
+  ASSERT_EQ(ergocast({"export", out(), "--to", "csv"}), 0) << output();
+  EXPECT_FALSE(std::filesystem::exists(out() / "export/amendments.csv"));
+  EXPECT_TRUE(std::filesystem::exists(out() / "export/metrics.csv"));
+}
+
 }  // namespace
 }  // namespace ergocast::test
