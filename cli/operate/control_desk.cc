@@ -65,7 +65,7 @@ bool needs_number(ControlAct act) {
 }
 
 bool are_one(const ControlRequest& one, const ControlRequest& other) {
-  return one.operator_id == other.operator_id && one.number == other.number;
+  return one.operator_id == other.operator_id && one.number == other.number && one.act == other.act;
 }
 
 }  // namespace
