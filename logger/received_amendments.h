@@ -31,7 +31,7 @@ struct ReceivedAmendment {
 
 /// From which tick on the zone of an amendment is cancelled; −1: it is not.
 /// @param listed  the zones of the newest list, which has only those that had not ended
-/// @param known   all amendments that are known; of a zone that has left the list they tell it
+/// @param known   all amendments that are known; they count for a zone that has left the list
 Tick cancelled_at(std::int32_t number, std::span<const Zone> listed,
                   std::span<const Amendment> known);
 

@@ -30,8 +30,8 @@ let armed = null, // {button, name, order, timer}: the button that waits for its
   chosenByPin;
 const spokenActs = new Set(), // operator, number, act and state of each that was spoken
   shownRefusals = new Set(), // numbers
-  // By number, of which it is not known what became of them: {act, label, content, copies, timer, notice}. The
-  // next press repeats such a request under its number, so it is obeyed once.
+  // {act, label, content, copies, timer, notice} of requests without an answer, by number. The next press
+  // repeats such a request under its number, so it is obeyed once.
   unanswered = new Map();
 
 function takeToken() {
