@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs every target over every input of its corpus, with the ordinary compiler. Inputs that once
-// caused a failure stay in the corpus.
+// Runs every target over every input of its corpus. Inputs that once caused a failure stay in the
+// corpus.
 #include <gtest/gtest.h>
 
 #include <filesystem>
