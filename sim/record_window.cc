@@ -17,7 +17,7 @@ void RecordWindow::acknowledge(const RecordAck& ack, Instant now) {
 
 bool RecordWindow::is_close(Tick tick, Instant now, PacingClock::duration patience) {
   if (lost_) return true;
-  if (recorded_ && tick - *recorded_ <= kRecordWindowTicks) return true;
+  if (recorded_ && (history_.empty() || tick - *recorded_ <= kRecordWindowTicks)) return true;
   lost_ = now - progress_ > patience;
   return lost_;
 }

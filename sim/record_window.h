@@ -24,7 +24,9 @@ class RecordWindow {
   void acknowledge(const RecordAck& ack, Instant now);
 
   /// Whether the world may publish `tick`: the record is close behind, or the logger is given up.
-  /// It is given up here if it has made no progress for longer than `patience`.
+  /// It is given up here if it has made no progress for longer than `patience`. A restarted world
+  /// may always publish its first state, and a logger whose files were damaged goes on from there:
+  /// nothing repeats the states before.
   bool is_close(Tick tick, Instant now, PacingClock::duration patience);
   /// Whether the logger has every row before `tick`.
   bool complete(Tick tick) const { return recorded_ && *recorded_ + 1 >= tick; }

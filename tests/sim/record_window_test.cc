@@ -16,6 +16,7 @@ constexpr auto kPatience = 3s;
 TEST(RecordWindow, AnAcknowledgementOfNothingNewIsNoProgress) {
   RecordWindow record;
   record.start(at(0s));
+  record.remember({WorldState{}});
   record.acknowledge(ack_of(5), at(1s));
   record.acknowledge(ack_of(5), at(2s));
   record.acknowledge(ack_of(3), at(3s));
@@ -29,6 +30,7 @@ TEST(RecordWindow, AnAcknowledgementOfNothingNewIsNoProgress) {
 TEST(RecordWindow, ARestartedLoggerMayHaveLessAndIsWaitedForAgain) {
   RecordWindow record;
   record.start(at(0s));
+  record.remember({WorldState{}});
   record.acknowledge(ack_of(500), at(1s));
   EXPECT_TRUE(record.is_close(500 + kRecordWindowTicks + 1, at(5s), kPatience));
   EXPECT_TRUE(record.lost());
@@ -38,6 +40,20 @@ TEST(RecordWindow, ARestartedLoggerMayHaveLessAndIsWaitedForAgain) {
   EXPECT_FALSE(record.lost());
   EXPECT_FALSE(record.complete(501));
   EXPECT_FALSE(record.is_close(100 + kRecordWindowTicks + 1, at(7s), kPatience));
+}
+
+TEST(RecordWindow, ARestartedWorldPublishesItsFirstStateForALoggerThatHasFarLess) {
+  RecordWindow record;
+  record.start(at(0s));
+  EXPECT_FALSE(record.is_close(469, at(0s), kPatience)) << "no logger has reported";
+  record.acknowledge(ack_of(94), at(0s));
+  EXPECT_TRUE(record.is_close(469, at(1s), kPatience));
+  WorldState first;
+  first.header.tick = 469;
+  record.remember({first});
+  EXPECT_FALSE(record.is_close(470, at(1s), kPatience));
+  record.acknowledge(ack_of(468), at(2s));
+  EXPECT_TRUE(record.is_close(470, at(2s), kPatience));
 }
 
 }  // namespace
