@@ -7,6 +7,7 @@
 
 #include "core/motion/filter_rules.h"
 #include "core/motion/starts.h"
+#include "core/motion/vehicle.h"
 #include "scenario/parse/convert.h"
 
 namespace ergocast {

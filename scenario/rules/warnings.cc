@@ -16,6 +16,7 @@
 #include "scenario/rules/checks.h"
 #include "scenario/rules/footprint_reach.h"
 #include "scenario/rules/hidden_mass.h"
+#include "scenario/rules/law_advice.h"
 #include "scenario/rules/validate_separation.h"
 
 namespace ergocast {
@@ -276,6 +277,28 @@ void warn_of_hidden_mass(const Mission& mission, const DensityGrid& density, Fin
                "write basis { free_domain: true }, open more passages, or accept it");
 }
 
+/// Lanes for even targets that a team hardly passes over, a search for those with peaks.
+void warn_of_law(const Mission& mission, const DensityGrid& density, Findings& findings) {
+  const LawKind advised = advised_law(mission, density);
+  if (advised == mission.law.kind) return;
+  const double spread = spread_share(density);
+  if (advised == LawKind::kMow) {
+    findings.add("law.kind",
+                 "SEARCH goes from peak to peak, and this target is nearly even: with time to pass "
+                 "over it " +
+                     shortest(rounded_down(passes(mission, spread))) +
+                     " times, agents in lanes find more",
+                 "write kind: MOW, or measure both: ergocast study with --vary "
+                 "law.kind=SEARCH,MOW --measure detection_probability");
+  } else {
+    findings.add("law.kind",
+                 "MOW gives all places equal time, and this target is spread over " +
+                     shortest(rounded_up(100 * spread)) + " % of the domain: a search finds more",
+                 "write kind: SEARCH, or measure both: ergocast study with --vary "
+                 "law.kind=SEARCH,MOW --measure detection_probability");
+  }
+}
+
 }  // namespace
 
 void warn(const Mission& mission, Findings& findings) {
@@ -293,6 +316,7 @@ void warn(const Mission& mission, Findings& findings) {
 void warn_of_target(const Mission& mission, const DensityGrid& density, Findings& findings) {
   warn_of_footprints(mission, findings);
   warn_of_hidden_mass(mission, density, findings);
+  warn_of_law(mission, density, findings);
 }
 
 }  // namespace ergocast

@@ -187,5 +187,27 @@ TEST(Warnings, OfVehiclesThatFollowLateAndBeginAtAnEdge) {
   EXPECT_TRUE(has(late("1.3", "x_m: 50 y_m: 25"), "keep 13 m from every edge"));
 }
 
+TEST(Warnings, SayWhichLawFindsMore) {
+  const auto searched = [](const std::string& law, const std::string& target, double duration_s) {
+    std::string text = small_with("u_max_mps: 5", "u_max_mps: 5 kind: " + law);
+    text.replace(text.find("uniform_weight: 1"), 17, target);
+    text.replace(text.find("duration_s: 60"), 14, "duration_s: " + std::to_string(duration_s));
+    return warnings_of(text);
+  };
+  // Lanes of 2 · 1.25 m at 5 m/s are 750 m² in 60 s: 0.15 of the 5000 m².
+  const std::string peak = "gaussians { mean_x_m: 50 mean_y_m: 25 sigma_m: 8 }";
+  EXPECT_EQ(searched("SEARCH", "uniform_weight: 1", 60),
+            "small.textproto:4:20: law.kind: SEARCH goes from peak to peak, and this target is "
+            "nearly even: with time to pass over it 0.15 times, agents in lanes find more (write "
+            "kind: MOW, or measure both: ergocast study with --vary law.kind=SEARCH,MOW --measure "
+            "detection_probability)\n");
+  EXPECT_EQ(searched("SEARCH", "uniform_weight: 1", 900), "");
+  EXPECT_EQ(searched("SEARCH", peak, 60), "");
+  // 2 π e · 8² of 5000 m², but for what the edges cut off.
+  EXPECT_TRUE(has(searched("MOW", peak, 60), "spread over 21."));
+  EXPECT_EQ(searched("MOW", "uniform_weight: 1", 60), "");
+  EXPECT_EQ(searched("COVER", peak, 60) + searched("COVER", "uniform_weight: 1", 60), "");
+}
+
 }  // namespace
 }  // namespace ergocast

@@ -61,6 +61,13 @@ Browser::Browser(const std::filesystem::path& folder, bool webgl) {
                      "--no-sandbox",
                      "--disable-dev-shm-usage",
                      "--hide-scrollbars",
+                     "--disable-extensions",
+                     "--disable-background-networking",
+                     "--disable-component-update",
+                     "--disable-sync",
+                     "--no-first-run",
+                     "--mute-audio",
+                     "--disable-features=PreloadTopChromeWebUI,InitialWebUI,WebUIReloadButton",
                      "--ignore-certificate-errors",
                      "--host-resolver-rules=MAP evil.example 127.0.0.1",
                      "--user-data-dir=" + (folder / "profile").string()};
