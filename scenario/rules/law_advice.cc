@@ -11,8 +11,9 @@ namespace {
 
 /// A target that is spread over more than this share has no peaks that are worth the way.
 constexpr double kEven = 0.8;
-/// From this many passes on, lanes find no more than a search does, also in an even target.
-constexpr double kPassesForSearch = 2;
+/// From this many passes on, lanes find no more than a search does, also in an even target: with
+/// 1.8, 2.4 and 3.3 passes lanes found 0.930, 0.974 and 0.991, a search 0.917, 0.969 and 0.994.
+constexpr double kPassesForSearch = 2.5;
 /// Lanes lose to a search where the target is spread over less than this share.
 constexpr double kPeaked = 0.5;
 
