@@ -67,7 +67,6 @@ Browser::Browser(const std::filesystem::path& folder, bool webgl) {
                      "--disable-sync",
                      "--no-first-run",
                      "--mute-audio",
-                     "--disable-features=PreloadTopChromeWebUI,InitialWebUI,WebUIReloadButton",
                      "--ignore-certificate-errors",
                      "--host-resolver-rules=MAP evil.example 127.0.0.1",
                      "--user-data-dir=" + (folder / "profile").string()};
