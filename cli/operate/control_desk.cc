@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cli/operate/amend_order.h"
 #include "cli/operate/pause_order.h"
 #include "cli/operate/recall_order.h"
 #include "cli/operate/stop_order.h"
@@ -38,6 +39,8 @@ std::string what(const ControlRequest& request) {
       return "new target";
     case ControlAct::kZone:
       return "new zone";
+    case ControlAct::kReopen:
+      return "cancel zone " + std::to_string(request.amendment);
     case ControlAct::kTake:
       return "take control";
     case ControlAct::kRelease:
@@ -56,12 +59,24 @@ bool pauses_or_resumes(ControlAct act) {
   return act == ControlAct::kPause || act == ControlAct::kResume;
 }
 
-bool amends(ControlAct act) { return act == ControlAct::kTarget || act == ControlAct::kZone; }
+bool is_drawn(ControlAct act) { return act == ControlAct::kTarget || act == ControlAct::kZone; }
+
+bool amends(ControlAct act) { return is_drawn(act) || act == ControlAct::kReopen; }
 
 bool recalls(ControlAct act) { return act == ControlAct::kHome || act == ControlAct::kOut; }
 
 bool needs_number(ControlAct act) {
   return act != ControlAct::kStopNow && act != ControlAct::kHere;
+}
+
+/// Why `ergocast amend --cancel` would not end this zone; nothing if it would.
+std::optional<std::string> why_not_cancelled(const MonitoredRun& team, std::int32_t zone) {
+  if (!team.knows_mission()) return "the mission is not known yet: give the order again";
+  const auto wish = wish_to_cancel(team, zone);
+  if (!wish) return wish.error();
+  if (wish->kind != AmendmentKind::kReopen)
+    return "amendment " + std::to_string(zone) + " is no zone: use ergocast amend --cancel";
+  return std::nullopt;
 }
 
 bool are_one(const ControlRequest& one, const ControlRequest& other) {
@@ -144,7 +159,7 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
     return "the page names a tick that the team has not reached: reload it";
   if (request.act == ControlAct::kTake) return std::nullopt;
   if (team.unheard()) return "no message of the team arrives";
-  if (amends(request.act)) return why_not_amended(request.act);
+  if (amends(request.act)) return why_not_amended(request, team);
   const auto unanswered = std::ranges::count_if(
       acts_, [](const Act& act) { return !act.over() && act.report.state < State::kObeyed; });
   if (recalls(request.act) && unanswered >= static_cast<std::ptrdiff_t>(kMostActs))
@@ -153,20 +168,33 @@ std::optional<std::string> ControlDesk::why_refused(const ControlRequest& reques
 }
 
 /// Two amendments at the same time would take the same number, and one of them would fail.
-std::optional<std::string> ControlDesk::why_not_amended(ControlAct wanted) const {
+std::optional<std::string> ControlDesk::why_not_amended(const ControlRequest& request,
+                                                        const MonitoredRun& team) const {
+  const ControlAct wanted = request.act;
+  if (is_replaced_in_vain(request))
+    return "an earlier drawing has arrived: see what becomes of it, then send this "
+           "one if it is still wanted";
   std::size_t zones = 0;
   for (const Act& act : acts_) {
     if (act.over() || !amends(act.request.act)) continue;
-    const bool is_zone = act.request.act == ControlAct::kZone;
-    if (!is_zone && wanted == ControlAct::kTarget)
+    if (act.request.act == ControlAct::kTarget && wanted == ControlAct::kTarget)
       return "the last new target does not hold yet: send this one then";
     if (act.report.state < State::kAnswered)
-      return "the last " + what(act.request) + " has no answer yet: send this one then";
-    zones += is_zone ? 1 : 0;
+      return "the last amendment has no answer yet: send this one then";
+    zones += act.request.act == ControlAct::kZone ? 1 : 0;
   }
   if (wanted == ControlAct::kZone && zones >= kMaxZones)
     return "agents still leave " + std::to_string(zones) + " zones: send this one then";
-  return std::nullopt;
+  return wanted == ControlAct::kReopen ? why_not_cancelled(team, request.amendment) : std::nullopt;
+}
+
+/// Whether an earlier state of the same drawing has become an order that may still be obeyed.
+bool ControlDesk::is_replaced_in_vain(const ControlRequest& request) const {
+  return request.instead_of > 0 && std::ranges::any_of(acts_, [&request](const Act& act) {
+           return act.request.operator_id == request.operator_id &&
+                  act.request.act == request.act && act.request.number >= request.instead_of &&
+                  act.report.state != State::kFailed;
+         });
 }
 
 bool ControlDesk::within_rate(Instant now) {
@@ -297,6 +325,8 @@ std::unique_ptr<Order> ControlDesk::order_for(const ControlRequest& request,
     case ControlAct::kTarget:
     case ControlAct::kZone:
       return amend_with_(request, by);
+    case ControlAct::kReopen:
+      return std::make_unique<AmendOrder>(wish_of_reopening(request.amendment), 0, now, by);
     default:
       return nullptr;
   }

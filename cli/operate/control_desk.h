@@ -112,7 +112,9 @@ class ControlDesk {
 
   std::optional<std::string> why_refused(const ControlRequest& request, const MonitoredRun& team,
                                          Instant now);
-  std::optional<std::string> why_not_amended(ControlAct act) const;
+  std::optional<std::string> why_not_amended(const ControlRequest& request,
+                                             const MonitoredRun& team) const;
+  bool is_replaced_in_vain(const ControlRequest& request) const;
   bool is_answered(const ControlRequest& request) const;
   void refuse(const ControlRequest& request, std::string why);
   bool within_rate(Instant now);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
 #include "text/printable.h"
 
@@ -17,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kNames[] = {"take",     "release", "here", "pause",  "resume", "stop",
-                                  "stop-now", "home",    "out",  "target", "zone"};
+                                  "stop-now", "home",    "out",  "target", "zone",   "reopen"};
 
 std::optional<std::int64_t> whole_number(const json& object, const char* key, std::int64_t least,
                                          std::int64_t most) {
@@ -83,8 +84,17 @@ std::optional<ControlRequest> ControlRequest::parse(std::string_view text) {
   if (has_zone != object.contains("zone")) return std::nullopt;
   if (has_zone) request.zone = DrawnZone::parse(object["zone"]);
   if (has_zone != request.zone.has_value()) return std::nullopt;
-  if (object.size() != (names_agent || has_target || has_zone ? 6U : 5U)) return std::nullopt;
+  const bool cancels = request.act == ControlAct::kReopen;
+  const auto amendment = whole_number(object, "amendment", 0, kMaxAmendments - 1);
+  if (cancels != amendment.has_value()) return std::nullopt;
+  const bool replaces = (has_target || has_zone) && object.contains("instead_of");
+  const auto instead_of = whole_number(object, "instead_of", 1, *number - 1);
+  if (replaces && !instead_of) return std::nullopt;
+  const std::size_t of_the_act = names_agent || has_target || has_zone || cancels ? 1 : 0;
+  if (object.size() != 5 + of_the_act + (replaces ? 1 : 0)) return std::nullopt;
   if (agent) request.agent = static_cast<AgentId>(*agent);
+  if (amendment) request.amendment = static_cast<std::int32_t>(*amendment);
+  request.instead_of = instead_of.value_or(0);
   return request;
 }
 

@@ -30,9 +30,10 @@ enum class ControlAct {
   kOut,      ///< one agent leaves the mission
   kTarget,   ///< the team covers a drawn target
   kZone,     ///< the team leaves a drawn zone
+  kReopen,   ///< a zone is cancelled: it ends
 };
-/// "take", "release", "here", "pause", "resume", "stop", "stop-now", "home", "out", "target" or
-/// "zone".
+/// "take", "release", "here", "pause", "resume", "stop", "stop-now", "home", "out", "target",
+/// "zone" or "reopen".
 const char* to_string(ControlAct act);
 
 struct ControlRequest {
@@ -52,6 +53,10 @@ struct ControlRequest {
   AgentId agent = kUnassigned;          ///< for kHome and kOut only
   std::optional<DrawnTarget> target{};  ///< for kTarget only
   std::optional<DrawnZone> zone{};      ///< for kZone only
+  std::int32_t amendment = -1;          ///< for kReopen only: that of the zone
+  /// For kTarget and kZone: the first number under which this page has sent an earlier state of the
+  /// drawing without an answer; 0: none. At most one of them becomes an order.
+  std::int64_t instead_of = 0;
 
   /// Nothing if a field is unknown, missing, of a wrong type or out of range.
   static std::optional<ControlRequest> parse(std::string_view text);

@@ -17,7 +17,9 @@ using nlohmann::json;
 class Desk : public ::testing::Test {
  protected:
   Desk() {
-    announce(small_mission(2));
+    Mission mission = small_mission(2);
+    mission.timing.tick_count = 10'000;
+    announce(mission);
     give(team_, mission_part(0, MissionState::kRunning, roster_of(2)), now_);
     move(100, 1);
   }
@@ -29,9 +31,13 @@ class Desk : public ::testing::Test {
     advance();
   }
   void pause_from(Tick tick, const std::string& by = {}) {
-    MissionPart part = mission_part(1, MissionState::kRunning, roster_of(2));
     Amendments list = only_pauses({{tick, -1}});
     list.recent.back().by = by;
+    name(list);
+  }
+  /// MISSION with this list.
+  void name(const Amendments& list) {
+    MissionPart part = mission_part(++revision_, MissionState::kRunning, roster_of(2));
     part.amendments = encode_amendments(list);
     part.content_hash = hash_of(part);
     give(team_, part, now_);
@@ -49,9 +55,28 @@ class Desk : public ::testing::Test {
       request.target->uniform = 0.5;
     }
     if (act == ControlAct::kZone) request.zone = {{{0, 0}, {4, 0}, {4, 4}}, 600, {}};
+    ask(request);
+  }
+  void ask(const ControlRequest& request) {
     last_ = request;
     desk_.receive(request, team_, now_);
     advance();
+  }
+  /// Anna cancels a zone.
+  void cancel(std::int32_t amendment) {
+    ask({.operator_id = 1,
+         .name = "anna",
+         .number = ++numbers_,
+         .tick = team_.tick(),
+         .act = ControlAct::kReopen,
+         .amendment = amendment});
+  }
+  /// Anna sends another state of a drawn zone.
+  void send_instead_of(std::int64_t number) {
+    ControlRequest changed = last_;
+    changed.number = ++numbers_;
+    changed.instead_of = number;
+    ask(changed);
   }
   void advance() {
     sent_.clear();
@@ -93,7 +118,7 @@ class Desk : public ::testing::Test {
   Outbox sent_;
   std::vector<std::string> lines_;
   ControlRequest last_;
-  std::int64_t numbers_ = 0;
+  std::int64_t numbers_ = 0, revision_ = 0;
 };
 
 TEST_F(Desk, OnlyTheOperatorsRequestsBecomeOrders) {
@@ -171,9 +196,9 @@ TEST_F(Desk, ADrawnZoneWaitsUntilTheLastOneHasANumber) {
             "vertices { x_m: 0 y_m: 0 }\nvertices { x_m: 4 y_m: 0 }\nvertices { x_m: 4 y_m: 4 }\n");
   EXPECT_EQ(lines_.back(), "control: anna asks for: new zone, at tick 100, t = 10.0 s");
   ask(ControlAct::kZone);
-  EXPECT_EQ(refusal(), "the last new zone has no answer yet: send this one then");
+  EXPECT_EQ(refusal(), "the last amendment has no answer yet: send this one then");
   ask(ControlAct::kTarget);
-  EXPECT_EQ(refusal(), "the last new zone has no answer yet: send this one then");
+  EXPECT_EQ(refusal(), "the last amendment has no answer yet: send this one then");
   EXPECT_EQ(drawn_.size(), 1U);
   drawn_report_ = {OrderReport::State::kAnswered, "amendment 0, zone 5f, holds from tick 120"};
   advance();
@@ -184,6 +209,87 @@ TEST_F(Desk, ADrawnZoneWaitsUntilTheLastOneHasANumber) {
   EXPECT_EQ(refusal(), "agents still leave 8 zones: send this one then");
   ask(ControlAct::kTarget);
   EXPECT_EQ(drawn_.size(), kMaxZones + 1);
+}
+
+TEST_F(Desk, AZoneIsCancelledOnce) {
+  Amendments list;
+  name_zone(list, 90, 90, 5, {.until = 600, .corners_m = {{0, 0}, {4, 0}, {4, 4}}});
+  name(list);
+  ask(ControlAct::kTake);
+  cancel(0);
+  EXPECT_EQ(lines_.back(), "control: anna asks for: cancel zone 0, at tick 100, t = 10.0 s");
+  const std::vector<Amend> orders = only<Amend>(sent_);
+  ASSERT_EQ(orders.size(), 1U);
+  EXPECT_EQ(orders[0].number, 1);
+  EXPECT_EQ(orders[0].kind, AmendmentKind::kReopen);
+  EXPECT_EQ(orders[0].by, "anna");
+  EXPECT_EQ(decode_reopening(orders[0].content), 0);
+  desk_.receive(last_, team_, now_);      // a second copy
+  EXPECT_EQ(state()["acts"].size(), 2U);  // the zone is from elsewhere
+  ask(ControlAct::kZone);
+  EXPECT_EQ(refusal(), "the last amendment has no answer yet: send this one then");
+
+  name_reopening(list, 110, 0);
+  list.recent.back().by = "anna";
+  list.recent.back().ordered_by = orders[0].header.incarnation;
+  name(list);
+  advance();
+  ASSERT_EQ(state()["acts"].size(), 2U) << state();
+  EXPECT_EQ(state()["acts"][1]["state"], "answered");
+  move(110, 1);
+  EXPECT_EQ(state()["acts"][1]["state"], "done");
+  EXPECT_EQ(state()["acts"][1]["text"],
+            "amendment 1, the end of the zone of amendment 0, holds since tick 110, t = 11.0 s, by "
+            "anna");
+}
+
+TEST_F(Desk, ACancellationIsRefusedWithTheWordsOfTheCommand) {
+  Amendments list;
+  name_zone(list, 90, 90, 5, {.until = 20, .corners_m = {{0, 0}, {4, 0}, {4, 4}}});
+  name_zone(list, 90, 90, 5, {.until = 600, .corners_m = {{0, 0}, {4, 0}, {4, 4}}});
+  name_reopening(list, 105, 1);
+  name_end(list, 95, 5000);
+  name(list);
+  move(115, 1);
+  ask(ControlAct::kTake);
+  for (const std::int32_t zone : {0, 1}) {
+    cancel(zone);
+    EXPECT_EQ(refusal(), "amendment " + std::to_string(zone) +
+                             " is a zone that has ended, or is cancelled already: ergocast amend "
+                             "--list shows when");
+  }
+  cancel(3);
+  EXPECT_EQ(refusal(), "amendment 3 is no zone: use ergocast amend --cancel");
+  cancel(4);
+  EXPECT_EQ(refusal(), "there is no amendment 4: ergocast amend --list shows them");
+  EXPECT_EQ(lines_.back(),
+            "control: anna asks for: cancel zone 4: refused: there is no amendment 4: ergocast "
+            "amend --list shows them");
+  EXPECT_EQ(sent<Amend>(), 0);
+}
+
+// The page does not know whether the first one has arrived.
+TEST_F(Desk, OneStateOfADrawingIsObeyed) {
+  ask(ControlAct::kTake);
+  ask(ControlAct::kZone);
+  const std::int64_t first = last_.number;
+  drawn_report_ = {OrderReport::State::kDone, "amendment 0, zone 5f, holds since tick 120"};
+  advance();
+  send_instead_of(first);
+  EXPECT_EQ(refusal(),
+            "an earlier drawing has arrived: see what becomes of it, then send this "
+            "one if it is still wanted");
+  EXPECT_EQ(drawn_.size(), 1U);
+  send_instead_of(0);
+  EXPECT_EQ(drawn_.size(), 2U);
+  // One that was lost, or has failed, does not count.
+  send_instead_of(numbers_ + 1);
+  EXPECT_EQ(drawn_.size(), 3U);
+  drawn_report_ = {OrderReport::State::kFailed, "it covers a station"};
+  const std::int64_t failed = numbers_ + 1;
+  send_instead_of(0);
+  send_instead_of(failed);
+  EXPECT_EQ(drawn_.size(), 5U) << refusal();
 }
 
 TEST_F(Desk, ANumberCountsOnce) {

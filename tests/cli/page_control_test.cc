@@ -152,5 +152,31 @@ TEST(DrawnZoneRequest, IsRefusedIfItHasAnythingElse) {
       R"({"operator":1,"name":"","number":1,"tick":0,"act":"pause","zone":{}})"));
 }
 
+/// A request with that act, and more keys.
+std::optional<ControlRequest> request_to(const std::string& act, const std::string& more) {
+  return ControlRequest::parse(R"({"operator":1,"name":"","number":5,"tick":0,"act":")" + act +
+                               '"' + more + "}");
+}
+
+TEST(CancellationRequest, NamesTheZonesAmendment) {
+  const auto request = request_to("reopen", R"(,"amendment":3)");
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->act, ControlAct::kReopen);
+  EXPECT_EQ(request->amendment, 3);
+  for (const char* wrong : {"", R"(,"amendment":-1)", R"(,"amendment":"3")", R"(,"amendment":3.5)",
+                            R"(,"amendment":1000000)", R"(,"amendment":3,"zone":{})",
+                            R"(,"amendment":3,"agent":1)", R"(,"amendment":3,"instead_of":4)"})
+    EXPECT_FALSE(request_to("reopen", wrong)) << wrong;
+  EXPECT_FALSE(request_to("pause", R"(,"amendment":3)"));
+}
+
+TEST(DrawnZoneRequest, MayReplaceAnEarlierRequest) {
+  const std::string drawn = R"(,"zone":{"corners_m":[[0,0],[4,0],[4,4]],"lasts_s":600})";
+  EXPECT_EQ(request_to("zone", drawn).value().instead_of, 0);
+  EXPECT_EQ(request_to("zone", drawn + R"(,"instead_of":4)").value().instead_of, 4);
+  for (const char* wrong : {"0", "5", "\"4\"", "null"})
+    EXPECT_FALSE(request_to("zone", drawn + R"(,"instead_of":)" + wrong)) << wrong;
+}
+
 }  // namespace
 }  // namespace ergocast::cli

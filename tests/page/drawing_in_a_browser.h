@@ -64,37 +64,41 @@ class DrawingInABrowser : public PageInABrowser {
     })) << text("controlNotice");
   }
   /// Both presses in one script, so that no machine is too slow for the second one.
-  void press_send() {
-    js("const button = document.getElementById('sendDrawn'); button.click(); button.click()");
+  void press_send(const std::string& selector = kSend) {
+    js("const button = document.querySelector('" + selector + "'); button.click(); button.click()");
   }
-  /// Sends what is drawn, until the team's process has received it.
-  void send() {
+  /// Sends what is drawn, or gives the order of another button, until the team's process has
+  /// received it.
+  void send(const std::string& selector = kSend) {
     const int before = received();
-    press_send();
-    expect_received(before + 1);
+    press_send(selector);
+    expect_received(before + 1, selector);
   }
-  /// How many targets and zones of this page have become orders.
+  /// How many targets, zones and cancellations of this page have become orders.
   int received() const {
-    static const std::regex order("control: .* asks for: new (target|zone), at ");
+    static const std::regex order(
+        "control: .* asks for: (new target|new zone|cancel zone \\d+), at ");
     const std::string text = printed();
     return static_cast<int>(
         std::distance(std::sregex_iterator(text.begin(), text.end(), order), {}));
   }
   /// On a slow machine an order may be refused, or not be sent, and the page says so: it is then
   /// sent again.
-  void expect_received(int count) {
+  void expect_received(int count, const std::string& selector = kSend) {
     EXPECT_TRUE(eventually([&] {
       if (received() >= count) return true;
       if (text("holder") != "You have control") {
         take_control();
         if (received() >= count) return true;
-        press_send();
+        press_send(selector);
         return false;
       }
       // Seen and pressed in one script: the answer may come at any time.
       js("const { textContent: notice } = document.getElementById('controlNotice');"
-         "const button = document.getElementById('sendDrawn');"
-         "if (/refused: |not sent|not answered/.test(notice) && button.checkVisibility()) {"
+         "const button = document.querySelector('" +
+         selector +
+         "');"
+         "if (/refused: |not sent|not answered/.test(notice) && button?.checkVisibility()) {"
          " button.click(); button.click(); }");
       return false;
     })) << text("controlNotice")
@@ -108,10 +112,11 @@ class DrawingInABrowser : public PageInABrowser {
   }
   nlohmann::json drawn(const std::string& what) { return js("return ergocast.S.drawing" + what); }
   /// Runs the command that the page shows, without sending anything.
-  int try_command() {
-    Child command = begin({"/bin/sh", "-c",
-                           "cd " + folder_.string() + " && PATH=" + program_folder().string() +
-                               ":$PATH && " + text("drawnCommand") + " --dry-run"});
+  int try_command() { return run_command(text("drawnCommand") + " --dry-run"); }
+  int run_command(const std::string& text) {
+    Child command = begin(
+        {"/bin/sh", "-c",
+         "cd " + folder_.string() + " && PATH=" + program_folder().string() + ":$PATH && " + text});
     return wait_for(command);
   }
   void end_mission() {
@@ -121,6 +126,7 @@ class DrawingInABrowser : public PageInABrowser {
     EXPECT_EQ(wait_for(*mission_), 0) << printed();
   }
 
+  static constexpr const char* kSend = "#sendDrawn";
   static constexpr const char* kAddress = "http://127.0.0.1:8821/";
   std::optional<Child> mission_;
 };

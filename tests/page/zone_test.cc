@@ -27,11 +27,45 @@ class DrawnZoneInABrowser : public DrawingInABrowser {
     type("zoneFor", "1000000");  // on a slow machine, too, it lasts longer than the test
     send();
   }
+  /// Whether an agent is well inside the large square.
+  static constexpr const char* kOneInside =
+      "return ergocast.S.facts.state.agents.some(({ position_m: [x, y] }) =>"
+      " x > 300 && x < 1700 && y > 300 && y < 1700)";
+  /// Loses the next request for a zone. For the one that follows it the page runs `then`, in which
+  /// first() sends the lost one and second() this one.
+  void lose_next_zone(const std::string& then) {
+    js("const real = window.fetch, key = 'X-Ergocast-Request'; let lost = null, late = false;"
+       // On a slow machine the tick would be too old by then.
+       "const sending = options => () => { const { tick, ...more } ="
+       "  JSON.parse(options.headers[key]), { world_tick } = ergocast.S.facts.state;"
+       " return real('control', { ...options, signal: null, headers: { ...options.headers,"
+       "  [key]: JSON.stringify({ ...more, tick: world_tick }) } }); };"
+       "window.fetch = async (url, options) => {"
+       " if (url !== 'control' || late || JSON.parse(options.headers[key]).act !== 'zone')"
+       "  return real(url, options);"
+       " if (!lost) { lost = options; throw new TypeError('lost'); }"
+       " late = true; const first = sending(lost), second = sending(options); " +
+       then + " }");
+  }
   /// The record's newest amendment.
   nlohmann::json recorded_zone() const {
     return nlohmann::json::parse(text_of(out() / "amendments.json"))["amendments"].back();
   }
   std::string spoken() { return text("spoken"); }
+  /// Sends a zone whose request is lost, changes it and sends it again.
+  void send_changed() {
+    browser_->click("#drawZone");
+    browser_->press("\uE007");  // Enter
+    type("zoneFor", "1000000");
+    press_send();
+    EXPECT_TRUE(becomes("controlNotice", "^New zone: not answered. Press again"));
+    browser_->press("c");       // the first corner
+    browser_->press("\uE012");  // left
+    EXPECT_EQ(drawn(".parts[0].corners[0]"), nlohmann::json({780, 800}));
+    press_send();
+  }
+
+  static constexpr const char* kCancel = "#zoneList button";
 };
 
 TEST_F(DrawnZoneInABrowser, IsChangedSentAndLeft) {
@@ -80,7 +114,8 @@ TEST_F(DrawnZoneInABrowser, IsChangedSentAndLeft) {
   screenshot("zone_leaving");
   // On a slow machine commands come late, and agents leave later.
   EXPECT_TRUE(becomes("controlText", "holds since tick .* in it$")) << text("controlText");
-  EXPECT_TRUE(becomes("zoneList", "^Zone 0: closed, \\d+ h \\d+ min left$")) << text("zoneList");
+  EXPECT_TRUE(becomes("zoneList", "^Zone 0: closed, \\d+ h \\d+ min left Cancel"))
+      << text("zoneList");
   EXPECT_TRUE(becomes("spoken", "^Zone 0 stays closed for .*(No agent is inside|Agents inside: )"))
       << spoken();
   screenshot("zone_closed");
@@ -271,6 +306,139 @@ TEST_F(DrawnZoneInABrowser, IsNotDoubledByAPressAfterAnOrderWithoutAnAnswer) {
   browser_->click("#release");
   EXPECT_TRUE(becomes("holder", "No operator has control"));
   EXPECT_EQ(received(), 1) << printed();
+  expect_no_errors();
+  end_mission();
+}
+
+// The first request arrives after all, before the changed one: it alone is obeyed.
+TEST_F(DrawnZoneInABrowser, IsNotDoubledByAChangeAfterAnOrderWithoutAnAnswer) {
+  open_page(Control::kTaken);
+  lose_next_zone(
+      "await first(); await new Promise(done => { window.go = done; });"
+      "return second();");
+  send_changed();
+  ASSERT_TRUE(browser_->becomes("return ergocast.S.run.zones.length === 1")) << printed();
+  ASSERT_TRUE(eventually([&] { return printed("control: new zone of"); })) << printed();
+  js("go()");
+  EXPECT_TRUE(becomes("controlNotice", "^New zone: refused: an earlier drawing has arrived"))
+      << text("controlNotice") << printed();
+  EXPECT_EQ(received(), 1) << printed();
+  EXPECT_EQ(js("return ergocast.S.run.zones[0].corners_m[0]"), nlohmann::json({800, 800}));
+  // The person has seen it, and wants the other one, too.
+  send();
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.zones.length === 2")) << printed();
+  expect_no_errors();
+  end_mission();
+}
+
+// The changed one comes first, so the first one is too late.
+TEST_F(DrawnZoneInABrowser, AChangedOneReplacesAnOrderThatWasLost) {
+  open_page(Control::kTaken);
+  lose_next_zone(
+      "const answer = await second(); await first(); window.both = true; return answer;");
+  js("window.notices = []; const node = document.getElementById('controlNotice');"
+     "new MutationObserver(() => notices.push(node.textContent))"
+     ".observe(node, { childList: true, characterData: true, subtree: true })");
+  send_changed();
+  ASSERT_TRUE(browser_->becomes("return window.both && ergocast.S.run.zones.length === 1"))
+      << printed();
+  EXPECT_EQ(js("return ergocast.S.run.zones[0].corners_m[0]"), nlohmann::json({780, 800}));
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.drawing === null"));
+  // An order that comes later is answered.
+  browser_->click("#release");
+  EXPECT_TRUE(becomes("holder", "No operator has control"));
+  EXPECT_EQ(received(), 1) << printed();
+  EXPECT_EQ(js("return notices.filter(text => /refused|not obeyed/.test(text))"),
+            nlohmann::json::array());
+  expect_no_errors();
+  end_mission();
+}
+
+TEST_F(DrawnZoneInABrowser, IsCancelledAndAgentsEnterAgain) {
+  open_page(Control::kTaken);
+  browser_->click("#drawZone");
+  draw_large_square();
+  type("zoneFor", "1000000");
+  send();
+  ASSERT_TRUE(becomes("zoneList", "^Zone 0: closed, \\d+ h \\d+ min left Cancel zone 0$"))
+      << text("zoneList");
+  ASSERT_TRUE(visible(kCancel));
+  EXPECT_EQ(js(kOneInside), false);
+  // One press alone cancels nothing.
+  js(std::string("document.querySelector('") + kCancel + "').focus()");
+  browser_->press("\uE007");  // Enter
+  EXPECT_TRUE(becomes("controlSpoken", "Press again within 3 seconds: Cancel zone 0"));
+  screenshot("zone_cancel");
+  EXPECT_TRUE(becomes("zoneList", "Cancel zone 0$"));
+  EXPECT_TRUE(browser_->becomes("return !document.querySelector('.armed')"));
+  EXPECT_FALSE(printed("asks for: cancel")) << printed();
+
+  send(kCancel);
+  EXPECT_TRUE(becomes("controlText",
+                      "^cancel zone 0: amendment 1, the end of the zone of amendment 0, holds"))
+      << text("controlText");
+  EXPECT_TRUE(becomes("spoken", "^(Zone 0 has ended|zone cancelled at )")) << spoken();
+  EXPECT_TRUE(becomes("zoneList", "^$")) << text("zoneList");
+  EXPECT_FALSE(visible("#cancelBox"));
+  EXPECT_EQ(js("return document.activeElement.id"), "drawZone");
+  EXPECT_TRUE(browser_->becomes(kOneInside));
+  screenshot("zone_cancelled");
+  EXPECT_EQ(received(), 2) << printed();
+  expect_no_errors();
+  end_mission();
+  EXPECT_EQ(recorded_zone()["kind"], "reopen") << recorded_zone();
+  EXPECT_EQ(recorded_zone()["zone"], 0) << recorded_zone();
+}
+
+TEST_F(DrawnZoneInABrowser, ACancellationIsRefusedWithTheWordsOfTheCommand) {
+  open_page(Control::kTaken);
+  send_small_square();
+  ASSERT_TRUE(becomes("zoneList", "Cancel zone 0$")) << text("zoneList");
+  ASSERT_TRUE(becomes("controlText", "^new zone: amendment 0, .* in it$")) << text("controlText");
+  // The page never offers this.
+  js("const real = window.fetch; window.fetch = (url, options) => {"
+     " const headers = { ...options?.headers }, request = headers['X-Ergocast-Request'];"
+     " if (request) headers['X-Ergocast-Request'] ="
+     "   request.replace('\"amendment\":0', '\"amendment\":7');"
+     " return real(url, { ...options, headers }); }");
+  const std::string refused = "Cancel zone 7: refused: there is no amendment 7: ";
+  EXPECT_TRUE(eventually([&] {
+    press_send(kCancel);
+    EXPECT_TRUE(
+        browser_->becomes("return /refused|not sent|not answered|control/.test("
+                          "document.getElementById('controlNotice').textContent)"));
+    if (text("holder") != "You have control") take_control();
+    return text("controlNotice").starts_with(refused);
+  })) << text("controlNotice");
+  EXPECT_EQ(text("controlNotice"), refused + "ergocast amend --list shows them");
+  EXPECT_EQ(js("return ergocast.S.run.amendments.length"), 1);
+  end_mission();
+}
+
+TEST_F(DrawnZoneInABrowser, WithoutControlThePageShowsTheCommandThatCancels) {
+  open_page(Control::kNone);
+  EXPECT_FALSE(visible("#cancelBox"));
+  std::ofstream(folder_ / "zone.textproto")
+      << "vertices { x_m: 800 y_m: 800 } vertices { x_m: 1200 y_m: 800 } vertices { x_m: 1200 "
+         "y_m: 1200 }";
+  for (int i = 0; i < 2; ++i) run_command("ergocast amend --zone zone.textproto --for 1000000s");
+  ASSERT_TRUE(
+      browser_->becomes("return document.querySelectorAll('#zoneList button').length === 2"))
+      << output();
+  js(std::string("document.querySelector('") + kCancel + "').click()");
+  EXPECT_TRUE(visible("#cancelBox"));
+  EXPECT_EQ(js("return document.activeElement.id"), "cancelCommand");
+  const std::string command = text("cancelCommand");
+  EXPECT_EQ(command, "ergocast amend --run-id " +
+                         js("return ergocast.S.facts.run").get<std::string>() + " --cancel 0");
+  screenshot("zone_cancel_command");
+  browser_->resize(400, 800);
+  wait_for_frame();
+  EXPECT_EQ(js("return document.documentElement.scrollWidth <= innerWidth"), true);
+  screenshot("zone_cancel_command_phone");
+  EXPECT_EQ(run_command(command), 0) << output();
+  EXPECT_TRUE(becomes("zoneList", "^Zone 1: [^Z]*Cancel zone 1$")) << text("zoneList");
+  EXPECT_FALSE(visible("#cancelBox"));
   expect_no_errors();
   end_mission();
 }

@@ -30,9 +30,12 @@ let armed = null, // {button, name, order, timer}: the button that waits for its
   chosenByPin;
 const spokenActs = new Set(), // operator, number, act and state of each that was spoken
   shownRefusals = new Set(), // numbers
-  // {act, label, content, copies, timer, notice} of requests without an answer, by number. The next press
-  // repeats such a request under its number, so it is obeyed once.
-  unanswered = new Map();
+  // {act, label, content, more, copies, timer, notice} of requests without an answer, by number. The next
+  // press repeats such a request under its number, so it is obeyed once.
+  unanswered = new Map(),
+  // Numbers of requests without an answer whose drawing was changed and sent again: at most one of them all
+  // is obeyed.
+  replaced = new Set();
 
 function takeToken() {
   const wishes = new URLSearchParams(location.hash.slice(1)),
@@ -98,16 +101,27 @@ const post = request =>
     signal: AbortSignal.timeout(SEND_MS),
   });
 
+// The first number of an earlier state of a drawing that has no answer.
+function earlierOf(act) {
+  const earlier = [...unanswered].filter(([, one]) => one.act === act).map(([number]) => number);
+  for (const number of earlier) {
+    clearTimeout(unanswered.get(number).timer);
+    replaced.add(number);
+  }
+  return earlier.length ? { instead_of: Math.min(...earlier) } : {};
+}
+
 // Sends a request; `more` has what only this act needs. Returns its number.
 function send(act, label, more = {}) {
   const content = JSON.stringify([act, more]),
-    [before, { copies } = { copies: 0 }] = [...unanswered].find(([, one]) => one.content === content) ?? [],
-    request = requestOf(act, more),
+    [before, same] = [...unanswered].find(([n, one]) => one.content === content && !replaced.has(n)) ?? [],
+    whole = same?.more ?? { ...more, ...(isDrawn(act) ? earlierOf(act) : {}) },
+    request = requestOf(act, whole),
     number = (request.number = before ?? request.number);
   forget(number);
   notice('');
   const timer = setTimeout(() => missAnswer(number), ANSWER_MS);
-  unanswered.set(number, { act, label, content, copies: copies + 1, timer });
+  unanswered.set(number, { act, label, content, more: whole, copies: (same?.copies ?? 0) + 1, timer });
   post(request).then(
     async answer => {
       if (answer.status !== 202) fail(number, (await answer.text()).trim());
@@ -122,6 +136,7 @@ function forget(number) {
   unanswered.delete(number);
 }
 
+const isDrawn = act => act === 'target' || act === 'zone';
 const isOrder = ({ act }) => act !== 'take' && act !== 'release';
 
 // The server has not accepted a copy of a request.
@@ -130,6 +145,7 @@ function fail(number, why) {
   if (!one) return;
   if (--one.copies > 0) return missAnswer(number);
   forget(number);
+  if (replaced.has(number)) return;
   if (isOrder(one)) say(`${one.label}: not sent`);
   complain(`${one.label}: not sent: ${why}`);
 }
@@ -137,7 +153,7 @@ function fail(number, why) {
 // The request may have been lost, or may still arrive.
 function missAnswer(number) {
   const one = unanswered.get(number);
-  if (!one) return;
+  if (!one || replaced.has(number)) return;
   clearTimeout(one.timer);
   if (isOrder(one)) say(`${one.label}: not answered`);
   one.notice = `${one.label}: not answered. Press again: it is obeyed once.`;
@@ -161,7 +177,8 @@ function noteAnswers({ operator, acts, refused }) {
     if (answered.includes(number) || act === (isHolder ? 'take' : 'release')) settle(number);
     else if (number < newest && !refused.some(one => one.operator === me.id && one.number === number)) {
       settle(number);
-      complain(`${label}: not obeyed, because a later order came first. Press again.`);
+      if (!replaced.has(number))
+        complain(`${label}: not obeyed, because a later order came first. Press again.`);
     }
   }
   for (const { operator: id, number, what, text } of refused) {
@@ -169,6 +186,7 @@ function noteAnswers({ operator, acts, refused }) {
     shownRefusals.add(number);
     const one = unanswered.get(number);
     if (one) settle(number);
+    if (replaced.has(number)) continue;
     if (one && isOrder(one)) say(`${capital(what)}: refused`);
     complain(`${capital(what)}: refused: ${text}`);
   }
@@ -430,7 +448,9 @@ export function showControl(state) {
 
 // The mission has ended: what the last orders achieved stays.
 export function endControl() {
-  const waited = [...unanswered.values()].filter(isOrder).map(({ label }) => label);
+  const waited = [...unanswered]
+    .filter(([number, one]) => isOrder(one) && !replaced.has(number))
+    .map(([, { label }]) => label);
   if (stopping !== null && !last.acts.some(answersStop)) waited.push('Stop now');
   disarm();
   endStopping();

@@ -2,7 +2,8 @@
 // Opens the layer on which a new target or a new zone is drawn, and sends or copies what is drawn there.
 import { S, ask } from './state.js';
 import { layout } from './screen.js';
-import { complain, give, hasControl, isObeyed, mayTakeControl, press } from './control.js';
+import { complain, give, hasControl, isObeyed, press } from './control.js';
+import { copyCommand, offerCommand } from './command.js';
 import { connectDrawnPointer, removeChosen } from './drawn_pointer.js';
 import { showView } from './space_controls.js';
 import { connectTarget, targetDrawing } from './target_drawing.js';
@@ -26,14 +27,7 @@ function offer() {
   $('sendDrawn').hidden = !may;
   $('sendDrawn').disabled = !ready;
   $('commandBox').hidden = may || !ready;
-  if (may || !ready) return;
-  put(
-    $('whyCommand'),
-    mayTakeControl()
-      ? 'Take control to send it. Or run this where the team’s key is:'
-      : 'This page only shows. Run this where the team’s key is:',
-  );
-  put($('drawnCommand'), kind().command());
+  if (!may && ready) offerCommand($('commandBox'), kind().command());
 }
 
 function describe() {
@@ -62,7 +56,6 @@ function changed() {
   const { drawing } = S;
   drawing.full = drawing.parts.length >= kind().most;
   drawing.version++;
-  put($('copyDrawn'), 'Copy');
   kind().changed();
   $('removeDrawn').disabled = !drawing.chosen && !drawing.open.length;
   showHeights();
@@ -144,17 +137,6 @@ export function followDrawing() {
   else if (performance.now() - describedAt > DESCRIBE_MS) describe();
 }
 
-async function copy() {
-  try {
-    await navigator.clipboard.writeText($('drawnCommand').textContent);
-    put($('copyDrawn'), 'Copied');
-  } catch {
-    // Without https the browser has no clipboard: the text is selected instead.
-    getSelection().selectAllChildren($('drawnCommand'));
-    put($('copyDrawn'), 'Selected: press Ctrl-C');
-  }
-}
-
 function connectHeights() {
   const set = i => e => {
     const { chosen } = S.drawing,
@@ -181,5 +163,5 @@ export function connectDrawing() {
   };
   $('sendDrawn').dataset.label = 'Send';
   $('sendDrawn').onclick = () => press($('sendDrawn'), order);
-  $('copyDrawn').onclick = copy;
+  $('copyDrawn').onclick = () => copyCommand($('commandBox'));
 }

@@ -74,7 +74,7 @@ export const livePage = {
     $('slider').max = Math.max(0, run.rows - 1);
     const { marks } = run;
     if (run.newIncidents || marks.length !== run.marksSpoken) {
-      const last = marks.findLast(mark => mark.kind !== 'zone'), // zone_words.js speaks of zones
+      const last = marks.findLast(mark => mark.kind !== 'zone'), // zone_list.js speaks of zones
         words = last ? `${last.text} at ${last.t.toFixed(0)} s` : '';
       run.marksSpoken = marks.length;
       if (words && words !== run.wordsSpoken) put($('spoken'), words);

@@ -28,7 +28,7 @@ const MAP = {
     'With control you send it; without, the page shows the command.',
   zone:
     'A red area: a part of the domain that is closed for a time. Its number is that of the amendment. ' +
-    'The outline is dashed while agents may still be on their way out.',
+    'The outline is dashed while agents may still be on their way out. “Cancel zone” ends it.',
   amendment:
     'The target at the chosen time is no longer that of the plan. ' +
     'Each moment counts against the target of its time.',
