@@ -9,6 +9,7 @@
 #include "core/base/noise.h"
 #include "core/law/block_layout.h"
 #include "core/law/perturbation.h"
+#include "core/measure/objects.h"
 #include "core/mission/kinds.h"
 #include "core/motion/filter_rules.h"
 #include "sim/world.h"
@@ -55,7 +56,8 @@ Invariants::Invariants(const Mission& mission)
     : mission_(mission),
       weights_(sobolev_weights(mission.basis, mission.domain)),
       block_count_(block_count_of(mission)),
-      wire_modes_(modes_on_wire(mission)) {
+      wire_modes_(modes_on_wire(mission)),
+      objects_m_(Objects(mission).places_m()) {
   note_ends();
 }
 
@@ -125,6 +127,7 @@ void Invariants::check(double t_s, const WorldState& world) {
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
   }
   check_home(t_s, world);
+  check_detections(t_s, world);
 }
 
 /// Uses the true places, once all places of a tick are known. Starts may be exactly at the least
@@ -349,6 +352,7 @@ void Invariants::ended(double t_s, const std::string& still_running, const std::
     violate(t_s, Invariant::kRecordIsWhole, "the logger",
             text(counted, " of ", ticks, " ticks, and only ", excused, " may be missing"));
   }
+  check_finds(t_s, facts.finds, excused);
   const bool recalled =
       std::ranges::any_of(truth_.roster(), [](const auto& entry) { return entry.recalled(); });
   // Fewer agents may miss it, and it was for the plan's target.

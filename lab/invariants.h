@@ -46,6 +46,7 @@ enum class Invariant : std::uint8_t {
   kWholeMessagesAccepted,
   kDamagedMessagesRefused,
   kHeldNeverShrinks,
+  kDetectionsInReach,
   kNoStepCountsTwice,
   kNothingCountsWhilePaused,
   kWhatIsNotPausedCounts,
@@ -71,6 +72,7 @@ enum class Invariant : std::uint8_t {
   kMissionDoesNotFail,
   kLastTickReached,
   kRecordIsWhole,
+  kFindsAreRecorded,
   kGoalReached,
   kCount,
 };
@@ -92,6 +94,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kWholeMessagesAccepted, "no whole message is refused"},
         {Invariant::kDamagedMessagesRefused, "no damaged message is accepted"},
         {Invariant::kHeldNeverShrinks, "what is held never shrinks"},
+        {Invariant::kDetectionsInReach, "sensors detect only objects within their radius"},
         {Invariant::kNoStepCountsTwice, "no step counts twice"},
         {Invariant::kNothingCountsWhilePaused, "nothing counts while paused or at rest"},
         {Invariant::kWhatIsNotPausedCounts, "every tick counts unless paused or at rest"},
@@ -118,6 +121,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kMissionDoesNotFail, "the mission does not fail"},
         {Invariant::kLastTickReached, "the mission reaches its last tick"},
         {Invariant::kRecordIsWhole, "the record has every tick"},
+        {Invariant::kFindsAreRecorded, "the record has the finds of the simulated world"},
         {Invariant::kGoalReached, "the goal is reached"},
     }};
 constexpr std::string_view name_of(Invariant invariant) {
@@ -281,6 +285,9 @@ class Invariants {
   bool may_leave_a_zone(AgentId id, const Eigen::Vector3d& x_m, Tick tick) const;
   bool any_zone_closed_at(Tick tick) const;
   bool zone_may_delay(AgentId id, Tick home_from) const;
+  void check_detections(double t_s, const WorldState& world);
+  void check_finds(double t_s, const Finds& finds, Tick excused);
+  bool all_states_count(Tick excused) const;
   void check_home(double t_s, const WorldState& world);
   double nearest_to_station_m(const Vehicle& vehicle) const;
   void check_recalled_home(double t_s, const TableView& holder);
@@ -330,6 +337,9 @@ class Invariants {
   std::map<Author, Tick> rested_;                // counted ticks since an agent was recalled
   std::map<AgentId, Eigen::Vector3d> places_m_;  // in lockstep, of the newest state
   StateAssembler state_;                         // where a distance is kept
+  std::vector<Eigen::Vector3d> objects_m_;
+  /// Of each object, by tick and agent.
+  std::map<int, std::set<std::pair<Tick, AgentId>>> detections_;
   std::map<AgentId, Eigen::Vector3d>
       positions_m_;  // only with a radio range, like the next members
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first

@@ -249,6 +249,7 @@ struct Fields<WorldState> {
       io.count_or_none(vehicle.answered_tick);
       io.vector(vehicle.position_m);
       io.vector(vehicle.velocity_mps);
+      io.number(vehicle.detected);
     }
   }
 };

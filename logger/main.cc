@@ -125,6 +125,7 @@ class RunLogger {
       last_row_ = now;
       if (!first_row_) first_row_ = now;
     }
+    tell_finds();
     if (!stuck_ && !record_.good()) flush(now);
     if (!stuck_) note(write_mission());
   }
@@ -177,6 +178,13 @@ class RunLogger {
   }
 
  private:
+  /// Logs each find once, also those that a former logger has recorded.
+  void tell_finds() {
+    const std::vector<Find>& finds = recorder_.facts().finds.list();
+    for (; finds_told_ < finds.size(); ++finds_told_)
+      spdlog::info("{}", to_text(finds[finds_told_]));
+  }
+
   bool has_room() const {
     std::error_code error;
     const auto space = fs::space(record_.folder(), error);
@@ -246,7 +254,7 @@ class RunLogger {
   bool stuck_ = false, plan_written_ = false, removal_reported_ = false;
   int interruptions_ = 0;
   Amendments amendments_written_;
-  std::size_t recalls_written_ = 0;
+  std::size_t recalls_written_ = 0, finds_told_ = 0;
   std::vector<std::byte> plan_of_record_;  // of the record that it continues; empty: any
   Recorder recorder_;
   Tick seen_rows_ = 0;
@@ -311,6 +319,8 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
     return kExitDone;
   }
   logger.write_summary(transport);
+  if (const Finds& finds = recorder.facts().finds; finds.objects() > 0)
+    spdlog::info("found {} of {} objects", finds.list().size(), finds.objects());
   spdlog::info("{} ticks recorded: {} ({})", recorder.facts().ticks, recorder.result(),
                recorder.reason());
   return logger.failed() ? kExitFailed : kExitDone;

@@ -96,6 +96,15 @@ class TextWriter : public FieldVisitor {
       text_ += KindWriter(kind, mission_.domain.planar()).block();
     }
   }
+  void part(const Field&, const HiddenObjects& objects) {
+    if (objects.total() == 0) return;
+    enter("world");
+    text_ += "  objects {";
+    if (objects.count > 0) text_ += " count: " + std::to_string(objects.count);
+    for (const Eigen::Vector3d& x_m : objects.places_m)
+      text_ += " places { " + place_text(x_m, mission_.domain.planar()) + " }";
+    text_ += " }\n";
+  }
   void part(const Field& field, const auto& part) {
     part_ = std::string(field.name) + '.';
     list_fields(*this, part);

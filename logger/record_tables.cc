@@ -60,6 +60,11 @@ ReportedFigures figures_of(const AgentReports& reports, const MissionFollower& f
 
 }  // namespace
 
+const char* trajectory_header(const Mission& mission) {
+  if (mission.objects.total() > 0) return kTrajectoryHeaderWithObjects;
+  return mission.domain.planar() ? kTrajectoryHeader : kTrajectoryHeaderInSpace;
+}
+
 RecordTables::RecordTables(std::ostream& trajectory, std::ostream& metrics)
     : trajectory_(trajectory), metrics_(metrics) {
   ERGOCAST_REQUIRE(good());
@@ -78,7 +83,8 @@ void RecordTables::begin(const Mission& mission) {
     cosines_.begin(*in_cosines_);
   }
   measures_ = TeamMeasures(in_cosines_ ? *in_cosines_ : mission);
-  trajectory_ << (mission.domain.planar() ? kTrajectoryHeader : kTrajectoryHeaderInSpace) << '\n';
+  facts_.finds = Finds(mission.objects.total());
+  trajectory_ << trajectory_header(mission) << '\n';
 }
 
 void RecordTables::begin_without_mission() {
@@ -112,7 +118,7 @@ RowTick RecordTables::replay(const RunData& past, const MissionKnowledge& known)
       ++facts_.ticks;
       facts_.held_ticks += row.counts ? 0 : 1;
     }
-    observe(context, id, point.x_m);
+    observe(context, id, point.x_m, point.detected);
     ++vehicles;
     former_end_ = {point.tick, id};
   });
@@ -153,7 +159,7 @@ void RecordTables::write_trajectory(const Context& context, const TickState& now
   for (const auto& [id, vehicle] : now.vehicles) {
     const auto after = next.vehicles.find(id);
     if (after == next.vehicles.end() || std::pair(tick, id) <= former_end_) continue;
-    observe(context, id, vehicle.position_m);
+    const ObjectSet detected = observe(context, id, vehicle.position_m, vehicle.detected);
     if (context.row.is_last(context.ends.tick_count()))
       note_home(mission, id, after->second.position_m);
     line += std::to_string(tick) + ',';
@@ -165,6 +171,7 @@ void RecordTables::write_trajectory(const Context& context, const TickState& now
         append_number(line, vector[axis]);
       }
     }
+    if (mission.objects.total() > 0) line += ',' + std::to_string(detected);
     line += '\n';
   }
   trajectory_ << line;
@@ -191,7 +198,9 @@ bool RecordTables::is_recalled(const Context& context, AgentId id) {
   return recalled;
 }
 
-void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m) {
+/// Returns those of `detected` that count: an agent that covers nothing finds nothing.
+ObjectSet RecordTables::observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m,
+                                ObjectSet detected) {
   const Mission& mission = context.mission();
   const RosterEntry* entry = member(context.known.follower, id, context.row.tick);
   const bool covers = entry != nullptr && context.row.counts && !is_recalled(context, id);
@@ -205,6 +214,10 @@ void RecordTables::observe(const Context& context, AgentId id, const Eigen::Vect
     if (in_cosines_) cosines_.see(*in_cosines_, counted, entry->kind, x_m);
   }
   if (keeps_distance(mission)) row_places_m_.push_back(x_m);
+  detected = covers && !rests ? facts_.finds.known(detected) : 0;
+  const double t_s = static_cast<double>(counted) * mission.timing.dt_s;
+  facts_.finds.note(detected, {.agent = id, .tick = context.row.tick, .t_s = t_s, .x_m = x_m});
+  return detected;
 }
 
 /// Has the observers count against the target that holds at the row's tick.

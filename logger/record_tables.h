@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/measure/finds.h"
 #include "core/measure/team_measures.h"
 #include "core/mission/end_schedule.h"
 #include "logger/agent_reports.h"
@@ -57,6 +58,8 @@ struct RunFacts {
   /// For each agent with a station (core/mission/station.h): the greatest distance of its vehicle
   /// from there [m]. Recorded ticks of its rest and the end of the mission count.
   std::map<AgentId, double> from_home_m;
+  /// What the team has found, of the mission's objects.
+  Finds finds;
   /// For each agent that was recalled: the first row in which it rests for that reason.
   std::map<AgentId, Tick> recalls;
 };
@@ -87,8 +90,13 @@ struct MissionKnowledge {
 
 /// The header lines of the two files.
 inline constexpr const char* kTrajectoryHeader = "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps";
+/// With objects to find, which only planes have: bit j of the last number is object j.
+inline constexpr const char* kTrajectoryHeaderWithObjects =
+    "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps,detected";
 inline constexpr const char* kTrajectoryHeaderInSpace =
     "tick,t_s,agent,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps";
+/// The header of a mission's trajectory.csv.
+const char* trajectory_header(const Mission& mission);
 inline constexpr const char* kMetricsHeader =
     "tick,t_s,ergodic_metric,detection_probability,metric_spread,max_staleness_s,"
     "contributions_received,contributions_lost,blocked_share";
@@ -136,7 +144,8 @@ class RecordTables {
   void write_trajectory(const Context& context, const TickState& now, const TickState& next);
   void note_home(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m);
   bool is_recalled(const Context& context, AgentId id);
-  void observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m);
+  ObjectSet observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m,
+                    ObjectSet detected);
   void begin_row(const Context& context);
   void begin_target(const Context& context, const ReceivedAmendment* change);
   void note_target(const Mission& mission, Tick until);

@@ -110,10 +110,15 @@ std::optional<std::string> add_point(RunData& run, const Fields& f) {
   }
   const auto agent = static_cast<AgentId>(f[2]);
   TrackPoint point{static_cast<Tick>(f[0]), f[1]};
-  const std::size_t axes = (f.count - 3) / 2;  // position and velocity come last
+  const std::size_t axes = (f.count - 3) / 2;  // of position and velocity
   for (std::size_t axis = 0; axis < axes; ++axis) {
     point.x_m[static_cast<Eigen::Index>(axis)] = f[3 + axis];
     point.v_mps[static_cast<Eigen::Index>(axis)] = f[3 + axes + axis];
+  }
+  if (const std::size_t last = 3 + 2 * axes; f.count > last) {
+    if (!is_count(f[last], std::numeric_limits<ObjectSet>::max()))
+      return "the objects detected are not a whole number of 32 bits";
+    point.detected = static_cast<ObjectSet>(f[last]);
   }
   const auto track = run.tracks.find(agent);
   if (track != run.tracks.end() &&

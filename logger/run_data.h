@@ -13,6 +13,7 @@
 #include "core/base/ids.h"
 #include "core/base/result.h"
 #include "core/basis/basis.h"
+#include "core/measure/finds.h"
 #include "core/mission/end_schedule.h"
 #include "core/mission/hold.h"
 #include "core/mission/mission.h"
@@ -27,6 +28,7 @@ struct TrackPoint {
   double t_s = 0;
   Eigen::Vector3d x_m{0, 0, 0};
   Eigen::Vector3d v_mps{0, 0, 0};  ///< the command computed at x_m
+  ObjectSet detected = 0;          ///< of the mission's objects
 };
 using Track = std::vector<TrackPoint>;  ///< ascending by tick
 

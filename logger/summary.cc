@@ -257,6 +257,22 @@ void add_team(const Recorder& recorder, const Mission& mission, Json& summary) {
   summary["path_m"] = number(team->path_m);
 }
 
+/// Which of the mission's objects the team has found, in the order of the finds.
+void add_objects(const Finds& finds, Json& summary) {
+  if (finds.objects() == 0) return;
+  Json list = Json::array();
+  for (const Find& find : finds.list()) {
+    list.push_back({{"object", find.object},
+                    {"agent", find.agent},
+                    {"tick", find.tick},
+                    {"t_s", find.t_s},
+                    {"x_m", find.x_m.x()},
+                    {"y_m", find.x_m.y()}});
+  }
+  summary["objects"] = {
+      {"count", finds.objects()}, {"found", finds.list().size()}, {"finds", std::move(list)}};
+}
+
 void add_wall_time(const RunFacts& facts, const RunContext& context, Json& summary) {
   const auto ticks = static_cast<double>(facts.ticks - facts.former_ticks);
   summary["wall_time_s"] = context.wall_time_s;
@@ -313,6 +329,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   add_ticks(recorder, summary);
   add_metric(facts, mission, summary);
   if (mission) add_team(recorder, *mission, summary);
+  add_objects(facts.finds, summary);
   if (mission) summary["conventions"] = conventions(mission->basis);
   add_wall_time(facts, context, summary);
   summary["agents"] = agents(recorder);
@@ -351,6 +368,13 @@ std::map<AgentId, Tick> recorded_recalls(const std::filesystem::path& run_dir,
   if (early && early->is_array()) return recalls_in(*early);
   return summary.is_object() ? recalls_in(summary.value("recalls", Json()))
                              : std::map<AgentId, Tick>();
+}
+
+std::string to_text(const Find& find) {
+  char text[120];
+  std::snprintf(text, sizeof text, "object %d found by agent %d at (%.1f, %.1f) m after %.1f s",
+                find.object, find.agent, find.x_m.x(), find.x_m.y(), find.t_s);
+  return text;
 }
 
 std::string to_text(const Json& summary) {

@@ -84,7 +84,7 @@ std::string TableLines::place() const {
 }
 
 std::vector<std::string> trajectory_headers() {
-  return {kTrajectoryHeader, kTrajectoryHeaderInSpace};
+  return {kTrajectoryHeader, kTrajectoryHeaderWithObjects, kTrajectoryHeaderInSpace};
 }
 
 std::string in_quotes(const std::string& line) {

@@ -167,6 +167,11 @@ void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
   io.number({14, "reserve_s", limits::between(0, 1e7), unless(kind.reserve_s, 0)}, kind.reserve_s);
 }
 
+void list_fields(auto& io, MaybeConst<HiddenObjects> auto& objects) {
+  io.number({1, "count", limits::between(1, kMaxObjects), unless(objects.count, 0)}, objects.count);
+  io.places({2, "places"}, {3, "place_heights_m"}, objects.places_m);
+}
+
 void list_fields(auto& io, MaybeConst<SearchSensor> auto& sensor) {
   const SearchSensor usual;
   io.number({1, "radius_m", limits::between(0, 1e7), unless(sensor.radius_m, usual.radius_m)},
@@ -199,6 +204,7 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.number({14, "world.speed_limit_mps", limits::above(0, 1e9), limited}, m.speed_limit_mps);
   io.derived({21, "world.walls"}, m.walls);
   io.number({22, "world.wall_clearance_m", limits::between(0, 1e7), walled}, m.wall_clearance_m);
+  io.part({26, "world.objects"}, m.objects);
   io.number({11, "goal_ergodic_metric", limits::above(0, 1e9), has_goal}, m.goal_ergodic_metric);
   io.part({18, "vehicle"}, m.vehicle);
   io.part({19, "separation"}, m.separation);

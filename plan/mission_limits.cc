@@ -204,6 +204,17 @@ bool are_kinds(const Mission& mission) {
          std::ranges::all_of(kinds, [&](const AgentKind& kind) { return fits(kind, mission); });
 }
 
+/// Either a count or places, in a plane. Places are free.
+bool fits(const HiddenObjects& objects, const Mission& mission) {
+  if (objects.total() == 0) return true;
+  const auto free = [&](const Eigen::Vector3d& x_m) {
+    return in_domain(mission.domain, x_m) && !solid_at(mission.walls, x_m.head<2>());
+  };
+  return mission.domain.planar() && objects.total() <= kMaxObjects &&
+         (objects.count == 0 || objects.places_m.empty()) &&
+         std::ranges::all_of(objects.places_m, free);
+}
+
 bool is_team(const Mission& mission) {
   const auto size = static_cast<double>(mission.starts_m.size());
   const auto& starts_m = mission.starts_m;
@@ -261,7 +272,8 @@ bool within_limits(const Mission& mission) {
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
          is_team(mission) && are_kinds(mission) && bodies_fit(mission) &&
-         fits(mission.separation, mission) && walls_fit(mission) && stations_fit(mission);
+         fits(mission.separation, mission) && walls_fit(mission) && stations_fit(mission) &&
+         fits(mission.objects, mission);
 }
 
 }  // namespace ergocast

@@ -159,7 +159,7 @@ void Fleet::move_bodies() {
   }
 }
 
-std::vector<WorldState> Fleet::snapshot() const {
+std::vector<WorldState> Fleet::snapshot(Tick tick) const {
   const auto parts = std::max<std::size_t>(
       1, (vehicles_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState);
   std::vector<WorldState> states(parts);
@@ -174,12 +174,16 @@ std::vector<WorldState> Fleet::snapshot() const {
     vehicle.answered_tick = slot.commands.answered();
     vehicle.position_m = slot.x_m;
     vehicle.velocity_mps = slot.applied_mps;
+    vehicle.detected = objects_.detected(id, tick, slot.x_m);
   }
   return states;
 }
 
 std::optional<std::string> Fleet::learn(const Mission& mission) {
-  if (!mission_) mission_ = mission;
+  if (!mission_) {
+    mission_ = mission;
+    objects_ = Objects(mission);
+  }
   if (!physics_maker_ || physics_) return {};
   auto made = physics_maker_(mission);
   if (!made) return made.error();

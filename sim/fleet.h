@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/measure/objects.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 #include "core/mission/zones.h"
@@ -89,8 +90,9 @@ class Fleet {
   /// Lets a tick pass in which no vehicle moves, but for bodies with mass, which roll on.
   void stop();
 
-  /// The parts of a state with all vehicles. Only part numbers and vehicles are filled in.
-  std::vector<WorldState> snapshot() const;
+  /// The parts of the state of `tick` with all vehicles. Only part numbers and vehicles are filled
+  /// in.
+  std::vector<WorldState> snapshot(Tick tick) const;
   /// Steps of a vehicle that the speed limit made slower than its command.
   std::int64_t clamped_commands() const { return clamped_commands_; }
   /// The summary of the physics; empty without one.
@@ -123,6 +125,7 @@ class Fleet {
   void move(AgentId id, Slot& slot, Tick tick) const;
 
   std::optional<Mission> mission_;
+  Objects objects_;
   std::map<AgentId, Slot> vehicles_;
   std::optional<SeparationFilter>
       filter_;                     // if it guards, has walls or zones, or a body is no point

@@ -264,7 +264,7 @@ void World::step() {
 }
 
 std::vector<WorldState> World::snapshot() const {
-  std::vector<WorldState> states = fleet_.snapshot();
+  std::vector<WorldState> states = fleet_.snapshot(tick_);
   for (WorldState& state : states) {
     state.missed_deadlines = missed_deadlines_;
     state.skipped_ticks = skipped_ticks_;

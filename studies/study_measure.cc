@@ -51,6 +51,8 @@ double distance_to_edge_m(const Eigen::Vector3d& x_m, const Box& domain) {
 StudyMeasure::StudyMeasure(const Mission& mission)
     : mission_(mission),
       team_(mission),
+      objects_(mission),
+      finds_(mission.objects.total()),
       escape_distance_m_(lab::escape_distance_m(mission.domain)),
       at_edge_m_(kAtEdgeShare * mission.domain.shortest_side_m()),
       ladder_(ladder_ticks(mission.timing.dt_s, mission.timing.tick_count - 1)),
@@ -71,7 +73,11 @@ StudyMeasure::StudyMeasure(const Mission& mission)
 void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m) {
   ++positions_;
   const auto id = static_cast<AgentId>(agent);
-  team_.see(id, tick, x_m, !rests(mission_, id, tick));
+  const bool covers = !rests(mission_, id, tick);
+  team_.see(id, tick, x_m, covers);
+  if (covers)
+    finds_.note(objects_.detected(id, tick, x_m),
+                {.agent = id, .tick = tick, .t_s = t_s(tick), .x_m = x_m});
   const double offset2_m2 = (x_m - mission_.law.contraction_center_m).squaredNorm();
   offset2_sum_m2_ += offset2_m2;
   figures_.offset2_max_m2 = std::max(figures_.offset2_max_m2, offset2_m2);
@@ -122,6 +128,10 @@ StudyFigures StudyMeasure::figures() const {
   figures.greatest_age_s = team.greatest_age_s;
   figures.wasserstein_m = team.wasserstein_m;
   figures.path_m = team.path_m;
+  const bool any = finds_.objects() > 0;
+  figures.objects_found = any ? static_cast<double>(finds_.list().size()) : kNone;
+  const double first_s = finds_.list().empty() ? kNever : finds_.list().front().t_s;
+  figures.first_find_time_s = any ? first_s : kNone;
   figures.offset2_mean_m2 = offset2_sum_m2_ / static_cast<double>(positions_);
   figures.edge_share = static_cast<double>(at_edge_) / static_cast<double>(positions_);
   figures.speed_mean_mps = commands_ > 0 ? speed_sum_mps_ / static_cast<double>(commands_) : kNone;

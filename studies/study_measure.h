@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/measure/objects.h"
 #include "core/measure/team_measures.h"
 #include "core/mission/mission.h"
 #include "lab/manifolds.h"
@@ -35,6 +36,8 @@ class StudyMeasure {
 
   const Mission& mission_;
   TeamMeasures team_;
+  Objects objects_;
+  Finds finds_;
   double escape_distance_m_, at_edge_m_;
   std::vector<std::optional<lab::Manifold>> manifolds_;
   std::vector<Tick> ladder_, decade_;  // first ticks at or after kLadder_s; ticks of the slope

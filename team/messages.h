@@ -14,6 +14,7 @@
 
 #include "core/base/contribution.h"
 #include "core/base/ids.h"
+#include "core/measure/finds.h"
 #include "core/mission/amendments.h"
 #include "core/mission/roster.h"
 #include "core/search/efforts.h"
@@ -226,6 +227,7 @@ struct Vehicle {
   Eigen::Vector3d position_m{0, 0, 0};
   Eigen::Vector3d velocity_mps{0, 0,
                                0};  ///< applied in the step that led here; with inertia, at its end
+  ObjectSet detected = 0;           ///< by its sensor at this tick
 };
 
 /// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.

@@ -117,6 +117,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/world_safety_test.cc
     process/law_test.cc
     process/mow_test.cc
+    process/objects_test.cc
     process/search_test.cc
     process/zone_test.cc
     support/http.cc

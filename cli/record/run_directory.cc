@@ -71,6 +71,20 @@ void print_stations(const Json& stations) {
   std::printf("\n");
 }
 
+/// Which objects the team has found, as `summary` has them.
+void print_objects(const Json& objects) {
+  std::printf("  objects   found %s of %s objects\n", text_at(objects, "/found").c_str(),
+              text_at(objects, "/count").c_str());
+  for (const Json& find : objects.value("finds", Json::array())) {
+    const Find known{.object = find.value("object", 0),
+                     .agent = find.value("agent", kUnassigned),
+                     .tick = find.value("tick", Tick{0}),
+                     .t_s = find.value("t_s", 0.0),
+                     .x_m = {find.value("x_m", 0.0), find.value("y_m", 0.0), 0}};
+    std::printf("            %s\n", to_text(known).c_str());
+  }
+}
+
 /// What the team would have found, how long it left places alone, and how far it moved.
 void print_achievement(const Json& summary) {
   const auto number = [&](const char* pointer, const char* format, double factor = 1) {
@@ -118,6 +132,7 @@ void print_summary(const Json& summary) {
                 reached ? "reached" : "not reached");
   }
   if (summary.contains("detection")) print_achievement(summary);
+  if (summary.contains("objects")) print_objects(summary["objects"]);
   std::printf("  messages  %s sent, %s received, %s lost, %s dropped by the kernel\n",
               text("/messages/sent").c_str(), text("/messages/received").c_str(),
               text("/messages/lost").c_str(), text("/messages/kernel_drops").c_str());

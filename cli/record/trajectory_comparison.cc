@@ -110,12 +110,14 @@ void TrajectoryComparison::miss(const std::string& simulated) {
 
 /// Whether the recorded row is the simulated one, except for a velocity of zero.
 bool TrajectoryComparison::stands_where(const std::string& simulated) const {
-  const auto velocity = lines_.header().find(",vx_mps");
-  const auto axes = std::ranges::count(lines_.header().substr(velocity), ',');
-  std::size_t end = simulated.size();
+  const std::string& header = lines_.header();
+  const bool with_objects = header.ends_with(",detected");
+  const auto axes = std::ranges::count(header.substr(header.find(",vx_mps")), ',') - with_objects;
+  const std::size_t behind = with_objects ? simulated.rfind(',') : simulated.size();
+  std::size_t end = behind;
   std::string none;
   for (auto axis = axes; axis > 0; --axis, none += ",0") end = simulated.rfind(',', end - 1);
-  return *recorded_ == simulated.substr(0, end) + none;
+  return *recorded_ == simulated.substr(0, end) + none + simulated.substr(behind);
 }
 
 }  // namespace ergocast::cli

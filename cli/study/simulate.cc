@@ -13,6 +13,7 @@
 #include "cli/study/planned_targets.h"
 #include "cli/study/trials.h"
 #include "cli/watch/progress.h"
+#include "logger/summary.h"
 #include "runtime/process/signals.h"
 
 namespace ergocast::cli {
@@ -42,7 +43,10 @@ Result<SimulatedRecord> simulate_and_show(RunRecord& record, const Scenario& sce
   ProgressDisplay display;
   std::optional<SimulatedEvents> events;
   if (event_log) events.emplace(record.folder(), scenario.mission());
+  std::size_t finds_told = 0;
   const auto look = [&](lab::Simulation& simulation) {
+    const std::vector<Find>& finds = simulation.recorder().facts().finds.list();
+    for (; finds_told < finds.size(); ++finds_told) display.print(to_text(finds[finds_told]));
     show(simulation, scenario.mission(), display);
     if (signals.take() > 0) simulation.end("Ctrl-C or SIGTERM");
   };

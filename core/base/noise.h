@@ -20,6 +20,8 @@ enum class Purpose : std::uint32_t {
   kPush = 7,          ///< the part of an adaptive perturbation that is held for several steps
   kSide = 8,          ///< on which side a blocked body tries to pass
   kHand = 9,          ///< on which side an agent goes along a wall that holds it up
+  kObject = 10,       ///< where the simulated world's objects are
+  kDetection = 11,    ///< whether a sensor detects an object
 };
 
 /// Two independent 64-bit words (Philox 4×32-10, Salmon et al. 2011).

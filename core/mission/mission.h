@@ -127,6 +127,18 @@ struct AgentKind {
   double reserve_s = 0;  ///< time before the end at which they are there
 };
 
+/// Limit (Scenario): objects to find. Beyond it: the scenario is refused.
+inline constexpr int kMaxObjects = 32;
+
+/// The objects that the simulated world hides, in a plane: either so many, or those at given
+/// places; core/measure/objects.h. They do not steer.
+struct HiddenObjects {
+  int count = 0;  ///< drawn from the target
+  std::vector<Eigen::Vector3d> places_m{};
+
+  int total() const { return places_m.empty() ? count : static_cast<int>(places_m.size()); }
+};
+
 /// What finds objects, for the measures of core/measure/. It does not steer.
 struct SearchSensor {
   double radius_m = 0;            ///< 0: core/measure/detection.h has a default
@@ -153,7 +165,8 @@ struct Mission {
   double speed_limit_mps = 0;        ///< of vehicles whose kind has none of its own; 0: none
   Rings walls;                       ///< solid: where an odd number of rings is around
   double wall_clearance_m = 0;       ///< how far bodies keep from them
-  VehicleLimits vehicle;             ///< of those whose kind has none of its own
+  HiddenObjects objects;
+  VehicleLimits vehicle;  ///< of those whose kind has none of its own
   Separation separation;
   SearchSensor sensor;          ///< of every agent
   bool dead_reckoning = false;  ///< whether forecasts use teammates' places, core/law/forecast.h

@@ -51,13 +51,15 @@ class Tables {
 
   void trajectory() {
     const bool planar = record_.mission.domain.planar();
-    const std::string header = planar ? kTrajectoryHeader : kTrajectoryHeaderInSpace;
+    const bool with_objects = record_.mission.objects.total() > 0;
+    const std::string header = trajectory_header(record_.mission);
     table("trajectory.csv", header + place_header(), [&](std::ostream& file) {
       for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
         file << point.tick << ',' << shortest(point.t_s) << ',' << agent;
         for (const Eigen::Vector3d& vector : {point.x_m, point.v_mps}) {
           for (int axis = 0; axis < (planar ? 2 : 3); ++axis) file << ',' << shortest(vector[axis]);
         }
+        if (with_objects) file << ',' << point.detected;
         file << place_at(point.x_m.head<2>()) << '\n';
       });
     });

@@ -13,6 +13,7 @@
 #include "scenario/parse/utf8.h"
 #include "scenario/rules/validate_free_domain.h"
 #include "scenario/rules/validate_kinds.h"
+#include "scenario/rules/validate_objects.h"
 #include "scenario/rules/validate_separation.h"
 #include "scenario/rules/validate_stations.h"
 #include "scenario/rules/validate_target.h"
@@ -53,6 +54,7 @@ class Validator {
     validate_vehicle(scenario_, checks_);
     if (scenario_.has_separation()) validate_separation(scenario_, checks_);
     validate_walls(scenario_, checks_);
+    validate_objects(scenario_, checks_);
     validate_stations(scenario_, checks_);
   }
 

@@ -112,7 +112,7 @@ law { u_max_mps: 5 }
 time { duration_s: 60 }
 agents { starts { x_m: 10 y_m: 20 } }
 world {
-  speed_limit_mps: 100 wall_clearance_m: 1
+  speed_limit_mps: 100 wall_clearance_m: 1 objects { count: 3 }
   walls { vertices { x_m: 80 y_m: 10 } vertices { x_m: 90 y_m: 10 } vertices { x_m: 90 y_m: 20 } }
 }
 vehicle { kind: FIXED_WING max_turn_radps: 1 min_speed_mps: 4 }

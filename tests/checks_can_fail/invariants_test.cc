@@ -126,6 +126,8 @@ const char* const kStations =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 20 } "
     "kind { name: \"b\" count: 2 } }";
 
+const char* const kObjects = "world { objects { count: 5 } }\nsensor { radius_m: 20 }";
+
 const char* const kShortRests =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 1 } "
     "kind { name: \"b\" count: 2 } }";
@@ -165,6 +167,10 @@ const Plant kPlants[] = {
     {Invariant::kDistanceKept, "a neighbour needs no way to brake", "", kMixedCrowd},
     {Invariant::kDistanceKept, "a neighbour's loiter circle is a point", "", kMixedCrowd},
     {Invariant::kDistanceKept, "a neighbour is taken for another vehicle", "", kMixedCrowd},
+    {Invariant::kDetectionsInReach, "sensors detect from everywhere", "", kObjects},
+    {Invariant::kFindsAreRecorded, "a find is recorded a tick late", "", kObjects, "",
+     "--lockstep"},
+    {Invariant::kFindsAreRecorded, "no find is recorded", "", kObjects, "", "--lockstep"},
     {Invariant::kWallsKept, "walls are air", "", kWalledCrowd},
     {Invariant::kWallsKept, "walls keep half of their clearance", "", kWalledCrowd},
     {Invariant::kWallsKept, "held commands know no walls", "loss = 0.3", kWalled},

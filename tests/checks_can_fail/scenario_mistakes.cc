@@ -222,6 +222,24 @@ std::vector<Mistake> mistakes_of_walls() {
   };
 }
 
+std::vector<Mistake> mistakes_of_objects() {
+  const auto objects = [](const std::string& fields, const std::string& said,
+                          const std::string& more = "") {
+    return Mistake{kLaw, "world { objects { " + fields + " } " + more + " } law {", said};
+  };
+  const std::string place = "places { x_m: 70 y_m: 20 } ";
+  return {
+      objects("", "world.objects: there are none"),
+      objects("count: 2 " + place, "world.objects.count: has no effect with places"),
+      objects(repeated(33, place), "world.objects: 33 objects are above the limit 32"),
+      objects("places { x_m: 101 y_m: 20 }", "world.objects.places[0]: is outside the domain"),
+      objects(place, "world.objects.places[0]: is in a wall",
+              "speed_limit_mps: 1000 " + wall("60 10 80 10 80 30 60 30")),
+      in_space(kLaw, "world { objects { count: 2 } } law {",
+               "world.objects: objects belong to a plane"),
+  };
+}
+
 /// Stations where no agent can stay, or which it cannot reach in time.
 std::vector<Mistake> mistakes_of_stations() {
   const std::string start = "starts { x_m: 10 y_m: 20 }", second = " random_count: 1";
@@ -333,9 +351,10 @@ std::vector<Mistake> mistakes_in_space() {
 
 std::vector<Mistake> scenario_mistakes() {
   std::vector<Mistake> all;
-  for (const auto& mistakes : {mistakes_of_the_text(), mistakes_between_fields(), target_mistakes(),
-                               mistakes_of_kinds(), mistakes_of_free_domains(), mistakes_of_walls(),
-                               mistakes_of_stations(), mistakes_in_space()}) {
+  for (const auto& mistakes :
+       {mistakes_of_the_text(), mistakes_between_fields(), target_mistakes(), mistakes_of_kinds(),
+        mistakes_of_free_domains(), mistakes_of_walls(), mistakes_of_stations(),
+        mistakes_of_objects(), mistakes_in_space()}) {
     all.insert(all.end(), mistakes.begin(), mistakes.end());
   }
   return all;

@@ -250,6 +250,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(wire.vehicles[0].position_m[1], -2);
   EXPECT_EQ(wire.vehicles[0].position_m[2], 3);
   EXPECT_EQ(wire.vehicles[0].velocity_mps[0], 4);
+  EXPECT_EQ(static_cast<ObjectSet>(wire.vehicles[0].detected), 0x80000005);
   EXPECT_EQ(wire.vehicles[1].vehicle_id, 127);
   EXPECT_EQ(wire.vehicles[1].vehicle_answered_tick, -1);
   EXPECT_EQ(wire.vehicles[1].velocity_mps[1], -11);

@@ -168,7 +168,7 @@ inline WorldState world_state() {
   m.part = 1;
   m.parts = 8;
   m.vehicle_count = 2;
-  m.vehicles[0] = {16, 77, {1.0 / 3, -2, 3}, {4, 5, 6}};
+  m.vehicles[0] = {16, 77, {1.0 / 3, -2, 3}, {4, 5, 6}, 0x80000005};
   m.vehicles[1] = {127, -1, {7, 8, 9}, {10, -11, 1e-300}};
   return m;
 }

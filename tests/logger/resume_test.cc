@@ -121,6 +121,41 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatWasNotStopped
   }
 }
 
+/// Object 5 does not exist.
+TEST_F(Resume, FindsOfTheFormerProcessCount) {
+  Mission mission = small_mission(1);
+  mission.objects.count = 4;
+  const auto found_at = [](Tick tick, ObjectSet detected) {
+    WorldState state = state_of(tick);
+    state.vehicles[0].detected = detected;
+    return state;
+  };
+  Record whole(mission), first(mission);
+  for (Tick tick = 0; tick < 20; ++tick) {
+    const ObjectSet detected = tick == 3 ? 0b100100 : tick == 12 ? 0b000111 : 0;
+    whole.deliver(found_at(tick, detected));
+    if (tick < 10) first.deliver(found_at(tick, detected));
+  }
+  const std::vector<Find>& finds = whole.recorder.facts().finds.list();
+  ASSERT_EQ(finds.size(), 3u);
+  EXPECT_EQ(finds[0].object, 2);
+  EXPECT_EQ(finds[0].tick, 3);
+  EXPECT_EQ(finds[0].x_m, state_of(3).vehicles[0].position_m);
+  EXPECT_NEAR(finds[0].t_s, 0.3, 1e-12);
+  EXPECT_EQ(finds[2].object, 1);
+  EXPECT_EQ(finds[2].tick, 12);
+  EXPECT_TRUE(whole.trajectory_rows()[3].ends_with(",4")) << whole.trajectory_rows()[3];
+
+  Record second(mission, past(first.trajectory.str(), first.metrics.str()));
+  for (Tick tick = 9; tick < 20; ++tick) second.deliver(found_at(tick, tick == 12 ? 0b111 : 0));
+  const std::vector<Find>& again = second.recorder.facts().finds.list();
+  ASSERT_EQ(again.size(), 3u);
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    EXPECT_EQ(again[i].object, finds[i].object);
+    EXPECT_EQ(again[i].tick, finds[i].tick);
+  }
+}
+
 TEST_F(Resume, ACompleteRecordIsDone) {
   Record former(small_mission(1));
   for (Tick tick = 0; tick <= 100; ++tick) former.deliver(state_of(tick));

@@ -20,6 +20,7 @@ using test::rich_mission_in_space;
 using test::with_free_domain;
 using test::with_inertia;
 using test::with_lease;
+using test::with_places;
 using test::with_stations;
 using test::with_walls;
 using test::with_wings;
@@ -332,6 +333,17 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       },  // side by side
       [](Mission& m) {
         m = with_stations(with_walls(m)), m.kinds[1].stations_m[0] = {41, 31, 0};
+      },
+      [](Mission& m) { m.objects.count = 33; },
+      [](Mission& m) { m = rich_mission_in_space(), m.objects.count = 1; },
+      [](Mission& m) { m = with_places(m), m.objects.count = 1; },
+      [](Mission& m) {
+        m = with_places(m), m.objects.places_m.resize(33, {20, 20, 0});
+      },
+      [](Mission& m) { m = with_places(m), m.objects.places_m[0].x() = 98.1; },  // outside
+      [](Mission& m) { m = with_places(m), m.objects.places_m[0].z() = 1; },     // of a plane
+      [](Mission& m) {
+        m = with_places(with_walls(m)), m.objects.places_m[0] = {41, 31, 0};
       },
       [](Mission& m) { m.wall_clearance_m = 1; },  // of no walls
       [](Mission& m) { m = with_walls(rich_mission_in_space()); },

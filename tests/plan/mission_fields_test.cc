@@ -60,6 +60,7 @@ TEST(MissionFields, AreAllMembers) {
   EXPECT_EQ(listed<Basis>(), members<Basis>() - 1) << "no plan carries the table itself";
   EXPECT_EQ(listed<VehicleLimits>(), members<VehicleLimits>());
   EXPECT_EQ(listed<Separation>(), members<Separation>());
+  EXPECT_EQ(listed<HiddenObjects>(), members<HiddenObjects>());
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ using test::rich_mission_in_space;
 using test::with_free_domain;
 using test::with_inertia;
 using test::with_lease;
+using test::with_places;
 using test::with_stations;
 using test::with_walls;
 using test::with_wings;
@@ -110,11 +111,13 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
              moving = Fields(with_inertia(mission)).texts,
              flying = Fields(with_wings(mission)).texts, walled = Fields(with_walls(mission)).texts,
              freed = Fields(with_free_domain(rich_mission())).texts,
-             leased = Fields(with_lease(mission)).texts;
+             leased = Fields(with_lease(mission)).texts, counted = Fields(rich_mission()).texts,
+             placed = Fields(with_places(rich_mission())).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
     EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i] || flying[i] != plain[i] ||
-                walled[i] != plain[i] || freed[i] != plain[i] || leased[i] != plain[i])
+                walled[i] != plain[i] || freed[i] != plain[i] || leased[i] != plain[i] ||
+                counted[i] != plain[i] || placed[i] != plain[i])
         << "default: field " << i;
   expect_travels(mission);
   expect_travels(rich_mission());
@@ -123,6 +126,7 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   expect_travels(with_free_domain(rich_mission()));
   expect_travels(with_walls(rich_mission()));
   expect_travels(with_lease(rich_mission()));
+  expect_travels(with_places(rich_mission()));
   expect_travels(with_stations(rich_mission()));
   expect_travels(with_stations(rich_mission_in_space()));
 }

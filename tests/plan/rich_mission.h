@@ -100,6 +100,13 @@ inline Mission rich_mission_in_space() {
   mission.starts_m[0].z() = -6;
   mission.starts_m[1].z() = 41;
   mission.law.kind = LawKind::kMow;
+  mission.objects = {};  // they need a plane
+  return mission;
+}
+
+/// The mission with objects at known places; it must be in a plane.
+inline Mission with_places(Mission mission) {
+  mission.objects = {0, {{20, 21, 0}, {22, 23, 0}}};
   return mission;
 }
 

@@ -80,6 +80,8 @@ std::string difference(const StudyFigures& a, const StudyFigures& b) {
   compare("speed_mean_mps", a.speed_mean_mps, b.speed_mean_mps);
   compare("messages", a.messages, b.messages);
   compare("detection_probability", a.detection_probability, b.detection_probability);
+  compare("objects_found", a.objects_found, b.objects_found);
+  compare("first_find_time_s", a.first_find_time_s, b.first_find_time_s);
   compare("half_time_s", a.half_time_s, b.half_time_s);
   compare("four_fifths_time_s", a.four_fifths_time_s, b.four_fifths_time_s);
   compare("greatest_age_s", a.greatest_age_s, b.greatest_age_s);

@@ -65,7 +65,8 @@ TEST(StudyTable, HasAColumnForEachFieldTimeAndAgent) {
   EXPECT_EQ(StudyTable(study).header(),
             "scenario,law.epsilon,law.regularization,seed,agents,messages,ergodic_metric,detection_"
             "probability,"
-            "time_to_half_s,time_to_four_fifths_s,greatest_age_s,sliced_wasserstein_m,path_m,slope,"
+            "time_to_half_s,time_to_four_fifths_s,objects_found,time_to_first_find_s,"
+            "greatest_age_s,sliced_wasserstein_m,path_m,slope,"
             "offset2_mean_m2,offset2_max_m2,edge_share,speed_mean_mps,ergodic_metric_at_1_s,"
             "ergodic_metric_at_1.25_s,ergodic_metric_at_1.6_s,ergodic_metric_at_2_s,"
             "ergodic_metric_at_2.5_s,ergodic_metric_at_3.2_s,ergodic_metric_at_4_s,"

@@ -187,6 +187,17 @@ void agree_on_vehicles(proto::Scenario& scenario) {
   scenario.mutable_world()->clear_disturbance_intensity();
 }
 
+/// Objects are counted or placed, in a plane and beside the walls.
+void agree_on_objects(proto::Scenario& scenario) {
+  proto::World& world = *scenario.mutable_world();
+  if (!world.has_objects()) return;
+  proto::Objects& objects = *world.mutable_objects();
+  if (scenario.domain().has_size_z_m()) return world.clear_objects();
+  for (proto::Start& place : *objects.mutable_places()) place.set_x_m(std::min(place.x_m(), 80.0));
+  if (objects.places_size() > 0) return objects.clear_count();
+  if (!objects.has_count()) objects.set_count(1);
+}
+
 /// A plane, sensors that see points, and a table that is soon computed.
 void agree_on_free_domain(proto::Scenario& scenario) {
   proto::Basis& basis = *scenario.mutable_basis();
@@ -256,6 +267,7 @@ void agree(proto::Scenario& scenario) {
   agree_on_vehicles(scenario);
   if (scenario.has_separation()) agree_on_distance(scenario);
   agree_on_walls(scenario);
+  agree_on_objects(scenario);
   agree_on_stations(scenario);
 }
 

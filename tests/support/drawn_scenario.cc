@@ -254,6 +254,9 @@ const std::map<std::string, Rule>& rules() {
 
       {"Polygon.solid", may(kTrue)},
       {"World.walls", many(0, 2)},
+      {"World.objects", may(draw_block)},
+      {"Objects.count", may(number(1, 6))},  // or places: see drawn_agreement.h
+      {"Objects.places", many(0, 3)},
       {"World.wall_clearance_m", may(either(0, number(0.5, 1)))},
       {"World.disturbance_intensity", may(spread(0.01, 5))},
       {"World.radio_range_m", may(either(0, spread(5, 500)))},

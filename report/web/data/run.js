@@ -48,6 +48,7 @@ export class Run {
     this.recalledFrom = new Map(); // world's tick from which a recalled agent rests
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
+    this.finds = []; // {object, agent, tick, t_s, x_m, y_m}: only a record knows them
     // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
     this.amendments = [];
     // {number, closed, from, until: ticks, corners_m, heights_m}, ascending
@@ -289,6 +290,7 @@ export function recordedRun(record) {
     record.summary && typeof record.summary === 'object' && !Array.isArray(record.summary)
       ? record.summary
       : null;
+  run.finds = listOf(run.summary?.objects?.finds);
   run.setHolds(run.summary?.holds);
   run.recalledFrom = new Map(listOf(run.summary?.recalls).map(recall => [recall.agent, recall.from_tick]));
   run.homeFrom = new Map(Object.entries(record.home_from ?? {}).map(([id, tick]) => [Number(id), tick]));

@@ -56,6 +56,7 @@ export function showFacts(live) {
         ['slope, last decade', slopeText(run)],
         ...present([
           ['objects found', foundBy(summary)],
+          ['of the hidden objects', said(summary, 'objects.found')],
           ['half of them after [s]', said(summary, 'detection.time_to_half_s')],
           ['80 % after [s]', said(summary, 'detection.time_to_four_fifths_s')],
           ['left alone at most [s]', said(summary, 'greatest_age_s')],

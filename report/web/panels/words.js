@@ -58,6 +58,7 @@ const MAP = {
   'thick arrow': 'From an agent that has been blocked for a second or more to the one that blocks it.',
   'no-entry sign': 'An agent that an edge or a wall has blocked for a second or more.',
   cross: 'Where an agent started.',
+  diamond: 'Where an agent has found an object: the number of the object, and when.',
   square: 'A station: where an agent is at the end of the mission.',
   'hatched area': 'The target is 0 here: it wants no agent.',
 };
@@ -161,6 +162,7 @@ function isShown(label) {
     'New target': S.live,
     'New zone': S.live,
     zone: S.run.zones.length > 0,
+    diamond: S.run.finds.length > 0,
     square: mission.stations?.length > 0,
     'Radio range': mission.radio_range_m > 0,
     'hatched area': S.run.targetAt(S.run.rowAt(S.t)).nowhere?.rectangles.length > 0,

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Adds an object to the list when it is detected for the first time.
+#include "core/measure/finds.h"
+
+#include <algorithm>
+
+namespace ergocast {
+
+ObjectSet Finds::known(ObjectSet detected) const {
+  return detected & static_cast<ObjectSet>((std::uint64_t{1} << objects_) - 1);
+}
+
+void Finds::note(ObjectSet detected, Find at) {
+  for (at.object = 0; at.object < objects_; ++at.object) {
+    const bool now = (detected >> at.object & 1) != 0;
+    if (now && std::ranges::find(list_, at.object, &Find::object) == list_.end())
+      list_.push_back(at);
+  }
+}
+
+}  // namespace ergocast

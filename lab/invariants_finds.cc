@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks what sensors detect, and that the record has what the world's states have.
+#include <string>
+
+#include "core/measure/detection.h"
+#include "core/mission/station.h"
+#include "lab/invariants.h"
+
+namespace ergocast::lab {
+
+void Invariants::check_detections(double t_s, const WorldState& world) {
+  const double radius_m = objects_m_.empty() ? 0 : sensor_radius_m(mission_);
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
+    for (int object = 0; object < kMaxObjects; ++object) {
+      if ((vehicle.detected >> object & 1) == 0) continue;
+      detections_[object].emplace(world.header.tick, vehicle.id);
+      const bool exists = object < std::ssize(objects_m_);
+      if (exists && (vehicle.position_m - objects_m_[static_cast<std::size_t>(object)]).norm() <=
+                        radius_m * (1 + 1e-9))
+        continue;
+      violate(t_s, Invariant::kDetectionsInReach, "vehicle " + std::to_string(vehicle.id),
+              text("object ", object, " at tick ", world.header.tick));
+    }
+  }
+}
+
+/// Whether each vehicle was a member that covers at each tick, and each row is recorded.
+bool Invariants::all_states_count(Tick excused) const {
+  const bool steady = std::ranges::all_of(truth_.roster(), [](const RosterEntry& entry) {
+    return entry.active_from == 0 && entry.active_until < 0 && !entry.recalled();
+  });
+  return steady && excused == 0 && truth_.holds().empty() && !any_station(mission_) &&
+         mission_.timing.pace == Pace::kLockstep;
+}
+
+/// Each find is a detection. If all detections count, it is the first of its object.
+void Invariants::check_finds(double t_s, const Finds& finds, Tick excused) {
+  const Tick ticks = ticks_of(mission_, &truth_.amendments());
+  std::string wrong;
+  std::map<int, std::pair<Tick, AgentId>> recorded;
+  for (const Find& find : finds.list()) {
+    recorded[find.object] = {find.tick, find.agent};
+    if (!detections_[find.object].contains({find.tick, find.agent}))
+      wrong = text("object ", find.object, " was not detected at tick ", find.tick);
+  }
+  for (const auto& [object, all] : detections_) {
+    if (!all_states_count(excused) || all.empty() || all.begin()->first >= ticks) continue;
+    const auto find = recorded.find(object);
+    if (find == recorded.end() || find->second != *all.begin())
+      wrong = text("object ", object, " was detected at tick ", all.begin()->first);
+  }
+  if (!wrong.empty()) violate(t_s, Invariant::kFindsAreRecorded, "the logger", wrong);
+}
+
+}  // namespace ergocast::lab

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks the objects of the simulated world.
+#include "scenario/rules/validate_objects.h"
+
+#include "core/motion/walls.h"
+#include "scenario/parse/convert.h"
+
+namespace ergocast {
+namespace {
+
+void validate_places(const proto::Scenario& scenario, Checks& checks) {
+  const proto::Objects& objects = scenario.world().objects();
+  if (objects.places_size() > kMaxObjects) {
+    checks.problem("world.objects",
+                   std::to_string(objects.places_size()) + " objects are above the limit " +
+                       std::to_string(kMaxObjects),
+                   "leave out " + std::to_string(objects.places_size() - kMaxObjects));
+  }
+  if (!checks.sound("domain")) return;
+  const Box domain = domain_of(scenario.domain());
+  const bool walls_known = checks.sound("world.walls") && checks.sound("target.keep_outs");
+  const Rings walls = walls_known ? mission_of(scenario).walls : Rings();
+  for (int i = 0; i < objects.places_size(); ++i) {
+    const std::string path = indexed("world.objects.places", i);
+    if (!checks.sound(path)) continue;
+    const Eigen::Vector3d x_m(objects.places(i).x_m(), objects.places(i).y_m(), 0);
+    if (!domain.contains(x_m)) {
+      checks.problem(path, "is outside the domain", "move it inside");
+    } else if (solid_at(walls, x_m.head<2>())) {
+      checks.problem(path, "is in a wall", "move it away");
+    }
+  }
+}
+
+}  // namespace
+
+void validate_objects(const proto::Scenario& scenario, Checks& checks) {
+  if (!scenario.world().has_objects() || !checks.sound("world.objects")) return;
+  const proto::Objects& objects = scenario.world().objects();
+  if (scenario.domain().has_size_z_m()) {
+    if (checks.sound("domain"))
+      checks.problem("world.objects", "objects belong to a plane, and the domain is a box",
+                     "remove them, or domain.size_z_m");
+    return;
+  }
+  if (objects.has_count() && objects.places_size() > 0) {
+    checks.problem("world.objects.count", "has no effect with places",
+                   "remove it to place the objects, or the places to have them drawn");
+  } else if (!objects.has_count() && objects.places_size() == 0) {
+    checks.missing("world.objects", "there are none",
+                   "add count: 1 to 32, or places { x_m: … y_m: … }");
+  }
+  validate_places(scenario, checks);
+}
+
+}  // namespace ergocast

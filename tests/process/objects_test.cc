@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A team that finds: real processes find what their simulation finds, also after kills, and say so.
+#include "tests/process/support/mission.h"
+
+namespace ergocast::test {
+namespace {
+
+class FindingObjects : public RunningMission {
+ protected:
+  static constexpr const char* kObjects = "world.objects.count=6";
+  static constexpr const char* kRadius = "sensor.radius_m=150";
+
+  /// The finds of the same mission as one process simulates it.
+  nlohmann::json simulated(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"simulate", scenario(), "--out", folder_ / "simulated"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(ergocast(words), 0) << output();
+    return nlohmann::json::parse(text_of(folder_ / "simulated" / "summary.json"))["objects"];
+  }
+};
+
+TEST_F(FindingObjects, FindTheSameAsTheSimulation) {
+  const std::vector<std::string> set{"--set", kObjects, "--set", kRadius, "--duration", "120"};
+  const auto objects = simulated(set);
+  EXPECT_EQ(objects["count"], 6);
+  const int found = objects["found"];
+  EXPECT_GT(found, 0);
+  EXPECT_EQ(objects["finds"].size(), objects["found"]);
+  const std::string line = "found by agent " + objects["finds"][0]["agent"].dump() + " at (";
+  const std::string end = "found " + std::to_string(found) + " of 6 objects";
+  for (const std::string& part : {line, end})
+    EXPECT_NE(output().find(part), std::string::npos) << part << '\n' << output();
+
+  std::vector<std::string> words{"run", scenario(), "--lockstep", "--out", out()};
+  words.insert(words.end(), set.begin(), set.end());
+  ASSERT_EQ(ergocast(words), 0) << output();
+  EXPECT_NE(output().find(end), std::string::npos) << output();
+  EXPECT_EQ(summary()["objects"], objects);
+  EXPECT_NE(log_of("logger").find(line), std::string::npos) << log_of("logger");
+  EXPECT_NE(log_of("logger").find(end), std::string::npos) << log_of("logger");
+  EXPECT_EQ(text_of(out() / "trajectory.csv"), text_of(folder_ / "simulated" / "trajectory.csv"));
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  EXPECT_NE(text_of(out() / "scenario.textproto").find("objects"), std::string::npos);
+}
+
+/// A restarted world detects the same again, and a restarted logger knows the earlier finds.
+TEST_F(FindingObjects, AreFoundOnceInSpiteOfKills) {
+  const std::vector<std::string> set{"--set", kObjects, "--set", kRadius};
+  const auto objects = simulated(set);
+  EXPECT_GT(objects["found"].get<int>(), 2);
+  Child mission = launch_held(scenario(), {"--lockstep", "--set", kObjects, "--set", kRadius});
+  kill_next({"ergocast-logger"});
+  kill_next({"ergocast-sim"});
+  release();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_EQ(summary()["restarts"], 2);
+  EXPECT_EQ(summary()["objects"], objects);
+}
+
+TEST_F(FindingObjects, WithoutObjectsNothingIsSaid) {
+  ASSERT_EQ(ergocast({"simulate", scenario(), "--duration", "20", "--out", out()}), 0) << output();
+  EXPECT_FALSE(summary().contains("objects"));
+  EXPECT_EQ(text_of(out() / "trajectory.csv").find("detected"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ergocast::test
