@@ -46,13 +46,14 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
 /// Whether the absence of a field has a meaning. Without a covariance a Gaussian is round. Without
 /// an origin places are in metres only. Without a vehicle all bodies are points, or a kind has the
 /// scenario's vehicle. Without a separation bodies keep no distance. Without a sensor measures
-/// assume the usual one. Without a band all modes count.
+/// assume the usual one. Without a band all modes count. Without objects there is nothing to find.
 bool means_something_absent(const FieldDescriptor& field) {
   return field.message_type() == proto::Covariance::descriptor() ||
          field.message_type() == proto::Origin::descriptor() ||
          field.message_type() == proto::Vehicle::descriptor() ||
          field.message_type() == proto::Separation::descriptor() ||
          field.message_type() == proto::Sensor::descriptor() ||
+         field.message_type() == proto::Objects::descriptor() ||
          field.message_type() == proto::Band::descriptor();
 }
 
