@@ -338,7 +338,7 @@ class Invariants {
   std::map<AgentId, Eigen::Vector3d> places_m_;  // in lockstep, of the newest state
   StateAssembler state_;                         // where a distance is kept
   std::vector<Eigen::Vector3d> objects_m_;
-  /// Of each object, by tick and agent.
+  /// For each object by tick and agent.
   std::map<int, std::set<std::pair<Tick, AgentId>>> detections_;
   std::map<AgentId, Eigen::Vector3d>
       positions_m_;  // only with a radio range, like the next members

@@ -60,7 +60,7 @@ struct StudyFigures {
   // What users ask for, core/measure/team_measures.h. A time that never came is infinite.
   double detection_probability = 0, half_time_s = 0, four_fifths_time_s = 0;
   double greatest_age_s = 0, wasserstein_m = 0, path_m = 0;
-  /// Of the mission's objects; nan if it has none. The time is infinite if none was found.
+  /// Figures of the mission's objects; nan if it has none. The time is infinite if none was found.
   double objects_found = 0, first_find_time_s = 0;
   double edge_share = 0;      ///< share of all agents' ticks at an edge
   double speed_mean_mps = 0;  ///< of the vehicles: their commands within the speed limit

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ledger of a team that finds: who detected each object first, where and when.
+// The ledger of a team that finds: the agent that detected each object first, where and when.
 #pragma once
 
 #include <cstdint>

@@ -69,7 +69,8 @@ TEST(Objects, AreOutsideWalls) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Mission mission = square(seed);
     mission.walls = {wall, room};
-    for (const Eigen::Vector3d& x_m : Objects(mission).places_m()) {
+    const Objects objects(mission);
+    for (const Eigen::Vector3d& x_m : objects.places_m()) {
       const bool inside = contains(room, x_m.head<2>());
       in_room += inside ? 1 : 0;
       EXPECT_TRUE(inside || !contains(wall, x_m.head<2>())) << x_m.transpose();
