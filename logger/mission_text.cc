@@ -99,11 +99,11 @@ class TextWriter : public FieldVisitor {
   void part(const Field&, const HiddenObjects& objects) {
     if (objects.total() == 0) return;
     enter("world");
-    text_ += "  objects {";
-    if (objects.count > 0) text_ += " count: " + std::to_string(objects.count);
+    text_ += "  objects {\n";
+    if (objects.count > 0) text_ += "    count: " + std::to_string(objects.count) + '\n';
     for (const Eigen::Vector3d& x_m : objects.places_m)
-      text_ += " places { " + place_text(x_m, mission_.domain.planar()) + " }";
-    text_ += " }\n";
+      text_ += "    places { " + place_text(x_m, mission_.domain.planar()) + " }\n";
+    text_ += "  }\n";
   }
   void part(const Field& field, const auto& part) {
     part_ = std::string(field.name) + '.';

@@ -32,11 +32,13 @@ void expect_all_said(const pb::Message& message) {
 TEST(PlanProto, IsWhatAPlansBytesAre) {
   Mission rich = test::rich_mission_in_space();
   rich.wait_for_logger = true;
+  Mission high = test::with_places(test::rich_mission());
+  high.objects.places_m[0].z() = 1;  // as no plan that is accepted
   proto::Plan all;
   for (const Mission& mission :
        {rich, test::with_inertia(rich), test::with_wings(test::rich_mission()),
         test::with_walls(test::rich_mission()), test::with_free_domain(test::rich_mission()),
-        test::with_lease(test::rich_mission()), test::with_stations(rich)}) {
+        test::with_lease(test::rich_mission()), test::with_stations(rich), high}) {
     const std::vector<std::byte> bytes = encode_plan(mission);
     proto::Plan plan;
     ASSERT_TRUE(plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
