@@ -102,7 +102,8 @@ class TextWriter : public FieldVisitor {
     text_ += "  objects {\n";
     if (objects.count > 0) text_ += "    count: " + std::to_string(objects.count) + '\n';
     for (const Eigen::Vector3d& x_m : objects.places_m)
-      text_ += "    places { " + place_text(x_m, mission_.domain.planar()) + " }\n";
+      text_ += "    places {\n      x_m: " + shortest(x_m.x()) +
+               "\n      y_m: " + shortest(x_m.y()) + "\n    }\n";
     text_ += "  }\n";
   }
   void part(const Field& field, const auto& part) {
