@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Measures how even a target is, and how much of it a team can pass over.
 #include "scenario/rules/law_advice.h"
 
 #include <cmath>

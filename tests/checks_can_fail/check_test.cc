@@ -313,6 +313,17 @@ class CheckCanFail : public Scenarios {
         << output();
   }
 
+  void expect_warning_of_law(const std::string& kind, const std::string& target,
+                             const std::string& what) {
+    std::string text = kGood;
+    text.insert(text.find("u_max_mps"), "kind: " + kind + " ");
+    text.replace(text.find("uniform_weight: 1"), 17, target);
+    write("s.textproto", text);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_NE(output().find("law.kind: " + kind + what), std::string::npos) << output();
+  }
+
   void expect_warning_of_rare_modes(const std::string& basis, const std::string& what) {
     std::string text = kGood + "basis { " + basis + " }\n";
     write("s.textproto", text.insert(text.find(kTime), "high_mode_period_factor: 60 "));
@@ -400,6 +411,9 @@ class CheckCanFail : public Scenarios {
     expect_warning_of_coarse_steps();
     expect_warning_of_flat_weights();
     expect_warning_of_short_memory();
+    expect_warning_of_law("SEARCH", "uniform_weight: 1", " goes from peak to peak");
+    expect_warning_of_law("MOW", "gaussians { mean_x_m: 50 mean_y_m: 25 sigma_m: 8 }",
+                          " gives all places equal time");
     expect_warning_of_rare_modes("modes_x: 8 modes_y: 8", "has no effect: the basis has 64 modes");
     expect_warning_of_rare_modes("modes_x: 9", "makes 600 ticks between two broadcasts");
     expect_warning_of_packing();
