@@ -201,7 +201,7 @@ TEST(Warnings, SayWhichLawFindsMore) {
             "nearly even: with time to pass over it 0.15 times, agents in lanes find more (write "
             "kind: MOW, or measure both: ergocast study with --vary law.kind=SEARCH,MOW --measure "
             "detection_probability)\n");
-  EXPECT_EQ(searched("SEARCH", "uniform_weight: 1", 900), "");
+  EXPECT_EQ(searched("SEARCH", "uniform_weight: 1", 1100), "");
   EXPECT_EQ(searched("SEARCH", peak, 60), "");
   // 2 π e · 8² of 5000 m², but for what the edges cut off.
   EXPECT_TRUE(has(searched("MOW", peak, 60), "spread over 21."));
