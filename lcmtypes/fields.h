@@ -93,7 +93,7 @@ struct Fields<Contribution> {
     io.holds(m.header.sender >= 0);
     io.count(m.steps);
     io.count(m.next_broadcast_tick);
-    io.finite(m.elapsed_s);
+    io.quantity(m.elapsed_s);
     io.number(m.block);
     io.number(m.mode_count);
     io.sums(m.sums, count);
@@ -119,7 +119,7 @@ struct Fields<Averages> {
     io.holds(m.header.sender >= 0);
     io.count(m.steps);
     io.count(m.next_broadcast_tick);
-    io.finite(m.elapsed_s);
+    io.quantity(m.elapsed_s);
     io.count(m.gained_steps);
     io.small(m.range, kShiftedRange);
     io.holds(m.range == 1 || m.range == kShiftedRange);
