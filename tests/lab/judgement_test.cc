@@ -3,6 +3,7 @@
 // no others; and it detects a message without a subscription.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -122,11 +123,12 @@ TEST(Laboratory, MissesEachMessageThatARoleDoesNotSubscribeTo) {
 // ---- radio range ----
 
 TEST(RadioRange, IsNoFault) {
+  const std::uint64_t seeds = std::getenv("ERGOCAST_TRIALS") != nullptr ? 10 : 4;
   for (const char* range : {"30", "50", "80"}) {
     for (const Pace pace : {Pace::kRealtime, Pace::kLockstep}) {
       const Scenario limited =
           team(pace, "\nlaw {", "\nworld { radio_range_m: " + std::string(range) + " }\nlaw {");
-      for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         // Whether the goal is reached with such a radio depends on the scenario.
         for (const TrialResult& result :
              {run_trial(limited, seed, {}), run_trial(limited, seed, lab::drawn(seed))}) {
