@@ -57,7 +57,8 @@ install(FILES ${CMAKE_SOURCE_DIR}/cmake/ErgocastConfig.cmake
 file(GLOB HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
   ${CMAKE_SOURCE_DIR}/core/*/*.h ${CMAKE_SOURCE_DIR}/plan/*.h ${CMAKE_SOURCE_DIR}/target/*.h
   ${CMAKE_SOURCE_DIR}/target/maps/*.h ${CMAKE_SOURCE_DIR}/team/*.h ${CMAKE_SOURCE_DIR}/agent/*.h)
-list(REMOVE_ITEM HEADERS core/base/vectorized.h core/basis/free_gains.h target/maps/map_text.h)
+list(REMOVE_ITEM HEADERS core/base/vectorized.h core/basis/free_gains.h target/maps/map_text.h
+  target/maps/map_yaml.h target/maps/occupancy_map.h target/maps/picture.h target/maps/png_reader.h)
 list(APPEND HEADERS lcmtypes/channels.h lcmtypes/codec.h lcmtypes/message_authenticator.h lab/ideal_team.h
   scenario/scenario.h scenario/parse/problem.h scenario/parse/source.h studies/study_run.h)
 foreach(header ${HEADERS})

@@ -46,9 +46,11 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
 
 ergocast_test(NAME target_tests LABELS unit OPTIMISED
   SOURCES
+    target/contour/contour_test.cc
     target/cosine_integrals_test.cc
     target/fractional_domains_test.cc
     target/map_file_test.cc
+    target/occupancy_map_test.cc
     target/polygon_target_test.cc
     target/raster_integral_test.cc
     target/target_in_space_test.cc
@@ -210,6 +212,7 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/free_domain_test.cc
     scenario/geojson_target_test.cc
     scenario/map_target_test.cc
+    scenario/map_walls_test.cc
     scenario/new_target_test.cc
     scenario/plan_proto_test.cc
     scenario/scenario_to_plan_test.cc

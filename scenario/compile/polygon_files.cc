@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenario/compile/drawn_polygons.h"
+#include "scenario/compile/map_walls.h"
 #include "scenario/parse/convert.h"
 #include "scenario/rules/polygon_flaw.h"
 #include "scenario/rules/validate_target.h"
@@ -38,6 +39,7 @@ void write_ring(const Ring& ring, Vertices& vertices) {
 /// Replaces the file that `written` names by a polygon between the same heights.
 void write_polygon(const Polygon& polygon, proto::Polygon& written) {
   written.clear_file();
+  written.clear_unknown_free();
   written.clear_vertices();
   written.clear_holes();
   write_ring(polygon.outline, *written.mutable_vertices());
@@ -58,11 +60,13 @@ class PolygonFileReader {
     if (scenario.has_origin() && is_place) plane_.emplace(place);
   }
 
-  void run() {
+  /// Returns the pictures of occupancy maps.
+  std::vector<std::filesystem::path> run() {
     for (int i = 0, listed = target_.regions_size(); i < listed; ++i) region(i);
     polygons(*target_.mutable_keep_outs(), "target.keep_outs");
     if (scenario_.world().walls_size() > 0)
       polygons(*scenario_.mutable_world()->mutable_walls(), "world.walls");
+    return std::move(pictures_);
   }
 
  private:
@@ -104,6 +108,10 @@ class PolygonFileReader {
   /// @param area  [m²] of all in the file
   std::vector<PlacedPolygon> read(const proto::Polygon& written, const std::string& path,
                                   double& area) {
+    const bool map = written.has_file() && is_occupancy_map(written.file());
+    if (written.has_unknown_free() && !map)
+      checks_.problem(path + ".unknown_free", "is for occupancy maps: files that end in .yaml",
+                      "remove it");
     if (!written.has_file()) return {};
     const std::string field = path + ".file";
     if (written.vertices_size() > 0 || written.holes_size() > 0) {
@@ -111,6 +119,7 @@ class PolygonFileReader {
       return {};
     }
     file_ = written.file();
+    if (map) return in_map(written, path, field);
     const bool drawing = file_.ends_with(".svg");
     if (!drawing && !scenario_.has_origin()) {
       checks_.problem(field, "needs to know where on the earth the scenario lies",
@@ -124,6 +133,28 @@ class PolygonFileReader {
     auto found = drawing ? drawn(field) : on_earth(field);
     if (!found) return {};
     return inside(std::move(*found), field, area);
+  }
+
+  /// The walls that an occupancy map has in and near the domain.
+  std::vector<PlacedPolygon> in_map(const proto::Polygon& written, const std::string& path,
+                                    const std::string& field) {
+    if (!path.starts_with("world.walls")) {
+      checks_.problem(field, "names an occupancy map, which has walls",
+                      "write world { walls { file: … } }; the target leaves walls out");
+      return {};
+    }
+    const Box domain = domain_of(scenario_.domain());
+    const bool has_area = domain.size_m.x() > 0 && domain.size_m.y() > 0;
+    if (!checks_.sound("domain") || !has_area) return {};
+    auto walls = read_map_walls(file_, domain, written.unknown_free());
+    if (!walls) {
+      checks_.problem(field, walls.error().what, walls.error().remedy);
+      return {};
+    }
+    pictures_.push_back(std::move(walls->image));
+    for (const PlacedPolygon& one : walls->polygons)
+      if (!sound(one, field, domain)) return {};
+    return std::move(walls->polygons);
   }
 
   /// The polygons that meet the domain, if all are valid.
@@ -240,6 +271,7 @@ class PolygonFileReader {
   Findings& findings_;
   std::optional<LocalPlane> plane_;  // nothing while the origin is invalid
   std::string file_;                 // that is being read
+  std::vector<std::filesystem::path> pictures_;
 };
 
 }  // namespace
@@ -253,7 +285,8 @@ std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario,
   for (const proto::Region& region : scenario.target().regions()) add(region.polygon());
   for (const proto::Polygon& keep_out : scenario.target().keep_outs()) add(keep_out);
   for (const proto::Polygon& wall : scenario.world().walls()) add(wall);
-  PolygonFileReader(scenario, checks, findings).run();
+  const auto pictures = PolygonFileReader(scenario, checks, findings).run();
+  files.insert(files.end(), pictures.begin(), pictures.end());
   return files;
 }
 

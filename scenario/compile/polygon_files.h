@@ -13,7 +13,8 @@ namespace ergocast {
 /// Reads the file of each polygon that has one. The first polygon in it takes the place of the
 /// name, the others follow at the end of the list; those that lie apart from the domain are left
 /// out. The polygons of a region share its weight by their areas. Reports problems of a file with
-/// its member; the name of such a file stays. Returns the names of all files.
+/// its member; the name of such a file stays. Returns the names of all files,
+/// also of the pictures of occupancy maps.
 /// @pre the defaults are filled in
 std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario, Checks& checks,
                                                       Findings& findings);

@@ -17,12 +17,6 @@ constexpr std::string_view kBlanks = " \t\r";
 /// 8192 numbers of more than a hundred characters.
 constexpr long long kMaxLineBytes = 1 << 20;
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
 std::string in_line(const fs::path& file, long long line) {
   return file.string() + ", line " + std::to_string(line);
 }

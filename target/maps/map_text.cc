@@ -8,17 +8,20 @@
 #include "text/read_number.h"
 
 namespace ergocast {
-namespace {
 
-/// A word as an error message quotes it.
-std::string quoted(std::string_view word) {
+std::string_view trimmed(std::string_view text) {
+  constexpr const char* kAround = " \t\r";
+  const std::size_t first = text.find_first_not_of(kAround);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kAround) - first + 1);
+}
+
+std::string quoted_word(std::string_view word) {
   constexpr std::size_t kMost = 40;
   std::string text;
   for (const char c : word.substr(0, kMost)) text += c >= ' ' && c <= '~' ? c : '?';
   return word.size() > kMost ? text + "..." : text;
 }
-
-}  // namespace
 
 std::optional<double> number_in(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -36,10 +39,11 @@ std::optional<MapProblem> check_density(double value, const std::string& where) 
 Result<double, MapProblem> density_in(std::string_view text, const std::string& where) {
   const std::optional<double> value = number_in(text);
   if (!value) {
-    return failure(MapProblem{where + ": " + quoted(text) + " is not a number",
+    return failure(MapProblem{where + ": " + quoted_word(text) + " is not a number",
                               "write numbers only, with a point for decimals"});
   }
-  if (auto problem = check_density(*value, where + ": " + quoted(text))) return failure(*problem);
+  if (auto problem = check_density(*value, where + ": " + quoted_word(text)))
+    return failure(*problem);
   return *value;
 }
 

@@ -13,6 +13,12 @@
 
 namespace ergocast {
 
+/// The text without blanks around it.
+std::string_view trimmed(std::string_view text);
+
+/// A word as an error message quotes it.
+std::string quoted_word(std::string_view word);
+
 /// The number that the whole of `text` represents, in C's notation and any locale; else nothing.
 std::optional<double> number_in(std::string_view text);
 

@@ -57,6 +57,64 @@ void write_grids(const fs::path& folder) {
   grid("away.nc", [&](WaterColumn& c) { scale(c.at("y"), 1, 10000); });
 }
 
+/// Occupancy maps of 100 m by 50 m: a good one, room.yaml, and one for each mistake.
+void write_rooms(const fs::path& folder) {
+  const std::string row = repeated(6, "254 ") + "0 " + repeated(13, "254 ");
+  write_file(folder / "room.pgm",
+             "P2 20 10 255\n" + repeated(20, "254 ") + row + repeated(160, "254 "));
+  const auto room = [&](const char* name, const std::string& from, const std::string& to) {
+    std::string about =
+        "image: room.pgm\nresolution: 5\norigin: [0, 0, 0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    if (!from.empty()) about.replace(about.find(from), from.size(), to);
+    write_file(folder / name, about);
+  };
+  const auto picture = [&](const std::string& name, const std::string& content) {
+    write_file(folder / (name + ".pgm"), content);
+    room((name + ".yaml").c_str(), "room.pgm", name + ".pgm");
+  };
+  room("room.yaml", "", "");
+  room("wrong.yaml", "0.196", "0.7");
+  room("percent.yaml", "0.65", "65");
+  room("fancy.yaml", "negate: 0", "negate: 0\nmode: fancy");
+  room("other.yaml", "negate: 0", "negate: 0\nfoo: 1");
+  room("again.yaml", "negate: 0", "negate: 0\nnegate: 0");
+  room("grey.yaml", "negate: 0", "negate: 2");
+  room("bare.yaml", "negate: 0", "negate:");
+  room("lacks.yaml", "negate: 0\n", "");
+  room("indented.yaml", "negate: 0", "  - 0");
+  room("nameless.yaml", "room.pgm", "''");
+  room("gone.yaml", "room.pgm", "gone.pgm");
+  room("point.yaml", "resolution: 5", "resolution: 0");
+  room("words.yaml", "resolution: 5", "resolution: five");
+  room("pair.yaml", "[0, 0, 0]", "[0, 0]");
+  room("apart.yaml", "[0, 0, 0]", "[1000, 0, 0]");
+  picture("solid", "P2 2 1 255 0 0");
+  picture("white", "P2 20 10 255 " + repeated(200, "254 "));
+  picture("cut", "P2 20 10 255 254");
+  picture("more", "P2 1 1 255 254 0");
+  picture("colour", "P3 1 1 255 1 1 1");
+  picture("shape", "P2 x 1 255 1");
+  picture("bits", "P2 1 1 65536 1");
+  picture("bright", "P2 1 1 255 256");
+  picture("letters", "P2 1 1 255 a");
+  write_png(folder / "lace.png", 4, 4, {.interlace = PNG_INTERLACE_ADAM7},
+            [](int, int, int) { return 0; });
+  room("lace.yaml", "room.pgm", "lace.png");
+  const auto dots = [](int columns, int rows) {
+    std::string bytes = "P5 " + std::to_string(columns) + ' ' + std::to_string(rows) + " 255\n";
+    for (int i = 0; i < columns * rows; ++i)
+      bytes += i % 2 == 1 && i / columns % 2 == 1 ? '\0' : '\xfe';
+    return bytes;
+  };
+  write_file(folder / "dots.pgm", dots(80, 40));
+  write_file(folder / "noise.pgm", dots(2100, 2100));
+  const std::string place =
+      "\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+  write_file(folder / "dots.yaml", "image: dots.pgm\nresolution: 1.25" + place);
+  write_file(folder / "noise.yaml", "image: noise.pgm\nresolution: 0.02" + place);
+}
+
 /// A file that root cannot open for reading either.
 fs::path unreadable_file() {
   for (const auto& bus : fs::directory_iterator("/sys/bus")) {
@@ -78,6 +136,7 @@ void write_mistaken_files(const fs::path& folder) {
     write_file(folder / name, text);
   };
   write_grids(folder);
+  write_rooms(folder);
   const std::string header = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n";
   write("good.asc", header + "1 2\n");
   write("even.csv", "1,2\n3,4\n");

@@ -240,6 +240,24 @@ std::vector<Mistake> mistakes_of_objects() {
   };
 }
 
+std::vector<Mistake> mistakes_of_room_maps() {
+  const auto map = [](const std::string& file) { return "file: \"" + file + ".yaml\" "; };
+  std::vector<Mistake> mistakes = {
+      {kLaw, "world { speed_limit_mps: 1000 walls { unknown_free: true } } law {",
+       "world.walls[0].unknown_free: is for occupancy maps"},
+      {kUniform, kUniform + " keep_outs { " + map("room") + "}",
+       "target.keep_outs[0].file: names an occupancy map"},
+  };
+  for (const char* name :
+       {"wrong",    "percent", "fancy", "other", "again",  "grey",    "bare",  "lacks", "indented",
+        "nameless", "gone",    "point", "words", "pair",   "apart",   "solid", "white", "cut",
+        "more",     "colour",  "shape", "bits",  "bright", "letters", "lace",  "dots",  "noise"}) {
+    mistakes.push_back({kLaw, "world { speed_limit_mps: 1000 walls { " + map(name) + "} } law {",
+                        "world.walls[0].file: "});
+  }
+  return mistakes;
+}
+
 /// Stations where no agent can stay, or which it cannot reach in time.
 std::vector<Mistake> mistakes_of_stations() {
   const std::string start = "starts { x_m: 10 y_m: 20 }", second = " random_count: 1";
@@ -354,7 +372,7 @@ std::vector<Mistake> scenario_mistakes() {
   for (const auto& mistakes :
        {mistakes_of_the_text(), mistakes_between_fields(), target_mistakes(), mistakes_of_kinds(),
         mistakes_of_free_domains(), mistakes_of_walls(), mistakes_of_stations(),
-        mistakes_of_objects(), mistakes_in_space()}) {
+        mistakes_of_objects(), mistakes_of_room_maps(), mistakes_in_space()}) {
     all.insert(all.end(), mistakes.begin(), mistakes.end());
   }
   return all;

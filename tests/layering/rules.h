@@ -73,7 +73,9 @@ inline const std::vector<Rule> kRules = {
     {"team", {"core", "plan"}, {}},
     {"lcmtypes", {"text", "core", "plan", "team"}, {kLcmTypes, kHash, kCrypto}},
     {"target", {"text", "core"}, {}},
-    {"target/maps", {"text", "core", "target"}, {kPng, kFiles}},
+    // Polygons around cells: for maps of robots, and for drawings.
+    {"target/contour", {"core", "target"}, {}},
+    {"target/maps", {"text", "core", "target", "target/contour"}, {kPng, kFiles}},
     {"target/maps/symbol.h", {}, {kLoader}},
     {"target/maps/netcdf_library.cc", {"target/maps"}, {kLoader}},
     // Places on the earth, and drawings: for scenarios and exports, not for participants.
@@ -83,8 +85,8 @@ inline const std::vector<Rule> kRules = {
      {"text", "core", "plan", "target", "target/maps", "target/geo", "scenario/parse"},
      {kProtobuf, kFiles}},
     {"scenario/compile",
-     {"text", "core", "modes", "plan", "target", "target/maps", "target/geo", "scenario/parse",
-      "scenario/rules"},
+     {"text", "core", "modes", "plan", "target", "target/contour", "target/maps", "target/geo",
+      "scenario/parse", "scenario/rules"},
      {kProtobuf, kFiles}},
     {"scenario",
      {"text", "core", "modes", "plan", "target", "target/maps", "target/geo", "scenario/parse",

@@ -253,6 +253,7 @@ const std::map<std::string, Rule>& rules() {
       {"Separation.lease_s", may(either(0, number(5, 50)))},
 
       {"Polygon.solid", may(kTrue)},
+      {"Polygon.unknown_free", {kTrue, 0, 0}},  // for maps of robots alone
       {"World.walls", many(0, 2)},
       {"World.objects", may(draw_block)},
       {"Objects.count", may(number(1, 6))},  // or places: see drawn_agreement.h

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The walls that an occupancy map has in a domain.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/base/geometry.h"
+#include "scenario/compile/drawn_polygons.h"
+#include "target/maps/occupancy_map.h"
+
+namespace ergocast {
+
+struct MapWalls {
+  std::vector<PlacedPolygon> polygons;
+  std::filesystem::path image;
+};
+
+/// The solid space of a map in and near a domain, as polygons that do not touch. Occupied cells are
+/// solid; unknown ones and all outside the map, too, unless `unknown_free`. What is outside the map
+/// does not matter to a domain that the map covers. Without `unknown_free`, patches of up to four
+/// unknown cells amid free ones are free, and pockets of less than 1/1000 of the free cells are
+/// solid. The polygons have at most kMaxWallVertices corners; polygons_around() straightens them
+/// both ways if that takes less.
+Result<MapWalls, MapProblem> read_map_walls(const std::filesystem::path& yaml, const Box& domain,
+                                            bool unknown_free);
+
+}  // namespace ergocast
