@@ -90,10 +90,7 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
     if (!truth_.receive(*part)) return;
     const Amendments& list = truth_.amendments();
     shifted_ = shifted_ || !list.targets.empty() || !list.ends.empty();
-    for (const Zone& zone : list.zones) {
-      zone_revisions_.try_emplace(zone.number, truth_.revision());
-      zones_.insert_or_assign(zone.number, zone);
-    }
+    for (const Zone& zone : list.zones) note_zone(zone);
     note_ends();
     note_end_of(list);
     return check_closed_numbers(t_s);

@@ -281,6 +281,7 @@ class Invariants {
   void check_wall(double t_s, const Vehicle& vehicle);
   void check_zones(double t_s, const WorldState& world);
   void check_zone(double t_s, const WorldState& world, const Zone& zone);
+  void note_zone(const Zone& zone);
   void forget_bound(std::int32_t zone);
   bool may_leave_a_zone(AgentId id, const Eigen::Vector3d& x_m, Tick tick) const;
   bool any_zone_closed_at(Tick tick) const;

@@ -70,6 +70,18 @@ void Invariants::check_zones(double t_s, const WorldState& world) {
   }
 }
 
+void Invariants::note_zone(const Zone& zone) {
+  // The list of another coordinator may give a number to another zone.
+  const auto known = zones_.find(zone.number);
+  if (known != zones_.end() &&
+      (known->second.closed != zone.closed || zone_hash(known->second) != zone_hash(zone))) {
+    zone_revisions_.erase(zone.number);
+    std::erase_if(beside_zones_, [&](const auto& one) { return one.first.first == zone.number; });
+  }
+  zone_revisions_.try_emplace(zone.number, truth_.revision());
+  zones_.insert_or_assign(zone.number, zone);
+}
+
 void Invariants::forget_bound(std::int32_t zone) {
   for (auto& [which, beside] : beside_zones_)
     if (which.first == zone) beside.bound = false;
