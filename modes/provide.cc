@@ -51,21 +51,10 @@ std::uint64_t key_of(const Mission& mission) {
   return XXH3_64bits(numbers.data(), numbers.size() * sizeof(double));
 }
 
-/// Whether two segments are so near each other that they may touch.
-bool boxes_touch(const Segment& one, const Segment& other) {
-  const Eigen::Array2d low = one.from_m.cwiseMin(one.to_m), high = one.from_m.cwiseMax(one.to_m);
-  return (other.from_m.cwiseMax(other.to_m).array() >= low).all() &&
-         (other.from_m.cwiseMin(other.to_m).array() <= high).all();
-}
-
-bool sees(const Rings& walls, const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
+bool sees(const IndexedRings& walls, const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
   if (from_m == to_m) return !solid_at(walls, from_m);
   const Segment way{from_m, to_m};
-  bool free = true;
-  for_segments(walls, [&](const Segment& edge) {
-    free = free && !(boxes_touch(way, edge) && touch(way, edge));
-  });
-  return free;
+  return !walls.find_near(way, 0, [&](const Edge& edge) { return touch(way, edge.segment); });
 }
 
 /// The walls from the domain's corner, rounded to 2⁻⁴⁰ of its sides. Then the domain's origin does
@@ -83,7 +72,7 @@ Rings walls_from_corner(const Mission& mission) {
 }
 
 Result<ModesTable> computed(const Mission& mission) {
-  const Rings walls = walls_from_corner(mission);
+  const IndexedRings walls = walls_from_corner(mission);
   auto grid = free_grid(mission.domain, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return sees(walls, a, b);
   });

@@ -172,6 +172,11 @@ class PlanReader {
         ring.emplace_back(numbers[i - 1], numbers[i]);
     });
   }
+  void value(int field, IndexedRings& rings) const {
+    Rings read;
+    value(field, read);
+    rings = std::move(read);
+  }
   template <class T>
   void number(int field, T& value, double usual) const {
     this->value(field, value);

@@ -13,7 +13,7 @@
 namespace ergocast {
 
 /// The most bytes of a plan: what the parts of MISSION carry, team/messages.h.
-inline constexpr std::size_t kMaxPlanBytes = std::size_t{256} * 1024;
+inline constexpr std::size_t kMaxPlanBytes = std::size_t{512} * 1024;
 
 /// The plan of `mission`, which names this program's version. Equal missions give equal bytes.
 /// @pre within_limits(mission), plan/mission_limits.h: otherwise no receiver accepts the plan.

@@ -32,11 +32,11 @@ inline constexpr int kMaxDigestEntriesPerMessage = 40;
 /// several parts.
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 /// Limit (Messages): parts of a plan. Beyond it: the scenario is refused.
-inline constexpr int kMaxPlanParts = 512;
+inline constexpr int kMaxPlanParts = 1024;
 static_assert(std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage == kMaxPlanBytes);
-/// Limit (Messages): parts of a MISSION: as many as the largest roster needs. Beyond it: the part
-/// is refused with `range`.
-inline constexpr int kMaxMissionParts = 683;
+/// Limit (Messages): parts of a MISSION: those of a plan, and of its amendments. Beyond it: the
+/// part is refused with `range`.
+inline constexpr int kMaxMissionParts = 1195;
 static_assert(kMaxMissionParts >= kMaxPlanParts &&
               std::size_t{kMaxMissionParts} * kMaxRosterEntriesPerMessage >= kMaxRosterEntries);
 /// Limit (Messages): parts of an AMEND: as many as the largest target needs. Beyond it: the part is

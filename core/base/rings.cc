@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests every pair of edges in extended precision, computes areas by the shoelace formula and
-// membership by counting crossings.
+// Tests the pairs of edges that are near each other in extended precision, computes areas by the
+// shoelace formula and membership by counting crossings.
 #include "core/base/rings.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+
+#include "core/base/indexed_rings.h"
 
 namespace ergocast {
 namespace {
@@ -29,11 +32,6 @@ bool folds_back(const Segment& edge, const Segment& next) {
   return side(edge.from_m, edge.to_m, next.to_m) == 0 &&
          (edge.to_m - edge.from_m).dot(next.to_m - next.from_m) < 0;
 }
-
-struct Edge {
-  Segment segment;
-  std::size_t ring, corner;
-};
 
 /// Whether the position of two edges to each other is allowed; `count` is the size of a ring.
 bool may_meet(const Edge& e, const Edge& f, std::size_t count) {
@@ -60,18 +58,15 @@ double distance_m(const Segment& one, const Segment& other) {
                              from(other.from_m, one), from(other.to_m, one)}));
 }
 
-std::optional<EdgePair> touching_edges(const Rings& rings) {
-  std::vector<Edge> edges;
-  for (std::size_t ring = 0; ring < rings.size(); ++ring) {
-    const Ring& corners = rings[ring];
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      edges.push_back({{corners[i], corners[(i + 1) % corners.size()]}, ring, i});
-  }
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (!may_meet(edges[i], edges[j], rings[edges[i].ring].size()))
-        return EdgePair{edges[i].ring, edges[i].corner, edges[j].ring, edges[j].corner};
-    }
+std::optional<EdgePair> touching_edges(const IndexedRings& rings) {
+  for (const Edge& edge : rings.edges()) {
+    const Edge* first = nullptr;
+    rings.find_near(edge.segment, 0, [&](const Edge& other) {
+      const bool earlier = other.number < (first == nullptr ? edge.number : first->number);
+      if (earlier && !may_meet(edge, other, rings[edge.ring].size())) first = &other;
+      return false;
+    });
+    if (first != nullptr) return EdgePair{edge.ring, edge.corner, first->ring, first->corner};
   }
   return {};
 }
@@ -88,20 +83,27 @@ double area_m2(const Ring& ring) {
 bool contains(const Ring& ring, const Eigen::Vector2d& x_m) {
   bool inside = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-    if ((a.y() > x_m.y()) == (b.y() > x_m.y())) continue;
-    const double share = (x_m.y() - a.y()) / (b.y() - a.y());
-    if (x_m.x() < a.x() + share * (b.x() - a.x())) inside = !inside;
+    if (crosses_ray({ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]}, x_m)) inside = !inside;
   }
   return inside;
 }
 
-std::vector<int> depths(const Rings& rings) {
+std::vector<int> depths(const IndexedRings& rings) {
   std::vector<int> depths;
-  for (const Ring& ring : rings) {
-    depths.push_back(static_cast<int>(std::ranges::count_if(rings, [&](const Ring& other) {
-      return &other != &ring && contains(other, ring.front());
-    })));
+  std::vector<std::uint32_t> crossed;
+  for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+    crossed.clear();
+    rings.for_crossed(rings[ring].front(), [&](const Edge& edge) {
+      if (edge.ring != ring) crossed.push_back(edge.ring);
+    });
+    std::ranges::sort(crossed);
+    int depth = 0;  // the rings that are crossed an odd number of times
+    for (auto at = crossed.begin(); at != crossed.end();) {
+      const auto next = std::upper_bound(at, crossed.end(), *at);
+      depth += static_cast<int>((next - at) % 2);
+      at = next;
+    }
+    depths.push_back(depth);
   }
   return depths;
 }

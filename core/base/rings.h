@@ -26,6 +26,14 @@ struct Segment {
   }
 };
 
+/// Whether the ray from `x_m` to the right crosses an edge.
+inline bool crosses_ray(const Segment& edge, const Eigen::Vector2d& x_m) {
+  const Eigen::Vector2d &a = edge.from_m, &b = edge.to_m;
+  if ((a.y() > x_m.y()) == (b.y() > x_m.y())) return false;
+  const double share = (x_m.y() - a.y()) / (b.y() - a.y());
+  return x_m.x() < a.x() + share * (b.x() - a.x());
+}
+
 /// Calls `each(segment)` for every edge of every ring, in order.
 void for_segments(const Rings& rings, auto&& each) {
   for (const Ring& ring : rings) {
@@ -44,9 +52,10 @@ double distance_m(const Segment& one, const Segment& other);
 struct EdgePair {
   std::size_t ring, corner, other_ring, other_corner;
 };
+class IndexedRings;
 /// The first pair of edges that cross or touch. Neighbours may touch at their common corner, unless
 /// one goes back along the other.
-std::optional<EdgePair> touching_edges(const Rings& rings);
+std::optional<EdgePair> touching_edges(const IndexedRings& rings);
 
 /// Area of a ring that does not cross itself [m²], positive in either orientation.
 double area_m2(const Ring& ring);
@@ -60,6 +69,6 @@ std::vector<double> crossings_m(const Rings& rings, int axis, double at_m);
 
 /// How many other rings each ring is inside of.
 /// @pre no edges touch
-std::vector<int> depths(const Rings& rings);
+std::vector<int> depths(const IndexedRings& rings);
 
 }  // namespace ergocast

@@ -17,12 +17,6 @@ namespace {
 /// free.
 constexpr std::uint64_t kTries = 64;
 
-/// Whether an odd number of rings contain `x_m`.
-bool in_walls(const Rings& walls, const Eigen::Vector3d& x_m) {
-  const auto around = [&](const Ring& ring) { return contains(ring, x_m.head<2>()); };
-  return std::ranges::count_if(walls, around) % 2 == 1;
-}
-
 /// @param mission  in the basis (2)
 std::vector<Eigen::Vector3d> drawn_places_m(const Mission& mission) {
   const Cells cells = measure_cells(mission);
@@ -43,7 +37,7 @@ std::vector<Eigen::Vector3d> drawn_places_m(const Mission& mission) {
     for (std::uint64_t step = 1; step <= kTries; ++step) {
       const Eigen::Vector2d off = drawn(step).array() - 0.5;
       x_m.head<2>() = middle_m.head<2>() + off.cwiseProduct(cells.size_m.head<2>());
-      if (!in_walls(mission.walls, x_m)) break;
+      if (!mission.walls.solid_at(x_m.head<2>())) break;
       x_m = middle_m;
     }
     places_m.push_back(x_m);

@@ -10,7 +10,7 @@
 #include "core/base/contribution.h"
 #include "core/base/geometry.h"
 #include "core/base/ids.h"
-#include "core/base/rings.h"
+#include "core/base/indexed_rings.h"
 #include "core/basis/basis.h"
 
 namespace ergocast {
@@ -163,7 +163,7 @@ struct Mission {
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;          ///< range within which agents receive each other; 0: unlimited
   double speed_limit_mps = 0;        ///< of vehicles whose kind has none of its own; 0: none
-  Rings walls;                       ///< solid: where an odd number of rings is around
+  IndexedRings walls;                ///< solid: where an odd number of rings is around
   double wall_clearance_m = 0;       ///< how far bodies keep from them
   HiddenObjects objects;
   VehicleLimits vehicle;  ///< of those whose kind has none of its own

@@ -32,7 +32,7 @@ constexpr std::array<Offset, 8> kNeighbours = {
 
 }  // namespace
 
-FreeRegion::FreeRegion(const Rings& walls, const Box& domain, double kept_m, int cells)
+FreeRegion::FreeRegion(const IndexedRings& walls, const Box& domain, double kept_m, int cells)
     : domain_(domain) {
   const Eigen::Vector2d size_m = domain.size_m.head<2>();
   const Eigen::Vector2d counts = (size_m / size_m.maxCoeff() * cells).cwiseMax(kFewestCells);
@@ -69,17 +69,15 @@ int FreeRegion::cell_at(const Eigen::Vector2d& x_m) const {
   return row * columns_ + column;
 }
 
-bool FreeRegion::joined(const Rings& walls, int from, int to, double kept_m) const {
+bool FreeRegion::joined(const IndexedRings& walls, int from, int to, double kept_m) const {
   const Segment way{center_m(from), center_m(to)};
   const double spare_m = clearance_m_[static_cast<std::size_t>(from)] - kept_m;
   if (spare_m * spare_m > (way.to_m - way.from_m).squaredNorm()) return true;
-  bool free = true;
-  for_segments(walls, [&](const Segment& edge) { free = free && distance_m(way, edge) >= kept_m; });
-  return free;
+  return is_clear(walls, way, kept_m);
 }
 
 /// Each pair of neighbours once: a bit and the opposite one.
-void FreeRegion::join(const Rings& walls, double kept_m) {
+void FreeRegion::join(const IndexedRings& walls, double kept_m) {
   joins_.assign(part_.size(), 0);
   for (int cell = 0; cell < cells(); ++cell) {
     for (std::size_t i = 0; i < kNeighbours.size() / 2; ++i) {

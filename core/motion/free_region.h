@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/base/geometry.h"
-#include "core/base/rings.h"
+#include "core/base/indexed_rings.h"
 
 namespace ergocast {
 
@@ -24,7 +24,7 @@ class FreeRegion {
  public:
   /// @pre `domain` is planar, and no edges of `walls` touch
   /// @param kept_m  above 0
-  FreeRegion(const Rings& walls, const Box& domain, double kept_m, int cells = 256);
+  FreeRegion(const IndexedRings& walls, const Box& domain, double kept_m, int cells = 256);
 
   /// The number of parts that no way joins, the largest first. Parts below 1/1000 of the free area
   /// are left out: they are niches that the grid does not resolve.
@@ -72,8 +72,8 @@ class FreeRegion {
   static constexpr int kNiche = 3;
 
  private:
-  void join(const Rings& walls, double kept_m);
-  bool joined(const Rings& walls, int from, int to, double kept_m) const;
+  void join(const IndexedRings& walls, double kept_m);
+  bool joined(const IndexedRings& walls, int from, int to, double kept_m) const;
   /// Calls `each(neighbour, length of the step)` for the neighbours that a cell is joined with.
   void for_joined(int cell, auto&& each) const;
   void grow(int seed, int part);

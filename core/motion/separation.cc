@@ -55,6 +55,7 @@ SeparationFilter::SeparationFilter(const Mission& mission, Tick hold_ticks)
       // A wall that touches a body may need four sets.
       constraints_(kMaxAgents + 4 * vertex_count(mission.walls)) {
   taken_.reserve(kMaxAgents + 4 * vertex_count(mission.walls));
+  near_.reserve(vertex_count(mission.walls));
   for (const Motion& motion : motions_)
     kept_from_walls_m_.push_back(kept_from_walls_m(mission, motion));
   for (const Motion& motion : motions_) {

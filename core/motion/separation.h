@@ -26,6 +26,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -99,6 +100,8 @@ class SeparationFilter {
   /// The set that a body keeps under commands of 0: the places [from, from + along].
   struct HoldingSet {
     Eigen::Vector3d from_m, along_m;
+
+    Segment seen_from_above() const { return {from_m.head<2>(), (from_m + along_m).head<2>()}; }
   };
 
   /// What follows for two bodies from their kinds alone.
@@ -113,6 +116,9 @@ class SeparationFilter {
   Pair pair_between(const Motion& one, const Motion& other) const;
   double margin_m(double fastest_mps) const;
   void begin(const Mover& self, double reach_m);
+  double kept_late_m(const Mover& self, double clearance_m) const;
+  double unsure_of_place_m(const Mover& self) const;
+  double reached_m(const Mover& self, double clearance_m) const;
   void take(AgentId whose, const StepConstraints::Set& set);
   void keep_from_walls(const Mover& self, const HoldingSet& own);
   void keep_from_wall(const Mover& self, const HoldingSet& own, const Segment& edge, double kept_m);
@@ -147,6 +153,7 @@ class SeparationFilter {
   std::vector<Pair> pairs_;  // of each kind with each
   StepConstraints constraints_;
   std::vector<AgentId> taken_;             // body of each constraint; kUnassigned: a wall
+  std::vector<std::uint32_t> near_;        // scratch: the edges of walls near the body
   std::vector<double> kept_from_walls_m_;  // by each kind of agents
   std::vector<Zone> zones_;
   std::vector<double> kept_from_zones_m_, bound_from_zones_m_;  // by each kind of agents

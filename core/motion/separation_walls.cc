@@ -24,9 +24,9 @@ namespace ergocast {
 
 void SeparationFilter::keep_from_walls(const Mover& self, const HoldingSet& own) {
   const auto kind = static_cast<std::size_t>(planned_kind(mission_, self.id));
-  for_segments(mission_.walls, [&](const Segment& edge) {
-    keep_from_wall(self, own, edge, kept_from_walls_m_[kind]);
-  });
+  const double kept_m = kept_from_walls_m_[kind];
+  mission_.walls.for_near(own.seen_from_above(), reached_m(self, kept_m), near_,
+                          [&](const Segment& edge) { keep_from_wall(self, own, edge, kept_m); });
   if (!zones_.empty()) keep_from_zones(self, own);
 }
 
@@ -54,9 +54,30 @@ void SeparationFilter::keep_from_zones(const Mover& self, const HoldingSet& own)
 
 void SeparationFilter::keep_from_wall(const Mover& self, const HoldingSet& own, const Segment& edge,
                                       double kept_m) {
-  const Segment way{own.from_m.head<2>(), (own.from_m + own.along_m).head<2>()};
-  const Eigen::Vector2d y_m = shortest_to_m(way, edge);
+  const Eigen::Vector2d y_m = shortest_to_m(own.seen_from_above(), edge);
   keep_from_plane(self, own, on_ground(y_m), y_m.squaredNorm(), kept_m);
+}
+
+/// V T + e more if the body follows late. late_edge_margin_m() has 2 e, and one of them is already
+/// in the uncertainty.
+double SeparationFilter::kept_late_m(const Mover& self, double clearance_m) const {
+  const Separation& rule = mission_.separation;
+  const double late_m =
+      rule.response_s > 0 ? late_edge_margin_m(mission_, self.id) - rule.position_error_m : 0;
+  return clearance_m + late_m;
+}
+
+double SeparationFilter::unsure_of_place_m(const Mover& self) const {
+  const Separation& rule = mission_.separation;
+  const double hold_ticks = rule.distance_m > 0 ? hold_ticks_ : 0;
+  return rule.position_error_m +
+         hold_ticks * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m);
+}
+
+/// No step reaches what is farther away than this.
+double SeparationFilter::reached_m(const Mover& self, double clearance_m) const {
+  return kept_late_m(self, clearance_m) + unsure_of_place_m(self) +
+         mission_.separation.disturbance_m + constraints_.reach_m() / gain_;
 }
 
 /// Keeps from what lies beyond the plane through the end of `y_m`, which is perpendicular to it. A
@@ -65,16 +86,8 @@ void SeparationFilter::keep_from_plane(const Mover& self, const HoldingSet& own,
                                        const Eigen::Vector3d& y_m, double square_m2,
                                        double clearance_m) {
   const Separation& rule = mission_.separation;
-  // V T + e more if the body follows late. late_edge_margin_m() has 2 e, and one of them is already
-  // in the uncertainty.
-  const double late_m =
-      rule.response_s > 0 ? late_edge_margin_m(mission_, self.id) - rule.position_error_m : 0;
-  const double kept_m = clearance_m + late_m;
-  const double hold_ticks = rule.distance_m > 0 ? hold_ticks_ : 0;
-  const double unsure_m =
-      rule.position_error_m +
-      hold_ticks * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m);
-  const double far_m = kept_m + unsure_m + rule.disturbance_m + constraints_.reach_m() / gain_;
+  const double kept_m = kept_late_m(self, clearance_m), unsure_m = unsure_of_place_m(self);
+  const double far_m = reached_m(self, clearance_m);
   if (square_m2 >= far_m * far_m) return;
   const double rho_m = std::sqrt(square_m2);
   if (rho_m <= unsure_m) {  // it may be on either side

@@ -30,7 +30,9 @@ WallFollower::WallFollower(const Mission& mission, AgentId id)
       id_(id),
       limit_mps_(motion_of(mission, id).speed_limit_mps),
       kept_m_(kept_from_walls_m(mission, motion_of(mission, id))),
-      reach_m_(ergocast::reach_m(motion_of(mission, id), motion_of(mission, id).speed_limit_mps)) {}
+      reach_m_(ergocast::reach_m(motion_of(mission, id), motion_of(mission, id).speed_limit_mps)) {
+  near_.reserve(walls_.edge_count());
+}
 
 double WallFollower::seconds_since(Tick tick, Tick before) const {
   return static_cast<double>(tick - before) * dt_s_;
@@ -80,11 +82,14 @@ Eigen::Vector3d WallFollower::aim(Tick tick, const Eigen::Vector3d& x_m,
 
 /// The way along a wall at hand, if possible one along which no other wall is in the way, else the
 /// nearest. Away from the wall, as behind a corner, the way leads a little towards it.
-Eigen::Vector2d WallFollower::along_wall(const Eigen::Vector2d& x_m) const {
+Eigen::Vector2d WallFollower::along_wall(const Eigen::Vector2d& x_m) {
   const double at_hand_m = kept_m_ + kAtHandSteps * reach_m_;
   double best_m = std::numeric_limits<double>::max();
   Eigen::Vector2d best(1, 0);
-  for_segments(walls_, [&](const Segment& edge) {
+  // A wall in the way makes one at hand count as farther by at_hand_m at most.
+  const double nearest_m = std::sqrt(walls_.least_square_m2(x_m, 0));
+  const double within_m = nearest_m < at_hand_m ? nearest_m + at_hand_m : nearest_m;
+  walls_.for_near({x_m, x_m}, within_m, near_, [&](const Segment& edge) {
     const Eigen::Vector2d to_m = edge.nearest_m(x_m) - x_m;
     const double apart_m = std::sqrt(to_m.squaredNorm());
     if (!(apart_m > 0) || apart_m >= best_m) return;
@@ -104,10 +109,11 @@ Eigen::Vector2d WallFollower::along_wall(const Eigen::Vector2d& x_m) const {
 double WallFollower::in_the_way(const Eigen::Vector2d& x_m, const Eigen::Vector2d& way,
                                 double at_hand_m) const {
   double most = 0;
-  for_segments(walls_, [&](const Segment& edge) {
-    const Eigen::Vector2d to_m = edge.nearest_m(x_m) - x_m;
+  walls_.find_near({x_m, x_m}, at_hand_m, [&](const Edge& edge) {
+    const Eigen::Vector2d to_m = edge.segment.nearest_m(x_m) - x_m;
     const double apart_m = std::sqrt(to_m.squaredNorm());
     if (apart_m > 0 && apart_m < at_hand_m) most = std::max(most, way.dot(to_m) / apart_m);
+    return false;
   });
   return most;
 }

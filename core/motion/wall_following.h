@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "core/mission/mission.h"
 
@@ -43,14 +44,15 @@ class WallFollower {
   void look_back(Tick tick, const Eigen::Vector3d& x_m);
   void begin_window(Tick tick, const Eigen::Vector3d& x_m);
   double seconds_since(Tick tick, Tick before) const;
-  Eigen::Vector2d along_wall(const Eigen::Vector2d& x_m) const;
+  Eigen::Vector2d along_wall(const Eigen::Vector2d& x_m);
   double in_the_way(const Eigen::Vector2d& x_m, const Eigen::Vector2d& way, double at_hand_m) const;
   bool at_edge(const Eigen::Vector3d& x_m, const Eigen::Vector2d& way) const;
 
   std::uint64_t seed_;
   double dt_s_;
   Box domain_;
-  Rings walls_;
+  IndexedRings walls_;
+  std::vector<std::uint32_t> near_;  // scratch
   AgentId id_;
   double limit_mps_, kept_m_, reach_m_;
   bool follows_ = false;

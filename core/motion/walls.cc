@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Looks at every edge: a thousand of them take a few microseconds.
+// Asks the tree of edges for those nearby.
 #include "core/motion/walls.h"
 
 #include <algorithm>
@@ -14,8 +14,7 @@ namespace ergocast {
 namespace {
 
 /// A hole is in the wall that comes before it, and an outline in no wall.
-bool in_order(const Rings& walls) {
-  const std::vector<int> depth = depths(walls);
+bool in_order(const Rings& walls, const std::vector<int>& depth) {
   std::size_t outline = 0;
   for (std::size_t i = 0; i < walls.size(); ++i) {
     if (depth[i] % 2 == 0) outline = i;
@@ -28,9 +27,8 @@ bool in_order(const Rings& walls) {
 }
 
 /// Whether the area of each outline without its holes is large enough; the rings are in_order().
-bool wide_enough(const Rings& walls, const Box& domain) {
+bool wide_enough(const Rings& walls, const std::vector<int>& depth, const Box& domain) {
   const double side_m = domain.size_m.maxCoeff();
-  const std::vector<int> depth = depths(walls);
   double area = 0;
   for (std::size_t i = walls.size(); i-- > 0;) {
     const bool is_hole = depth[i] % 2 == 1;
@@ -52,19 +50,17 @@ bool is_ring(const Ring& ring, const Box& domain) {
 
 }  // namespace
 
-bool solid_at(const Rings& walls, const Eigen::Vector2d& x_m) {
-  bool solid = false;
-  for (const Ring& ring : walls) solid ^= contains(ring, x_m);
-  return solid;
-}
+bool solid_at(const IndexedRings& walls, const Eigen::Vector2d& x_m) { return walls.solid_at(x_m); }
 
-double clearance_m(const Rings& walls, const Eigen::Vector2d& x_m) {
-  double least = std::numeric_limits<double>::max();
-  for_segments(walls, [&](const Segment& segment) {
-    least = std::min(least, (segment.nearest_m(x_m) - x_m).squaredNorm());
-  });
+double clearance_m(const IndexedRings& walls, const Eigen::Vector2d& x_m) {
+  const double least = walls.least_square_m2(x_m);
   const double apart_m = walls.empty() ? least : std::sqrt(least);
   return solid_at(walls, x_m) ? -apart_m : apart_m;
+}
+
+bool is_clear(const IndexedRings& walls, const Segment& way, double kept_m) {
+  return !walls.find_near(way, kept_m,
+                          [&](const Edge& edge) { return distance_m(way, edge.segment) < kept_m; });
 }
 
 std::size_t vertex_count(const Rings& walls) {
@@ -80,11 +76,13 @@ bool near_enough(const Eigen::Vector2d& corner_m, const Box& domain) {
   return (corner_m.array() >= low_m).all() && (corner_m.array() <= high_m).all();
 }
 
-bool are_walls(const Rings& walls, const Box& domain) {
+bool are_walls(const IndexedRings& walls, const Box& domain) {
   const auto ring = [&](const Ring& one) { return is_ring(one, domain); };
-  return vertex_count(walls) <= static_cast<std::size_t>(kMaxWallVertices) &&
-         std::ranges::all_of(walls, ring) && !touching_edges(walls) && in_order(walls) &&
-         wide_enough(walls, domain);
+  if (walls.edge_count() > static_cast<std::size_t>(kMaxWallVertices) ||
+      !std::ranges::all_of(walls, ring) || touching_edges(walls))
+    return false;
+  const std::vector<int> depth = depths(walls);
+  return in_order(walls, depth) && wide_enough(walls, depth, domain);
 }
 
 double kept_from_walls_m(const Mission& mission, const Motion& motion) {
@@ -125,10 +123,12 @@ Eigen::Vector3d stopped_by_walls(const Mission& mission, AgentId id, const Eigen
     keep(push_m[axis], high_m[axis] - x_m[axis]);
     keep(-push_m[axis], x_m[axis] - mission.domain.origin_m[axis]);
   }
-  for_segments(mission.walls, [&](const Segment& segment) {
-    const Eigen::Vector2d way_m = segment.nearest_m(x_m.head<2>()) - x_m.head<2>();
+  const Eigen::Vector2d at_m = x_m.head<2>();
+  mission.walls.find_near({at_m, at_m}, kept_m + length_of(push_m), [&](const Edge& edge) {
+    const Eigen::Vector2d way_m = edge.segment.nearest_m(at_m) - at_m;
     const double apart_m = std::sqrt(way_m.squaredNorm());
     if (apart_m > 0) keep(way_m.dot(push_m.head<2>()) / apart_m, apart_m - kept_m);
+    return false;
   });
   return share < 1 ? Eigen::Vector3d((1 - 1e-12) * share * push_m) : push_m;
 }

@@ -9,16 +9,15 @@
 #include <cstddef>
 
 #include "core/base/ids.h"
-#include "core/base/rings.h"
+#include "core/base/indexed_rings.h"
 #include "core/mission/mission.h"
 #include "core/motion/vehicle.h"
 
 namespace ergocast {
 
-/// The most vertices of all rings together: they take 16 KiB of the plan, and a query looks at
-/// each.
+/// The most vertices of all rings together: they take 256 KiB of the plan.
 /// Limit (Scenario): vertices of all walls and solid keep-outs. Beyond it: the scenario is refused.
-inline constexpr int kMaxWallVertices = 1024;
+inline constexpr int kMaxWallVertices = 16384;
 /// How far outside the domain a corner may be, as a multiple of the longer side.
 /// Limit (Scenario): distance of a wall from the domain [times the domain's longer side]. Beyond
 /// it: the scenario is refused.
@@ -29,11 +28,14 @@ inline constexpr double kFarthestWallPerSize = 10;
 inline constexpr double kLeastWallArea = 1e-8;
 
 /// Whether an odd number of rings contain `x_m`.
-bool solid_at(const Rings& walls, const Eigen::Vector2d& x_m);
+bool solid_at(const IndexedRings& walls, const Eigen::Vector2d& x_m);
 
 /// Distance from the nearest edge [m]. It is negative in a wall, and the greatest number without
 /// walls.
-double clearance_m(const Rings& walls, const Eigen::Vector2d& x_m);
+double clearance_m(const IndexedRings& walls, const Eigen::Vector2d& x_m);
+
+/// Whether the straight way keeps a distance from all walls.
+bool is_clear(const IndexedRings& walls, const Segment& way, double kept_m);
 
 std::size_t vertex_count(const Rings& walls);
 
@@ -42,7 +44,7 @@ bool near_enough(const Eigen::Vector2d& corner_m, const Box& domain);
 
 /// Whether the rings are walls: at most kMaxWallVertices corners, near the domain, no edges that
 /// touch, and each room after the wall that contains it.
-bool are_walls(const Rings& walls, const Box& domain);
+bool are_walls(const IndexedRings& walls, const Box& domain);
 
 /// How far the anchor (core/motion/vehicle.h) of such a vehicle keeps from all walls [m]: the sum
 /// of wall_clearance_m, the radius of its loiter circle, the bulge of its path, and a margin for

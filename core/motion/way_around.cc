@@ -88,13 +88,10 @@ double WayAround::length_m(const Eigen::Vector3d& x_m) const {
 
 bool WayAround::is_clear(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const {
   const Segment way{from_m.head<2>(), to_m.head<2>()};
-  bool clear = true;
-  for_segments(walls_,
-               [&](const Segment& edge) { clear = clear && distance_m(way, edge) >= seen_m_; });
   const StraightWay seen{from_m, on_ground(way.to_m - way.from_m)};
-  return clear && std::ranges::all_of(zones_, [&](const Zone& zone) {
-           return beside_m(zone, seen) >= seen_zones_m_;
-         });
+  return ergocast::is_clear(walls_, way, seen_m_) &&
+         std::ranges::all_of(
+             zones_, [&](const Zone& zone) { return beside_m(zone, seen) >= seen_zones_m_; });
 }
 
 /// The visible cell around `x_m` through which the way is shortest.

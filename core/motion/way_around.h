@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/rings.h"
+#include "core/base/indexed_rings.h"
 #include "core/mission/mission.h"
 #include "core/mission/zones.h"
 #include "core/motion/free_region.h"
@@ -44,7 +44,7 @@ class WayAround {
   std::optional<int> open_cell_near(const Eigen::Vector2d& x_m) const;
   std::optional<int> first_cell(const Eigen::Vector3d& x_m) const;
 
-  Rings walls_;
+  IndexedRings walls_;
   std::vector<Zone> zones_;
   double seen_m_ = 0;                 // how far a straight way keeps from walls
   double seen_zones_m_ = 0;           // and from zones

@@ -143,9 +143,7 @@ std::optional<AgentId> WayOut::station_cut_off(const Mission& mission) const {
 /// Whether neither a wall nor a zone that binds is in the straight way.
 bool WayOut::clear(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) const {
   const Segment way{from_m, to_m};
-  bool clear = true;
-  for_segments(walls_,
-               [&](const Segment& edge) { clear = clear && distance_m(way, edge) >= seen_m_; });
+  bool clear = is_clear(walls_, way, seen_m_);
   const StraightWay seen{on_ground(from_m), on_ground(to_m - from_m)};
   for (std::size_t i = 0; i < zones_.size() && clear; ++i)
     clear = (left_ >> i & 1) != 0 || beside_m(zones_[i], seen) >= bound_m_;

@@ -54,7 +54,7 @@ class WayOut {
   AgentId id_;
   Motion motion_;
   Box room_;  // where the anchor may be
-  Rings walls_;
+  IndexedRings walls_;
   std::vector<Zone> zones_;
   double speed_mps_, kept_m_, bound_m_,
       seen_m_;  // seen_m_: how far a straight way keeps from walls

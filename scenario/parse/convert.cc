@@ -186,10 +186,12 @@ Mission mission_of(const proto::Scenario& scenario) {
   mission.seed = scenario.seed();
   mission.law.contraction_center_m = contraction_center_of(scenario.law(), mission.domain);
   mission.timing.tick_count = std::llround(scenario.time().duration_s() / mission.timing.dt_s);
-  for (const proto::Polygon& wall : scenario.world().walls()) add_rings(wall, mission.walls);
+  Rings walls;
+  for (const proto::Polygon& wall : scenario.world().walls()) add_rings(wall, walls);
   for (const proto::Polygon& keep_out : scenario.target().keep_outs()) {
-    if (keep_out.solid()) add_rings(keep_out, mission.walls);
+    if (keep_out.solid()) add_rings(keep_out, walls);
   }
+  mission.walls = std::move(walls);
   return mission;
 }
 

@@ -19,7 +19,7 @@ void validate_places(const proto::Scenario& scenario, Checks& checks) {
   if (!checks.sound("domain")) return;
   const Box domain = domain_of(scenario.domain());
   const bool walls_known = checks.sound("world.walls") && checks.sound("target.keep_outs");
-  const Rings walls = walls_known ? mission_of(scenario).walls : Rings();
+  const IndexedRings walls = walls_known ? mission_of(scenario).walls : IndexedRings();
   for (int i = 0; i < objects.places_size(); ++i) {
     const std::string path = indexed("world.objects.places", i);
     if (!checks.sound(path)) continue;

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <utility>
 
+#include "core/base/indexed_rings.h"
 #include "core/motion/walls.h"
 #include "scenario/parse/convert.h"
 #include "scenario/rules/polygon_flaw.h"
@@ -106,23 +109,53 @@ class WallRules {
 
   /// Checks that no two walls touch, and that a wall lies in another one only in a room.
   void apart() {
+    Rings all;
+    std::vector<std::size_t> owner, first;  // the wall of each ring, and each wall's first ring
     for (std::size_t i = 0; i < walls_.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        if (!meet(walls_[i], walls_[j])) continue;
-        checks_.problem(walls_[i].path, "crosses, touches or overlaps " + walls_[j].path,
-                        "join the two to one polygon, or move one of them");
-        break;
+      first.push_back(all.size());
+      for (Ring& ring : rings_of(walls_[i])) {
+        all.push_back(std::move(ring));
+        owner.push_back(i);
       }
+    }
+    const IndexedRings rings(std::move(all));
+    std::vector<std::size_t> met(walls_.size());  // the first wall that each meets, or itself
+    std::iota(met.begin(), met.end(), std::size_t{0});
+    const auto meet = [&](std::size_t one, std::size_t other) {
+      met[std::max(one, other)] = std::min(met[std::max(one, other)], std::min(one, other));
+    };
+    for (const Edge& edge : rings.edges()) {
+      rings.find_near(edge.segment, 0, [&](const Edge& other) {
+        const std::size_t wall = owner[edge.ring], its = owner[other.ring];
+        if (its < wall && touch(edge.segment, other.segment)) meet(wall, its);
+        return false;
+      });
+    }
+    for (std::size_t i = 0; i < walls_.size(); ++i) {
+      for (const std::size_t around : solid_around(rings, owner, first[i])) meet(i, around);
+    }
+    for (std::size_t i = 0; i < walls_.size(); ++i) {
+      if (met[i] == i) continue;
+      checks_.problem(walls_[i].path, "crosses, touches or overlaps " + walls_[met[i]].path,
+                      "join the two to one polygon, or move one of them");
     }
   }
 
-  static bool meet(const Wall& one, const Wall& other) {
-    Rings rings = rings_of(one);
-    const Rings others = rings_of(other);
-    rings.insert(rings.end(), others.begin(), others.end());
-    return touching_edges(rings).has_value() ||
-           contains(polygon_of(*one.polygon), others.front().front()) ||
-           contains(polygon_of(*other.polygon), rings.front().front());
+  /// The other walls that are solid where a ring begins.
+  static std::vector<std::size_t> solid_around(const IndexedRings& rings,
+                                               const std::vector<std::size_t>& owner,
+                                               std::size_t ring) {
+    std::vector<std::size_t> crossed, around;
+    rings.for_crossed(rings[ring].front(), [&](const Edge& edge) {
+      if (owner[edge.ring] != owner[ring]) crossed.push_back(owner[edge.ring]);
+    });
+    std::ranges::sort(crossed);
+    for (auto at = crossed.begin(); at != crossed.end();) {
+      const auto next = std::upper_bound(at, crossed.end(), *at);
+      if ((next - at) % 2 == 1) around.push_back(*at);
+      at = next;
+    }
+    return around;
   }
 
   void bodies() {

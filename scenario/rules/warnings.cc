@@ -13,6 +13,7 @@
 #include "core/motion/filter_rules.h"
 #include "core/motion/home.h"
 #include "core/motion/starts.h"
+#include "core/motion/vehicle.h"
 #include "scenario/rules/checks.h"
 #include "scenario/rules/footprint_reach.h"
 #include "scenario/rules/hidden_mass.h"

@@ -184,9 +184,9 @@ std::vector<Mistake> mistakes_of_walls() {
   };
   const std::string block_and_limit = limit + wall(block);
   std::string many;
-  for (int i = 0; i < 342; ++i) {
-    const std::string x = std::to_string(20 + i / 5.0);
-    many += wall(x + " 1 " + std::to_string(20.1 + i / 5.0) + " 1 " + x + " 2");
+  for (int i = 0; i < 5462; ++i) {
+    const std::string x = std::to_string(20 + i / 100.0);
+    many += wall(x + " 1 " + std::to_string(20.005 + i / 100.0) + " 1 " + x + " 2");
   }
   return {
       world(limit + "wall_clearance_m: 1", "world.wall_clearance_m: has no effect without walls"),
@@ -197,7 +197,7 @@ std::vector<Mistake> mistakes_of_walls() {
       world(limit + wall(block, hole("90 10 95 10 95 20")),
             "world.walls[0].holes[0]: the hole is outside"),
       world(limit + wall("60 10 1101 10 80 30"), "world.walls[0]: has a vertex that is farther"),
-      world(limit + many, "world: 1026 vertices of walls are above the limit 1024", false),
+      world(limit + many, "world: 16386 vertices of walls are above the limit 16384", false),
       world(block_and_limit + wall("70 20 90 20 90 40"),
             "world.walls[1]: crosses, touches or overlaps world.walls[0]"),
       world(block_and_limit + wall("65 15 70 15 70 20"),

@@ -223,8 +223,9 @@ TEST(Allocations, KeepingOutOfWallsMakesNone) {
   mission.speed_limit_mps = 40;
   mission.disturbance_intensity = 5;
   Ring star;
-  for (int i = 0; i < kMaxWallVertices; ++i) {
-    const double angle = 6.28 * i / kMaxWallVertices, radius_m = i % 2 == 0 ? 3 : 300;
+  constexpr int kCorners = 1024;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 6.28 * i / kCorners, radius_m = i % 2 == 0 ? 3 : 300;
     star.emplace_back(500 + radius_m * std::cos(angle), 500 + radius_m * std::sin(angle));
   }
   mission.walls = {star};

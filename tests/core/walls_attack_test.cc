@@ -109,7 +109,9 @@ TEST(WallFilter, KeepsPointsOut) {
   attack.assumed.wall_clearance_m = 2.5;
   EXPECT_LT(spare_m(attack), -0.4);
   attack = Attack(in_maze({}));
-  attack.assumed.walls.resize(2);
+  Rings some = maze();
+  some.resize(2);
+  attack.assumed.walls = std::move(some);
   EXPECT_LT(spare_m(attack), -3);
 }
 

@@ -50,7 +50,7 @@ TEST(Walls, DoNotTouchAndStandInOrder) {
       {{{0, 0}, {10, 10}, {0, kInfinite}}},
       {{{0, 0}, {10, 10}, {0, std::nan("")}}},
       {{}},
-      Rings(257, box(1, 1, 2, 2)),
+      Rings(kMaxWallVertices / 4 + 1, box(1, 1, 2, 2)),
   };
   for (std::size_t i = 0; i < std::size(broken); ++i)
     EXPECT_FALSE(are_walls(broken[i], kDomain)) << i;
@@ -59,9 +59,9 @@ TEST(Walls, DoNotTouchAndStandInOrder) {
 TEST(Walls, OfAsManyCornersAsAllowedAreWalls) {
   Rings many;
   for (int i = 0; i < kMaxWallVertices / 4; ++i)
-    many.push_back(box(i % 16 * 6, i / 16 * 3.0, 2, 2));
+    many.push_back(box(i % 64 * 1.5, i / 64 * 0.75, 0.5, 0.5));
   EXPECT_TRUE(are_walls(many, kDomain));
-  many.push_back(box(97, 0, 2, 2));
+  many.push_back(box(97, 0, 0.5, 0.5));
   EXPECT_FALSE(are_walls(many, kDomain));
 }
 

@@ -45,7 +45,7 @@ TEST(Provide, KnowsTheMissionsWalls) {
   const ModesTable with = table_of(walled).value();
   EXPECT_NE(without->key, with->key);
   EXPECT_LT(with->eigenvalues_per_m2[1], 0.6 * without->eigenvalues_per_m2[1]);
-  walled.walls[0][1].x() = walled.walls[0][2].x() = 32.5;
+  walled.walls = {{{32, 10}, {32.5, 10}, {32.5, 65}, {32, 65}}};
   EXPECT_NE(table_of(walled).value()->key, with->key);
 }
 

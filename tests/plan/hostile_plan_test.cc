@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -42,7 +43,12 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 /// Every double of a mission but those of μ.
 class Numbers : public FieldVisitor {
  public:
-  explicit Numbers(Mission& mission) { list_fields(*this, mission); }
+  explicit Numbers(Mission& mission) : mission_(mission) { list_fields(*this, mission); }
+  /// Walls are constant, so they are replaced.
+  ~Numbers() {
+    if (!walls_.empty()) mission_.walls = walls_;
+  }
+  Numbers(const Numbers&) = delete;
 
   std::vector<double*> all;
 
@@ -57,12 +63,26 @@ class Numbers : public FieldVisitor {
     for (Eigen::Vector3d& x_m : places_m) places(xy, z, x_m);
   }
   using FieldVisitor::derived;
-  void derived(const Field&, Rings& rings) {
-    for (Ring& ring : rings) {
+  void derived(const Field&, IndexedRings& rings) {
+    walls_ = rings.rings();
+    for (Ring& ring : walls_) {
       for (Eigen::Vector2d& x_m : ring) all.insert(all.end(), {&x_m.x(), &x_m.y()});
     }
   }
+
+ private:
+  Mission& mission_;
+  Rings walls_;
 };
+
+/// The mission with changed walls.
+Mission with_changed_walls(const Mission& mission, const std::function<void(Rings&)>& change) {
+  Mission changed = with_walls(mission);
+  Rings walls = changed.walls;
+  change(walls);
+  changed.walls = std::move(walls);
+  return changed;
+}
 
 TEST(HostilePlan, CutShortIsRefused) {
   const Bytes plan = encode_plan(rich_mission());
@@ -355,19 +375,27 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) {
         m = with_walls(m), m.starts_m[0] = {38.3, 35, 0};
       },
-      [](Mission& m) { m = with_walls(m), m.walls[0].resize(2); },
-      [](Mission& m) { m = with_walls(m), m.walls[0].clear(); },
-      [](Mission& m) { m = with_walls(m), std::swap(m.walls[0][0], m.walls[0][1]); },
-      [](Mission& m) { m = with_walls(m), std::swap(m.walls[1], m.walls[2]); },  // a room elsewhere
+      [](Mission& m) { m = with_changed_walls(m, [](Rings& walls) { walls[0].resize(2); }); },
+      [](Mission& m) { m = with_changed_walls(m, [](Rings& walls) { walls[0].clear(); }); },
       [](Mission& m) {
-        m = with_walls(m), m.walls[2][0] = {50, 40};
-      },  // crosses
-      [](Mission& m) {
-        m = with_walls(m), m.walls[2][0] = {1200, 12};
+        m = with_changed_walls(m, [](Rings& walls) { std::swap(walls[0][0], walls[0][1]); });
       },
-      [](Mission& m) { m = with_walls(m), m.walls[2][1] = m.walls[2][0]; },
       [](Mission& m) {
-        m = with_walls(m), m.walls[2].resize(kMaxWallVertices, {75, 15});
+        m = with_changed_walls(m, [](Rings& walls) { std::swap(walls[1], walls[2]); });
+      },  // a room elsewhere
+      [](Mission& m) {
+        m = with_changed_walls(m, [](Rings& walls) { walls[2][0] = {50, 40}; });
+      },  // crosses
+      [](Mission& m) { m = with_changed_walls(m, [](Rings& walls) {
+                         walls[2][0] = {1200, 12};
+                       }); },
+      [](Mission& m) {
+        m = with_changed_walls(m, [](Rings& walls) { walls[2][1] = walls[2][0]; });
+      },
+      [](Mission& m) {
+        m = with_changed_walls(m, [](Rings& walls) {
+          walls[2].resize(kMaxWallVertices, {75, 15});
+        });
       },
       [](Mission& m) { m = with_walls(with_inertia(m)); },  // and a disturbance
       [](Mission& m) { m.quorum = 0; },

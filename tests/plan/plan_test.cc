@@ -229,10 +229,12 @@ TEST(Plan, OfTheLargestMissionFitsItsMessages) {
   mission.timing.tick_count = 80'000'000;
   mission.timing.broadcast_period_ticks = mission.timing.catch_up_limit_ticks = 1000;
   mission.timing.high_mode_period_factor = 1;
+  Rings walls;
   for (int i = 0; i < kMaxWallVertices / 3; ++i) {
     const Eigen::Vector2d at(-3 + i % 100, 52 + i / 100);  // where nobody begins
-    mission.walls.push_back({at, at + Eigen::Vector2d(0.5, 0), at + Eigen::Vector2d(0, 0.5)});
+    walls.push_back({at, at + Eigen::Vector2d(0.5, 0), at + Eigen::Vector2d(0, 0.5)});
   }
+  mission.walls = std::move(walls);
   mission.wall_clearance_m = 1;
   EXPECT_LE(encode_plan(mission).size(), std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage);
   expect_travels(mission);
