@@ -24,6 +24,7 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/geometry_test.cc
     core/half_life_test.cc
     core/hold_test.cc
+    core/indexed_rings_test.cc
     core/kinds_test.cc
     core/look_ahead_test.cc
     core/measure_test.cc

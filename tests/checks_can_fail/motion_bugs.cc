@@ -177,7 +177,7 @@ void bug_make_filter(SeparationFilter* self, const Mission& mission, Tick hold_t
   if (bug("a body looks everywhere at once")) changed.vehicle = {};
   if (bug("a loiter circle is a point"))
     changed.separation.distance_m -= 2 * loiter_radius_m(motion_of(mission, 0));
-  if (bug("walls are air")) changed.walls.clear();
+  if (bug("walls are air")) changed.walls = IndexedRings();
   if (bug("walls keep half of their clearance")) changed.wall_clearance_m /= 2;
   if (bug("a loiter circle may reach into walls"))
     changed.wall_clearance_m -= loiter_radius_m(motion_of(mission, 0));

@@ -91,7 +91,7 @@ TEST(Walls, ABodyBeginsOutsideThem) {
   Mission mission = walled();
   for (AgentId id = 0; id < 300; ++id)
     EXPECT_GE(spare_at_start_m(mission, id, start_of(mission, id)), 0) << id;
-  mission.walls.clear();
+  mission.walls = IndexedRings();
   int moved = 0;
   for (AgentId id = 0; id < 300; ++id)
     moved += spare_at_start_m(walled(), id, start_of(mission, id)) < 0 ? 1 : 0;
