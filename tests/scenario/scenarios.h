@@ -16,10 +16,10 @@
 
 namespace ergocast::test {
 
-inline constexpr const char* kShipped[] = {"paper_fig1a",  "paper_fig1b",         "paper_fig2a",
-                                           "paper_fig2b",  "quadrimodal_corners", "uniform_square",
-                                           "lake_search",  "field_survey",        "harbour_patrol",
-                                           "cube_corners", "water_column",        "two_rooms"};
+inline constexpr const char* kShipped[] = {
+    "paper_fig1a",    "paper_fig1b", "paper_fig2a",  "paper_fig2b",    "quadrimodal_corners",
+    "uniform_square", "lake_search", "field_survey", "harbour_patrol", "cube_corners",
+    "water_column",   "two_rooms",   "lost_hiker",   "mine_line",      "search_rooms"};
 
 inline std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
