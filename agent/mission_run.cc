@@ -153,7 +153,11 @@ void MissionRun::on(const WorldState& world, const Arrival& arrival, Participant
     if (!motion_.filters() && !me.mission().domain.contains(vehicle.position_m)) {
       return me.count_refused(Refusal::kRange);
     }
-    if (tick < (pending_ ? pending_->tick : step_.tick)) return;
+    if (tick < (pending_ ? pending_->tick : step_.tick)) {
+      world_is_behind_ = arrival.fresh && is_behind(tick, me, arrival.now);
+      repeat_wanted_ = repeat_wanted_ || world_is_behind_;
+      return;
+    }
     if (tick == step_.tick) {
       repeat_wanted_ = repeat_wanted_ || arrival.fresh;
       return;
@@ -161,6 +165,13 @@ void MissionRun::on(const WorldState& world, const Arrival& arrival, Participant
     pending_ = OwnState{tick, world.roster_revision, vehicle.answered_tick, vehicle.position_m,
                         vehicle.velocity_mps};
   }
+}
+
+/// Whether ticks have stopped because a restarted world is at an earlier tick. It then waits for
+/// our answer to that tick, and teammates that have restarted, too, for what we sent.
+bool MissionRun::is_behind(Tick world_tick, const Participant& me, Instant now) const {
+  return me.timing().pace == Pace::kLockstep && world_tick < step_.tick &&
+         now - step_.begun >= kStallPeriod;
 }
 
 // ---- a tick ----
@@ -260,6 +271,8 @@ void MissionRun::repeat(Participant& me, Outbox& out) {
   repeat_wanted_ = false;
   exchange_.repeat(me, out);
   if (search_) search_->repeat(me, out);
+  if (std::exchange(world_is_behind_, false))
+    me.publish(Bus::kCommand, command_before_, command_before_.header.tick, out);
   if (answered_ == step_.tick) me.publish(Bus::kCommand, last_command_, step_.tick, out);
 }
 

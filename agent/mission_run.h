@@ -110,6 +110,7 @@ class MissionRun {
   AgentId awaited(const Participant& me) const;
   void answer(Participant& me, Outbox& out);
   void repeat(Participant& me, Outbox& out);
+  bool is_behind(Tick world_tick, const Participant& me, Instant now) const;
   bool stalled(const Participant& me, Instant now) const;
   void report_position(Participant& me, Outbox& out);
   AgentPhase phase(const Participant& me) const;
@@ -131,6 +132,7 @@ class MissionRun {
   Tick answered_ = -1;  // the newest tick that was answered
   AgentId waiting_for_ = kUnassigned;
   bool repeat_wanted_ = false;
+  bool world_is_behind_ = false;
   Instant stall_announced_{};
   std::int64_t missed_ticks_ = 0;
   Command last_command_, command_before_;    // header.tick −1: none yet

@@ -123,10 +123,10 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   if (looking()) return ticks_.note_world(world.header.tick);
   if (arrival.fresh) ending_.note_world(world.last);
   places_.note_world(world);
-  if (!ticks_.receive(world, now)) return;
+  const bool is_newest = ticks_.receive(world, now);
   const SignsOfLife signs = signs_at(now);
   amending_.note_world(*mission_, ticks_, team_at(signs), announcement_);
-  if (tick() >= end_tick()) end(false, "mission complete", now);
+  if (is_newest && tick() >= end_tick()) end(false, "mission complete", now);
 }
 
 void Coordinator::on(const RecordAck& ack, const Arrival& arrival) {

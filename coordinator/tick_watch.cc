@@ -14,7 +14,11 @@ constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 
 bool TickWatch::receive(const WorldState& world, Instant now) {
   world_heard_ = true;
-  if (world.header.tick < tick_) return false;
+  if (world.header.tick < tick_) {
+    // A restarted world may be behind its predecessor. It knows more of the mission.
+    world_revision_ = std::max(world_revision_, world.roster_revision);
+    return false;
+  }
   if (world.header.tick > tick_) since_ = now;
   tick_ = world.header.tick;
   world_revision_ = world.roster_revision;

@@ -33,7 +33,7 @@ class TickWatch {
   Instant since() const { return since_; }
   /// Whether any world has sent a state.
   bool world_heard() const { return world_heard_; }
-  /// The revision of MISSION that the world used at tick().
+  /// The revision of MISSION that the world used at tick(), or at an earlier tick after a restart.
   std::int64_t world_revision() const { return world_revision_; }
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
 

@@ -191,6 +191,25 @@ TEST(WorldQuestion, IsNotForTheCoordinatorToAsk) {
   EXPECT_TRUE(only<Command>(deliver(agent, question_of(kCoordinator, 0))).empty());
 }
 
+// ---- a restarted world that is behind ----
+
+TEST(WorldBehind, GetsTheAnswerToItsTickAndTheTeamTheBlocksAgain) {
+  Agent agent = running_agent(small_mission(1));
+  for (Tick tick = 0; tick < 3; ++tick) {
+    const double x_m = 100.0 + static_cast<double>(tick);
+    deliver(agent, world_state(tick, {{x_m, 500, 0}}, tick - 1));
+  }
+  const WorldState behind = world_state(1, {{101, 500, 0}}, 0);
+  EXPECT_TRUE(only<Command>(deliver(agent, behind, at(500ms))).empty())
+      << "a world repeats old states for its logger";
+  const Outbox out = deliver(agent, world_state(1, {{101, 500, 0}}, 0), at(1500ms));
+  const auto sent = only<Command>(out);
+  ASSERT_EQ(sent.size(), 2u);
+  EXPECT_EQ(sent[0].header.tick, 1);
+  EXPECT_EQ(sent[1].header.tick, 2);
+  EXPECT_FALSE(only<Contribution>(out).empty());
+}
+
 // ---- lost from the roster ----
 
 TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {

@@ -102,6 +102,23 @@ TEST(Pausing, InLockstepBeginsWithTheTickAfterTheNextOnceTheWorldStands) {
   EXPECT_EQ(coordinator.holds(), (std::vector<Hold>{{11 + 2, 12 + 2}}));
 }
 
+TEST(Pausing, InLockstepBeginsAlsoIfARestartedWorldStandsATickBehind) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  WorldState world = world_where(10, {9, 9});
+  give(coordinator, world, at(1s));
+  give(coordinator, pause_after(0), at(1s));
+  const auto parts = only<MissionPart>(advance(coordinator, at(1s)));
+  ASSERT_FALSE(parts.empty());
+  ++world.header.tick;
+  give(coordinator, world, at(1s));
+  --world.header.tick;
+  give(coordinator, world, at(1s));
+  EXPECT_EQ(named_changes(coordinator.holds()), 0) << "a world repeats old states for its logger";
+  world.roster_revision = parts[0].stand_by_revision;
+  give(coordinator, world, at(1s));
+  EXPECT_EQ(named_changes(coordinator.holds()), 1);
+}
+
 TEST(Pausing, AWishThatWaitsDoesNotOutlastAListThatIsAdopted) {
   const Participant me(Role::kCoordinator, {kRun, kCoordinator, kCoordinatorLife});
   const SignsOfLife signs{me, at(1s)};
