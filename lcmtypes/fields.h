@@ -274,6 +274,12 @@ struct Fields<RecordAck> {
     io.flag(m.last);
     io.quantity(m.detection_probability);
     io.holds(m.detection_probability <= 1);
+    for (auto& find : io.length(m.finds, m.find_count)) {
+      io.within(find.object, 0, kMaxObjects - 1);
+      io.within(find.agent, 0, kMaxAgents - 1);
+      io.count(find.tick);
+      io.vector(find.x_m);
+    }
   }
 };
 

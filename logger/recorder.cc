@@ -137,8 +137,7 @@ void Recorder::advance(Instant now, Outbox& out) {
   }
   if (me_.knows_mission()) acknowledge(now, out);
   if (ending_.finished && follower().over()) {
-    me_.publish(Bus::kWorld, RecordAck{{}, true, tables_.detection_probability()}, row_.tick - 1,
-                out);  // to the coordinator
+    me_.publish(Bus::kWorld, record_ack(true), row_.tick - 1, out);  // to the coordinator
   }
 }
 
@@ -158,6 +157,13 @@ void Recorder::write_rows(Instant now) {
   }
 }
 
+RecordAck Recorder::record_ack(bool last) const {
+  RecordAck ack{{}, last, tables_.detection_probability()};
+  for (const Find& find : tables_.facts().finds.list())
+    ack.finds[static_cast<std::size_t>(ack.find_count++)] = find;
+  return ack;
+}
+
 void Recorder::acknowledge(Instant now, Outbox& out) {
   const Tick recorded = row_.tick - 1;
   const bool last = ending_.finished || all_rows_written();
@@ -168,7 +174,7 @@ void Recorder::acknowledge(Instant now, Outbox& out) {
   next_ack_ = now + (hole ? kImpatientAckPeriod : kAckPeriod);
   if (!tables_.good()) return;
   acked_ = recorded;
-  me_.publish(Bus::kCommand, RecordAck{{}, false, tables_.detection_probability()}, recorded, out);
+  me_.publish(Bus::kCommand, record_ack(false), recorded, out);
 }
 
 bool Recorder::abandoned(Instant now) const {

@@ -112,6 +112,7 @@ class Recorder {
   void begin();
   void write_rows(Instant now);
   void acknowledge(Instant now, Outbox& out);
+  RecordAck record_ack(bool last) const;
   bool write_next_row(Instant now);
   bool awaits_mission(const TickState& state, Instant now);
   MissionKnowledge known() const { return {follower(), reports_, amendments_}; }

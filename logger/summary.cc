@@ -370,13 +370,6 @@ std::map<AgentId, Tick> recorded_recalls(const std::filesystem::path& run_dir,
                              : std::map<AgentId, Tick>();
 }
 
-std::string to_text(const Find& find) {
-  char text[120];
-  std::snprintf(text, sizeof text, "object %d found by agent %d at (%.1f, %.1f) m after %.1f s",
-                find.object, find.agent, find.x_m.x(), find.x_m.y(), find.t_s);
-  return text;
-}
-
 std::string to_text(const Json& summary) {
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

@@ -47,9 +47,6 @@ nlohmann::ordered_json recalls_json(const Recorder& recorder);
 std::map<AgentId, Tick> recorded_recalls(const std::filesystem::path& run_dir,
                                          const nlohmann::ordered_json& summary);
 
-/// "object 2 found by agent 3 at (412.0, 77.5) m after 123.4 s".
-std::string to_text(const Find& find);
-
 /// The text of the file. Bytes that are not UTF-8 are replaced, because the network may bring some.
 std::string to_text(const nlohmann::ordered_json& summary);
 

@@ -373,6 +373,7 @@ Json page_mission(const Mission& flown, const Field& density) {
   if (!mission.walls.empty()) page["walls"] = rings_of(mission);
   if (keeps_distance(mission)) page["body_radius_m"] = mission.separation.distance_m / 2;
   if (any_station(mission)) page["stations"] = stations_of(mission);
+  if (const int objects = mission.objects.total(); objects > 0) page["objects"] = objects;
   if (const HalfLife half_life(mission); half_life.any())
     page["half_life_ticks"] = half_life.ticks();
   if (mission.law.history == TargetHistory::kKeep) page["keeps_history"] = true;

@@ -281,6 +281,13 @@ struct RecordAck {
   Header header;
   bool last = false;  ///< the mission is over, and the logger leaves: this is its last message
   double detection_probability = 0;  ///< of the recorded ticks, core/measure/detection.h
+  std::int32_t find_count = 0;
+  std::array<Find, kMaxObjects>
+      finds{};  ///< in the recorded ticks, in their order; t_s is not sent
+
+  std::span<const Find> all_finds() const {
+    return std::span(finds).first(static_cast<std::size_t>(find_count));
+  }
 };
 /// Lockstep: how many ticks the world may be ahead of the logger's acknowledgement, unless it has
 /// given that logger up.

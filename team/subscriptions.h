@@ -67,6 +67,7 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   subscribes(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) subscribes(Role::kLogger, bus, kEveryType);
   subscribes(Role::kLauncher,    Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
+  subscribes(Role::kLauncher,    Bus::kCommand, kTypes<RecordAck>);
   // A replayed event log has the messages of all buses on the first bus, because LCM's player uses
   // only one URL.
   subscribes(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);

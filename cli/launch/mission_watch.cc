@@ -77,6 +77,17 @@ void MissionWatch::on(const Stop& stop, const Arrival& arrival) {
   reach(Stage::kOver, now);
 }
 
+/// The logger repeats all finds.
+void MissionWatch::on(const RecordAck& ack, const Arrival& arrival) {
+  if (!arrival.fresh || !me_.knows_mission()) return;
+  const auto finds = ack.all_finds();
+  for (; finds_told_ < finds.size(); ++finds_told_) {
+    Find find = finds[finds_told_];
+    find.t_s = static_cast<double>(me_.counted(find.tick)) * timing_.dt_s;
+    display_.print(to_text(find));
+  }
+}
+
 void MissionWatch::reach(Stage stage, Instant now) {
   if (stage <= stage_) return;
   stage_ = stage;

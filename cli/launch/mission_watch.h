@@ -80,6 +80,7 @@ class MissionWatch {
   void on(const AgentStatus& agent, const Arrival& arrival);
   void on(const MissionPart& part, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
+  void on(const RecordAck& ack, const Arrival& arrival);
   void reach(Stage stage, Instant now);
   void reach(Tick tick, Instant now);
 
@@ -91,6 +92,7 @@ class MissionWatch {
   Stage stage_ = Stage::kGathering;
   bool failed_ = false;
   std::string reason_;
+  std::size_t finds_told_ = 0;
   Tick tick_ = 0;           // the newest, whether it counts or not
   Instant tick_since_{};    // when the last tick or stage was reached
   Instant last_running_{};  // when a running agent was last received

@@ -24,6 +24,20 @@ nlohmann::ordered_json law_json(const TeamPicture& at) {
   return json;
 }
 
+/// How many objects are hidden, and the finds; null without objects.
+nlohmann::ordered_json objects_json(const TeamPicture& at) {
+  if (at.objects == 0) return nullptr;
+  auto finds = nlohmann::ordered_json::array();
+  for (const Find& find : at.finds)
+    finds.push_back({{"object", find.object},
+                     {"agent", find.agent},
+                     {"tick", find.tick},
+                     {"t_s", find.t_s},
+                     {"x_m", find.x_m.x()},
+                     {"y_m", find.x_m.y()}});
+  return {{"count", at.objects}, {"found", at.finds.size()}, {"finds", std::move(finds)}};
+}
+
 nlohmann::ordered_json json_of(const AgentRow& row) {
   nlohmann::ordered_json json = {{"id", row.author.agent},
                                  {"incarnation", to_hex(row.author.incarnation)},
@@ -85,6 +99,7 @@ std::string team_json(const TeamPicture& at) {
       {"skipped_ticks", at.skipped_ticks},
       {"clamped_commands", at.clamped_commands},
       {"forgotten", at.forgotten}};
+  json["objects"] = objects_json(at);
   json["holds"] = nlohmann::ordered_json::array();
   for (const Hold& hold : at.holds)
     json["holds"].push_back({hold.from, or_null(!hold.open(), hold.until)});

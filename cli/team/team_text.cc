@@ -173,6 +173,10 @@ std::string second_line(const TeamPicture& at) {
   if (at.detection_probability)
     text += number(", found %.1f %%", 100 * *at.detection_probability) +
             " of objects drawn from the target";
+  if (at.objects > 0)
+    text += ", " + std::to_string(at.finds.size()) + " of " + std::to_string(at.objects) +
+            " hidden objects found";
+  if (!at.finds.empty()) text += ", the newest: " + to_text(at.finds.back());
   if (at.target) text += ", " + target_text(at);
   if (at.end)
     text += ", end of amendment " + std::to_string(at.end->number) +

@@ -80,7 +80,10 @@ void TeamView::on(const WorldState& world, const Arrival& arrival) {
 }
 
 void TeamView::on(const RecordAck& ack, const Arrival& arrival) {
-  if (arrival.fresh) detection_probability_ = ack.detection_probability;
+  if (!arrival.fresh) return;
+  detection_probability_ = ack.detection_probability;
+  const auto finds = ack.all_finds();
+  if (finds.size() > finds_.size()) finds_.assign(finds.begin(), finds.end());
 }
 
 Instant TeamView::last_sign(const Author& author) const {
@@ -276,6 +279,12 @@ TeamPicture TeamView::picture(Instant now) const {
   picture.state = follower().revision() < 0 ? team_state_ : std::optional(follower().state());
   picture.reason = follower().plan_problem().value_or(follower().reason());
   picture.detection_probability = detection_probability_;
+  if (const auto& mission = follower().mission()) {
+    picture.objects = mission->objects.total();
+    picture.finds = finds_;
+    for (Find& find : picture.finds)
+      find.t_s = static_cast<double>(me_.counted(find.tick)) * mission->timing.dt_s;
+  }
   picture.missed_deadlines = missed_deadlines_;
   picture.skipped_ticks = skipped_ticks_;
   picture.clamped_commands = clamped_commands_;

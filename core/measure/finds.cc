@@ -3,8 +3,16 @@
 #include "core/measure/finds.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace ergocast {
+
+std::string to_text(const Find& find) {
+  char text[120];
+  std::snprintf(text, sizeof text, "object %d found by agent %d at (%.1f, %.1f) m after %.1f s",
+                find.object, find.agent, find.x_m.x(), find.x_m.y(), find.t_s);
+  return text;
+}
 
 ObjectSet Finds::known(ObjectSet detected) const {
   return detected & static_cast<ObjectSet>((std::uint64_t{1} << objects_) - 1);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/base/geometry.h"
@@ -21,6 +22,9 @@ struct Find {
   double t_s = 0;                ///< mission time, without pauses
   Eigen::Vector3d x_m{0, 0, 0};  ///< where the agent was
 };
+
+/// "object 2 found by agent 3 at (412.0, 77.5) m after 123.4 s".
+std::string to_text(const Find& find);
 
 /// All finds in their order, at most one of each object.
 class Finds {

@@ -17,6 +17,7 @@ import { connectControl, showControl } from './panels/control.js';
 import { connectDrawing, followDrawing } from './panels/drawing.js';
 import { connectZones, followZones } from './panels/zone_list.js';
 import { connectMap } from './panels/map_pointer.js';
+import { labelBoxes } from './map/finds_layer.js';
 import { connectSpace, showView } from './panels/space_controls.js';
 import { svgText } from './panels/save.js';
 import { addLog, watchLive } from './data/live.js';
@@ -79,6 +80,7 @@ window.ergocast = {
   hover,
   setTheme,
   svgText: () => svgText(view),
+  labelBoxes,
   focus: focusOf,
   get view() {
     return view;

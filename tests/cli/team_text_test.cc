@@ -75,11 +75,21 @@ TEST(TeamTable, ShowsWhichBodyBlocksAnAgentOnceItLasts) {
 TEST(TeamTable, SaysWhatHasBeenFoundOnceALoggerHasSaidSo) {
   TeamPicture picture = running_team();
   EXPECT_EQ(nlohmann::json::parse(team_json(picture))["detection_probability"], nullptr);
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["objects"], nullptr);
   picture.detection_probability = 0.4312;
   EXPECT_EQ(nlohmann::json::parse(team_json(picture))["detection_probability"], 0.4312);
   EXPECT_EQ(lines_of(team_table(picture, false))[1],
             "2 of 3 agents alive, phi^2 0.00123 (median), found 43.1 % of objects drawn from the "
             "target, unauthenticated");
+  picture.objects = 3;
+  picture.finds = {{.object = 2, .agent = 1, .tick = 80, .t_s = 8, .x_m = {100, 250.5, 0}}};
+  EXPECT_EQ(lines_of(team_table(picture, false))[1],
+            "2 of 3 agents alive, phi^2 0.00123 (median), found 43.1 % of objects drawn from the "
+            "target, 1 of 3 hidden objects found, the newest: object 2 found by agent 1 at (100.0, "
+            "250.5) m after 8.0 s, unauthenticated");
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["objects"],
+            nlohmann::json::parse(R"({"count": 3, "found": 1, "finds": [{"object": 2, "agent": 1,
+                                      "tick": 80, "t_s": 8.0, "x_m": 100.0, "y_m": 250.5}]})"));
 }
 
 TEST(TeamTable, ShowsEverythingInLinesThatFit) {

@@ -136,6 +136,18 @@ TEST_F(TeamViewTest, KnowsWhatTheLoggerSaysHasBeenFound) {
   ack.detection_probability = 0.25;
   give(view_, ack, at(0s));
   EXPECT_EQ(view_.picture(at(0s)).detection_probability, 0.25);
+  // A logger that resumes may report fewer finds for a moment.
+  ack.header.sequence = next_sequence();
+  ack.find_count = 1;
+  ack.finds[0] = {.object = 2, .agent = 1, .tick = 6};
+  give(view_, ack, at(0s));
+  ack.header.sequence = next_sequence();
+  ack.find_count = 0;
+  give(view_, ack, at(0s));
+  const std::vector<Find> finds = view_.picture(at(0s)).finds;
+  ASSERT_EQ(finds.size(), 1u);
+  EXPECT_EQ(finds[0].object, 2);
+  EXPECT_GT(finds[0].t_s, 0);
 }
 
 TEST_F(TeamViewTest, IsCompleteOnceTheMissionAndEveryMemberAreKnown) {

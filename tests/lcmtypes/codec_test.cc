@@ -259,6 +259,11 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   const auto ack = read_by_lcm<record_ack_t>(encoded(record_ack()));
   expect_header(ack.ack_header, kLogger);
   EXPECT_EQ(ack.detection_probability, 0.25);
+  ASSERT_EQ(ack.find_count, 2);
+  EXPECT_EQ(ack.finds[0].object, 31);
+  EXPECT_EQ(ack.finds[0].find_agent, 127);
+  EXPECT_EQ(ack.finds[0].find_tick, 4711);
+  EXPECT_EQ(ack.finds[0].find_position_m[1], -2);
 }
 
 TEST(Codec, EveryMessageComesBackAsTheSameMessage) {

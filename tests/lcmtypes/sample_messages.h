@@ -177,7 +177,12 @@ inline Command command() {
   return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}, 0xfeedfacecafebeef};
 }
 
-inline RecordAck record_ack() { return {header_of_sender(kLogger), true, 0.25}; }
+inline RecordAck record_ack() {
+  RecordAck m{header_of_sender(kLogger), true, 0.25, 2};
+  m.finds[0] = {.object = 31, .agent = 127, .tick = 4711, .x_m = {1.0 / 3, -2, 0}};
+  m.finds[1] = {.object = 0, .agent = 0, .tick = 4712};
+  return m;
+}
 
 inline Digest digest() {
   Digest m;

@@ -154,7 +154,8 @@ TEST_F(FoundInABrowser, TheMapShowsWhereAnObjectMayStillBe) {
   std::string percent = text("nowFound");
   EXPECT_NEAR(std::stod(percent), 100 * recorded("probability"), 0.1) << percent;
   EXPECT_TRUE(percent.ends_with("%")) << percent;
-  EXPECT_NE(text("facts").find("objects found" + percent), std::string::npos) << text("facts");
+  EXPECT_NE(text("facts").find("chance to have found an object" + percent), std::string::npos)
+      << text("facts");
   EXPECT_NE(js("return document.getElementById('chart').getAttribute('aria-label')")
                 .get<std::string>()
                 .find(percent),
@@ -164,6 +165,55 @@ TEST_F(FoundInABrowser, TheMapShowsWhereAnObjectMayStillBe) {
   EXPECT_EQ(js("return document.querySelectorAll('parsererror').length"), 0);
   screenshot("missed");
   expect_no_errors();
+}
+
+/// Objects close to each other, and how the page says how many of them were found.
+TEST_F(FoundInABrowser, FindsHaveLabelsOfTheirOwn) {
+  open_report(
+      {"--duration", "120", "--set", "sensor.radius_m=150", "--set", "world.objects.count=12"},
+      "#theme=light");
+  const nlohmann::json objects = summary()["objects"];
+  ASSERT_GT(objects["found"].get<int>(), 4);
+  const std::string found = objects["found"].dump() + " of 12";
+  EXPECT_NE(text("facts").find("hidden objects found" + found), std::string::npos) << text("facts");
+  EXPECT_EQ(js("return ergocast.S.run.marks.filter(mark => mark.kind === 'find').length"),
+            objects["found"]);
+  // Two at one place, and two whose labels would overlap.
+  const auto overlaps =
+      js("const places = [[100, 100], [100, 100], [140, 103], [95, 108], [300, 300]];"
+         "const boxes = ergocast.labelBoxes(places, places.map(() => 60)); let n = 0;"
+         "for (let i = 0; i < boxes.length; i++) for (let k = 0; k < i; k++) {"
+         "  const a = boxes[i], b = boxes[k];"
+         "  if (a.x < b.x + b.w && b.x < a.x + a.w && a.y < b.y + b.h && b.y < a.y + a.h) n++; }"
+         "return [n, boxes[4].x > 300]");
+  EXPECT_EQ(overlaps[0], 0);
+  EXPECT_EQ(overlaps[1], true);
+  screenshot("finds");
+  expect_no_errors();
+}
+
+TEST_F(FoundInABrowser, ARunningTeamShowsItsFinds) {
+  Child mission = launch_endless(scenario("pace: REALTIME realtime_factor: 10"),
+                                 {"--set", "world.objects.count=6", "--set", "sensor.radius_m=150",
+                                  "--watch", "--port", "8819", "--lcm-url", kUrl});
+  browser_->open("http://127.0.0.1:8819/");
+  ASSERT_TRUE(browser_->becomes("return window.ergocast?.S.run?.finds.length > 1"));
+  EXPECT_TRUE(
+      browser_->becomes("return /hidden objects found[0-9] of 6/.test("
+                        "document.getElementById('facts').textContent)"))
+      << text("facts");
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.marks.some(({ kind }) => kind === 'find')"));
+  EXPECT_TRUE(eventually([&] { return printed("found by agent "); })) << printed();
+  ASSERT_EQ(ergocast({"status", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_NE(output().find(" of 6 hidden objects found, the newest: object "), std::string::npos)
+      << output();
+  screenshot("finds_live");
+  expect_no_errors();
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
 }
 
 TEST_F(FoundInABrowser, ARunningTeamHasTheProbabilityOfItsRecord) {
@@ -184,7 +234,7 @@ TEST_F(FoundInABrowser, ARunningTeamHasTheProbabilityOfItsRecord) {
                         "run.foundAt(run.end) > 0.1"));
   js("ergocast.set('layer', 'missed'); ergocast.set('quantity', 'found')");
   screenshot("missed_live");
-  EXPECT_NE(text("facts").find("objects found"), std::string::npos);
+  EXPECT_NE(text("facts").find("chance to have found an object"), std::string::npos);
   expect_no_errors();
   js("window.live = ergocast.S.run");
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();

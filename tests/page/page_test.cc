@@ -273,7 +273,8 @@ agents { starts { x_m: 50 y_m: 20 } random_count: 1 })";
   // The probability of detection is one of its quantities; the more, the better.
   js("ergocast.set({ quantity: 'found' })");
   wait_for_frame();
-  EXPECT_NE(text("best").find(". Objects found "), std::string::npos) << text("best");
+  EXPECT_NE(text("best").find(". Chance to have found an object "), std::string::npos)
+      << text("best");
   EXPECT_EQ(js("const { points, best } = ergocast.shown();"
                "return points.every(p => p.found[0] <= best.found[0])"),
             true);

@@ -36,6 +36,12 @@ TEST_F(FindingObjects, FindTheSameAsTheSimulation) {
   ASSERT_EQ(ergocast(words), 0) << output();
   EXPECT_NE(output().find(end), std::string::npos) << output();
   EXPECT_EQ(summary()["objects"], objects);
+  for (const auto& find : objects["finds"]) {  // on the terminal, as they happen
+    const std::string told =
+        "object " + find["object"].dump() + " found by agent " + find["agent"].dump() + " at (";
+    const std::string said = output().substr(0, output().find(end));
+    EXPECT_NE(said.find(told), std::string::npos) << told << '\n' << said;
+  }
   EXPECT_NE(log_of("logger").find(line), std::string::npos) << log_of("logger");
   EXPECT_NE(log_of("logger").find(end), std::string::npos) << log_of("logger");
   EXPECT_EQ(text_of(out() / "trajectory.csv"), text_of(folder_ / "simulated" / "trajectory.csv"));

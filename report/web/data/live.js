@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes rows, statuses, incidents and log lines of the frames that the server sends about a running team.
-import { Run, indexAt, recordHistory, recordedRun, withMore } from './run.js';
+import { Run, findsIn, indexAt, recordHistory, recordedRun, withMore } from './run.js';
 import { $, element } from '../text.js';
 
 const MOST_LINES = 400,
@@ -195,6 +195,7 @@ export function watchLive(page) {
       team.byId = new Map(agents.map(agent => [agent.id, agent]));
       addTold(run.told, team);
       run.setHolds(team.holds);
+      run.finds = findsIn(team);
       const standing = team.state === 'running' ? [] : agents.filter(agent => agent.moves === false);
       run.standing = new Set(standing.map(agent => agent.id));
       if (run.times.length && run.times[run.times.length - 1] >= t) {

@@ -48,7 +48,7 @@ export class Run {
     this.recalledFrom = new Map(); // world's tick from which a recalled agent rests
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
-    this.finds = []; // {object, agent, tick, t_s, x_m, y_m}: only a record knows them
+    this.finds = []; // {object, agent, tick, t_s, x_m, y_m}, as a record or the newest status has them
     // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
     this.amendments = [];
     // {number, closed, from, until: ticks, corners_m, heights_m}, ascending
@@ -131,6 +131,12 @@ export class Run {
     const marks = [
       ...this.targets.slice(1).map(({ from }) => ({ from, kind: 'target', sign: '◎', text: 'new target' })),
       ...ends.map(({ from }) => ({ from, kind: 'end', sign: '⏱', text: 'another end' })),
+      ...this.finds.map(({ object, agent, tick }) => ({
+        from: tick,
+        kind: 'find',
+        sign: '◆',
+        text: `${agent} found object ${object}`,
+      })),
       ...laws.map(({ from }) => ({ from, kind: 'law', sign: '⚙', text: 'another law' })),
       ...this.amendments
         .filter(one => one.kind === 'reopen')
@@ -280,6 +286,9 @@ function listOf(value) {
   return Array.isArray(value) ? value.filter(one => one && typeof one === 'object') : [];
 }
 
+// The finds of a summary, or of a status of a running team.
+export const findsIn = told => listOf(told?.objects?.finds);
+
 // A record as report/page.h writes it.
 export function recordedRun(record) {
   const run = new Run(record.mission, record.stride, record.rows);
@@ -290,7 +299,7 @@ export function recordedRun(record) {
     record.summary && typeof record.summary === 'object' && !Array.isArray(record.summary)
       ? record.summary
       : null;
-  run.finds = listOf(run.summary?.objects?.finds);
+  run.finds = findsIn(run.summary);
   run.setHolds(run.summary?.holds);
   run.recalledFrom = new Map(listOf(run.summary?.recalls).map(recall => [recall.agent, recall.from_tick]));
   run.homeFrom = new Map(Object.entries(record.home_from ?? {}).map(([id, tick]) => [Number(id), tick]));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Paints the map over its ground: trails and markers.
 // Each draws on a canvas, or on anything with the same methods (svg.js).
-import { clamp, readable } from '../text.js';
+import { clamp } from '../text.js';
 import { many, oval, paintAgents } from './markers.js';
 import { axisName } from './box_axes.js';
+import { paintFinds } from './finds_layer.js';
 import { farthestFirst, paintSpaceMarks } from './space_marks.js';
 import { paintZoneMarks } from './zones_layer.js';
 
@@ -197,36 +198,6 @@ function paintSensors(g, run, view, { row, colours, focus, layer }) {
     g.stroke();
   }
   g.setLineDash([]);
-}
-
-// Diamonds where agents have found objects by now, with the object's number and the time.
-function paintFinds(g, run, view, { row, colours }) {
-  const [left, bottom] = run.mission.origin_m;
-  g.font = '600 11px system-ui, sans-serif';
-  g.textAlign = 'left';
-  g.textBaseline = 'middle';
-  g.lineJoin = 'round';
-  for (const { object, tick, t_s: t, x_m: x, y_m: y } of run.finds) {
-    if (!(tick <= row * run.stride)) continue;
-    const right = view.px(run.stretch[0] * (x - left)),
-      down = view.py(run.stretch[1] * (y - bottom));
-    g.beginPath();
-    for (const [dx, dy] of [
-      [0, -7],
-      [7, 0],
-      [0, 7],
-      [-7, 0],
-    ])
-      g.lineTo(right + dx, down + dy);
-    g.closePath();
-    g.fillStyle = colours.ink;
-    g.strokeStyle = colours.panel;
-    g.lineWidth = 3;
-    g.stroke();
-    g.fill();
-    const label = `${object}: ${readable(t)} s`;
-    g.fillText(label, right + 11, down);
-  }
 }
 
 export function paintMarkers(g, run, view, state) {

@@ -16,7 +16,7 @@ function ratePerSecond({ t, received }) {
 export const QUANTITIES = {
   phi: { title: 'Ergodic metric φ²', log: true, of: m => m.phi, text: readable },
   found: {
-    title: 'Objects found [%]',
+    title: 'Chance to have found an object [%]',
     log: false,
     most: 100,
     of: m => m.found.map(p => 100 * p),

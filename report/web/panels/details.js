@@ -4,7 +4,7 @@ import { S } from './state.js';
 import { NOTABLE, lateCommands, lateText } from './notices.js';
 import { $, duration, element, grouped, ofModes, readable } from '../text.js';
 import { openDialog } from './dialogs.js';
-import { foundBy, foundFacts } from './found.js';
+import { findsText, foundBy, foundFacts } from './found.js';
 import { meaningOf } from './words.js';
 
 function list(pairs, css) {
@@ -41,6 +41,7 @@ export function showFacts(live) {
         ['messages per second', readable(live.rate)],
         ['messages lost', grouped(live.lost)],
         ['late commands', lateText(late)],
+        ...present([['hidden objects found', findsText(run)]]),
         ...foundFacts(run),
         ['authenticated', live.authenticated ? 'yes' : 'no'],
         ['ticks', `${grouped(run.tickCount)} × ${mission.dt_s} s`],
@@ -55,10 +56,10 @@ export function showFacts(live) {
         ['φ² last', readable(phi[phi.length - 1])],
         ['slope, last decade', slopeText(run)],
         ...present([
-          ['objects found', foundBy(summary)],
-          ['of the hidden objects', said(summary, 'objects.found')],
-          ['half of them after [s]', said(summary, 'detection.time_to_half_s')],
-          ['80 % after [s]', said(summary, 'detection.time_to_four_fifths_s')],
+          ['hidden objects found', findsText(run)],
+          ['chance to have found an object', foundBy(summary)],
+          ['50 % chance after [s]', said(summary, 'detection.time_to_half_s')],
+          ['80 % chance after [s]', said(summary, 'detection.time_to_four_fifths_s')],
           ['left alone at most [s]', said(summary, 'greatest_age_s')],
           ['distance to the target [m]', said(summary, 'sliced_wasserstein_m')],
           ['way of all agents [m]', said(summary, 'path_m')],

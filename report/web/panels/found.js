@@ -2,6 +2,14 @@
 // Puts into words what the team has found, and what it may have missed.
 import { chance, readable } from '../text.js';
 
+// How many of the hidden objects the team has found by a row; nothing: the mission has none.
+export function findsText(run, row = Infinity) {
+  const { objects } = run.mission;
+  if (!(objects > 0)) return undefined;
+  const found = run.finds.filter(({ tick }) => tick <= row * run.stride);
+  return `${found.length} of ${objects}`;
+}
+
 // At the end, by a summary, which may say anything.
 export function foundBy(summary) {
   const probability = summary?.detection?.probability;
@@ -14,9 +22,9 @@ export function foundFacts(run) {
   if (!isFinite(probability)) return [];
   const [half, fourFifths] = run.foundCurve.detection.times;
   return [
-    ['objects found', chance(probability)],
-    ...(half === null ? [] : [['half of them after [s]', readable(half)]]),
-    ...(fourFifths === null ? [] : [['80 % after [s]', readable(fourFifths)]]),
+    ['chance to have found an object', chance(probability)],
+    ...(half === null ? [] : [['50 % chance after [s]', readable(half)]]),
+    ...(fourFifths === null ? [] : [['80 % chance after [s]', readable(fourFifths)]]),
   ];
 }
 

@@ -71,7 +71,7 @@ export function showLegend() {
     'CHART',
     {
       phi: 'Ergodic metric φ²',
-      found: 'Objects found [%]',
+      found: 'Chance to have found an object [%]',
       spread: 'Disagreement on φ²',
       age: 'Oldest update',
       rate: 'Messages per second',

@@ -11,6 +11,7 @@ const COLOUR = {
   paused: 'var(--muted)',
   target: 'var(--accent)',
   end: 'var(--muted)',
+  find: 'var(--accent)',
   zone: 'var(--bad)',
   law: 'var(--muted)',
   reopen: 'var(--muted)',

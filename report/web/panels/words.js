@@ -58,13 +58,13 @@ const MAP = {
   'thick arrow': 'From an agent that has been blocked for a second or more to the one that blocks it.',
   'no-entry sign': 'An agent that an edge or a wall has blocked for a second or more.',
   cross: 'Where an agent started.',
-  diamond: 'Where an agent has found an object: the number of the object, and when.',
+  diamond: 'Where an agent was when it found an object: the number of the object, and when.',
   square: 'A station: where an agent is at the end of the mission.',
   'hatched area': 'The target is 0 here: it wants no agent.',
 };
 const CHART = {
   'Ergodic metric φ²': PHI,
-  'Objects found [%]':
+  'Chance to have found an object [%]':
     'How likely the team has found an object that stands still somewhere in the target. ' +
     'It begins again with each new target.',
   'Disagreement on φ²':
@@ -100,12 +100,14 @@ const FIGURES = {
   'φ² first': 'At the first recorded time.',
   'φ² last': 'At the last recorded time.',
   'slope, last decade': 'The power of t that fits φ² over the last tenfold of time. −1 falls like 1/t.',
-  'objects found':
+  'hidden objects found':
+    'How many of the objects that the world has hidden the team has found. A diamond on the map is a find.',
+  'chance to have found an object':
     'How likely the team has found an object that stands still somewhere in the target. ' +
     'The scenario’s sensor says how near an agent must be, and at which rate it then finds the object.',
-  'half of them after [s]':
+  '50 % chance after [s]':
     'The time from the newest target on after which an object had been found with a probability of ½.',
-  '80 % after [s]': 'The same with a probability of 0.8.',
+  '80 % chance after [s]': 'The same with a probability of 0.8.',
   'left alone at most [s]':
     'Places with 95 % of the target were never left alone for longer: an agent’s sensor was near them.',
   'distance to the target [m]':
@@ -163,6 +165,7 @@ function isShown(label) {
     'New zone': S.live,
     zone: S.run.zones.length > 0,
     diamond: S.run.finds.length > 0,
+    'hidden objects found': S.run.mission.objects > 0,
     square: mission.stations?.length > 0,
     'Radio range': mission.radio_range_m > 0,
     'hatched area': S.run.targetAt(S.run.rowAt(S.t)).nowhere?.rectangles.length > 0,

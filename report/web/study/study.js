@@ -28,7 +28,7 @@ export const QUANTITIES = {
     ...estimate('ratio'),
   },
   found: {
-    title: 'Objects found',
+    title: 'Chance to have found an object',
     means: 'How likely an object in the target has been found at the end: median, and its 95 % interval',
     log: false,
     better: 1,
