@@ -133,7 +133,7 @@ class TextWriter : public FieldVisitor {
   void derived(const Field&, const Tick&) {
     put("duration_s", shortest(duration_s(mission_.timing)));
   }
-  void derived(const Field&, const Rings& walls) {
+  void derived(const Field&, const IndexedRings& walls) {
     const std::vector<int> depth = depths(walls);
     for (std::size_t i = 0; i < walls.size(); ++i) {
       enter("world");

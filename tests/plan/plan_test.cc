@@ -55,7 +55,7 @@ class Fields : public FieldVisitor {
     for (const double value : values) all += text_of(value);
     texts.push_back(all);
   }
-  void derived(const Field&, const Rings& rings) {
+  void derived(const Field&, const IndexedRings& rings) {
     std::string all;
     for (const Ring& ring : rings) {
       all += " ring";

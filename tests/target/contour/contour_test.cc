@@ -10,6 +10,7 @@
 #include <random>
 #include <string>
 
+#include "core/base/indexed_rings.h"
 #include "target/contour/specks.h"
 
 namespace ergocast {
@@ -77,7 +78,7 @@ bool is_solid(const CellGrid& cells, int x, int y) { return cells.has(x, y) && c
 
 /// Checks outlines and holes: apart from each other, and each hole in its outline.
 void expect_valid(const std::vector<Polygon>& polygons, const std::string& text) {
-  const Rings rings = rings_of(polygons);
+  const IndexedRings rings(rings_of(polygons));
   ASSERT_FALSE(touching_edges(rings)) << text;
   const std::vector<int> depth = depths(rings);
   std::size_t ring = 0;
