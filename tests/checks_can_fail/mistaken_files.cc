@@ -107,11 +107,11 @@ void write_rooms(const fs::path& folder) {
       bytes += i % 2 == 1 && i / columns % 2 == 1 ? '\0' : '\xfe';
     return bytes;
   };
-  write_file(folder / "dots.pgm", dots(80, 40));
+  write_file(folder / "dots.pgm", dots(200, 100));
   write_file(folder / "noise.pgm", dots(2100, 2100));
   const std::string place =
       "\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-  write_file(folder / "dots.yaml", "image: dots.pgm\nresolution: 1.25" + place);
+  write_file(folder / "dots.yaml", "image: dots.pgm\nresolution: 0.5" + place);
   write_file(folder / "noise.yaml", "image: noise.pgm\nresolution: 0.02" + place);
 }
 
