@@ -154,7 +154,7 @@ void MissionRun::on(const WorldState& world, const Arrival& arrival, Participant
       return me.count_refused(Refusal::kRange);
     }
     if (tick < (pending_ ? pending_->tick : step_.tick)) {
-      world_is_behind_ = arrival.fresh && is_behind(tick, me, arrival.now);
+      world_is_behind_ = world_is_behind_ || (arrival.fresh && is_behind(tick, me, arrival.now));
       repeat_wanted_ = repeat_wanted_ || world_is_behind_;
       return;
     }
@@ -207,7 +207,7 @@ bool MissionRun::may_begin(const Participant& me) const {
 std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, Outbox& out) {
   const Mission& mission = me.mission();
   const OwnState own = *std::exchange(pending_, std::nullopt);
-  repeat_wanted_ = false;
+  repeat_wanted_ = world_is_behind_ = false;
   if (me.is_over(own.tick)) {
     step_.tick = own.tick;
     return MissionOver{false, "mission complete"};
@@ -271,9 +271,11 @@ void MissionRun::repeat(Participant& me, Outbox& out) {
   repeat_wanted_ = false;
   exchange_.repeat(me, out);
   if (search_) search_->repeat(me, out);
-  if (std::exchange(world_is_behind_, false))
+  const bool behind = std::exchange(world_is_behind_, false);
+  if (behind && command_before_.header.tick >= 0)
     me.publish(Bus::kCommand, command_before_, command_before_.header.tick, out);
-  if (answered_ == step_.tick) me.publish(Bus::kCommand, last_command_, step_.tick, out);
+  if (answered_ >= 0 && (behind || answered_ == step_.tick))
+    me.publish(Bus::kCommand, last_command_, answered_, out);
 }
 
 /// Whether ticks have stopped in real time, so that the agent broadcasts what it has. In lockstep
