@@ -35,6 +35,7 @@
 #include "core/mission/zones.h"
 #include "core/motion/step_constraints.h"
 #include "core/motion/vehicle.h"
+#include "core/motion/zones.h"
 
 namespace ergocast {
 
@@ -97,13 +98,6 @@ class SeparationFilter {
   double uncertainty_m(const Mover& self, const Neighbour& other) const;
 
  private:
-  /// The set that a body keeps under commands of 0: the places [from, from + along].
-  struct HoldingSet {
-    Eigen::Vector3d from_m, along_m;
-
-    Segment seen_from_above() const { return {from_m.head<2>(), (from_m + along_m).head<2>()}; }
-  };
-
   /// What follows for two bodies from their kinds alone.
   struct Pair {
     double kept_m;    ///< D'
@@ -120,10 +114,11 @@ class SeparationFilter {
   double unsure_of_place_m(const Mover& self) const;
   double reached_m(const Mover& self, double clearance_m) const;
   void take(AgentId whose, const StepConstraints::Set& set);
-  void keep_from_walls(const Mover& self, const HoldingSet& own);
-  void keep_from_wall(const Mover& self, const HoldingSet& own, const Segment& edge, double kept_m);
-  void keep_from_zones(const Mover& self, const HoldingSet& own);
-  void keep_from_plane(const Mover& self, const HoldingSet& own, const Eigen::Vector3d& y_m,
+  void keep_from_walls(const Mover& self, const StraightWay& own);
+  void keep_from_wall(const Mover& self, const StraightWay& own, const Segment& edge,
+                      double kept_m);
+  void keep_from_zones(const Mover& self, const StraightWay& own);
+  void keep_from_plane(const Mover& self, const StraightWay& own, const Eigen::Vector3d& y_m,
                        double square_m2, double kept_m);
   SafeVelocity blocked_by(const Eigen::Vector3d& wanted_m) const;
   double side(const Mover& self) const;
@@ -140,12 +135,10 @@ class SeparationFilter {
   Eigen::Vector3d center_step_m(const Mover& self, const Eigen::Vector3d& v_mps) const;
   bool allows(const Mover& self, const Eigen::Vector3d& v_mps) const;
   const Neighbour* keep_from_all(const Mover& self, std::span<const Neighbour> others);
-  bool keep_from(const Mover& self, const HoldingSet& own, const Neighbour& other);
-  static HoldingSet holding_set_of(const Motion& motion, const Eigen::Vector3d& x_m,
-                                   const Eigen::Vector3d& v_mps);
+  bool keep_from(const Mover& self, const StraightWay& own, const Neighbour& other);
   bool keep_places_apart(const Mover& self, const Neighbour& other, const Eigen::Vector3d& y_m);
-  bool keep_ways_apart(const Mover& self, const Neighbour& other, const HoldingSet& own,
-                       const HoldingSet& theirs);
+  bool keep_ways_apart(const Mover& self, const Neighbour& other, const StraightWay& own,
+                       const StraightWay& theirs);
 
   Mission mission_;
   std::vector<Motion> motions_;  // of each kind of agents; at least one

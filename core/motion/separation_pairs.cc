@@ -29,9 +29,8 @@ double share_of(const Mover& self, const Neighbour& other) {
   return self.max_speed_mps / (self.max_speed_mps + other.max_speed_mps);
 }
 
-/// The vector between the nearest points of `a` and `b`, from `a` to `b`; each has from_m and
-/// along_m.
-Eigen::Vector3d shortest_between_m(const auto& a, const auto& b) {
+/// The vector between the nearest points of `a` and `b`, from `a` to `b`.
+Eigen::Vector3d shortest_between_m(const StraightWay& a, const StraightWay& b) {
   const Eigen::Vector3d apart_m = a.from_m - b.from_m;
   const double aa = a.along_m.squaredNorm(), bb = b.along_m.squaredNorm();
   const double ab = a.along_m.dot(b.along_m);
@@ -44,17 +43,11 @@ Eigen::Vector3d shortest_between_m(const auto& a, const auto& b) {
 
 }  // namespace
 
-SeparationFilter::HoldingSet SeparationFilter::holding_set_of(const Motion& motion,
-                                                              const Eigen::Vector3d& x_m,
-                                                              const Eigen::Vector3d& v_mps) {
-  return {anchor_m(motion, x_m, v_mps), braking_path_m(motion, v_mps)};
-}
-
 /// The first neighbour that may be anywhere around. Null if there is none; then the constraints of
 /// all are set.
 const Neighbour* SeparationFilter::keep_from_all(const Mover& self,
                                                  std::span<const Neighbour> others) {
-  const HoldingSet own = holding_set_of(motion_of(self.id), self.position_m, self.velocity_mps);
+  const StraightWay own = holding_way(motion_of(self.id), self.position_m, self.velocity_mps);
   keep_from_walls(self, own);
   for (const Neighbour& other : others) {
     if (other.id != self.id && !keep_from(self, own, other)) return &other;
@@ -63,7 +56,8 @@ const Neighbour* SeparationFilter::keep_from_all(const Mover& self,
 }
 
 /// False if the neighbour may be anywhere around.
-bool SeparationFilter::keep_from(const Mover& self, const HoldingSet& own, const Neighbour& other) {
+bool SeparationFilter::keep_from(const Mover& self, const StraightWay& own,
+                                 const Neighbour& other) {
   const Pair& pair = pair_of(self.id, other.id);
   const double share = share_of(self, other);
   const double far_m =
@@ -73,7 +67,7 @@ bool SeparationFilter::keep_from(const Mover& self, const HoldingSet& own, const
   if (y_m.squaredNorm() >= far_m * far_m) return true;
   const Motion &mine = motion_of(self.id), &its = motion_of(other.id);
   if (mine.is_point() && its.is_point()) return keep_places_apart(self, other, y_m);
-  const HoldingSet theirs = holding_set_of(its, other.position_m, other.velocity_mps);
+  const StraightWay theirs = holding_way(its, other.position_m, other.velocity_mps);
   if (mine.has_inertia() || its.has_inertia()) return keep_ways_apart(self, other, own, theirs);
   return keep_places_apart(self, other, theirs.from_m - own.from_m);
 }
@@ -93,7 +87,7 @@ bool SeparationFilter::keep_places_apart(const Mover& self, const Neighbour& oth
 /// For two bodies of which at least one has to brake. The state of both is known exactly:
 /// sure_of_bodies().
 bool SeparationFilter::keep_ways_apart(const Mover& self, const Neighbour& other,
-                                       const HoldingSet& own, const HoldingSet& theirs) {
+                                       const StraightWay& own, const StraightWay& theirs) {
   const bool first = self.id < other.id;
   Eigen::Vector3d n = first ? shortest_between_m(own, theirs) : shortest_between_m(theirs, own);
   const double length_m = length_of(n);

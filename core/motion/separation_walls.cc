@@ -22,7 +22,7 @@
 
 namespace ergocast {
 
-void SeparationFilter::keep_from_walls(const Mover& self, const HoldingSet& own) {
+void SeparationFilter::keep_from_walls(const Mover& self, const StraightWay& own) {
   const auto kind = static_cast<std::size_t>(planned_kind(mission_, self.id));
   const double kept_m = kept_from_walls_m_[kind];
   mission_.walls.for_near(own.seen_from_above(), reached_m(self, kept_m), near_,
@@ -32,16 +32,15 @@ void SeparationFilter::keep_from_walls(const Mover& self, const HoldingSet& own)
 
 /// A zone that binds counts as a wall around it, or in a box as a floor below or a ceiling above,
 /// if that is farther away.
-void SeparationFilter::keep_from_zones(const Mover& self, const HoldingSet& own) {
+void SeparationFilter::keep_from_zones(const Mover& self, const StraightWay& own) {
   const auto kind = static_cast<std::size_t>(planned_kind(mission_, self.id));
-  const StraightWay way{own.from_m, own.along_m};
   for (const Zone& zone : zones_) {
     if (!zone.closed_at(self.tick)) continue;
-    const double beside = beside_m(zone, way), above = above_or_below_m(zone, way);
+    const double beside = beside_m(zone, own), above = above_or_below_m(zone, own);
     if (std::max(beside, above) < bound_from_zones_m_[kind]) continue;
     const double kept_m = kept_from_zones_m_[kind];
     if (above >= beside) {
-      const double up = way.from_m.z() > zone.low_m ? 1 : -1;
+      const double up = own.from_m.z() > zone.low_m ? 1 : -1;
       keep_from_plane(self, own, {0, 0, -up * above}, above * above, kept_m);
       continue;
     }
@@ -52,8 +51,8 @@ void SeparationFilter::keep_from_zones(const Mover& self, const HoldingSet& own)
   }
 }
 
-void SeparationFilter::keep_from_wall(const Mover& self, const HoldingSet& own, const Segment& edge,
-                                      double kept_m) {
+void SeparationFilter::keep_from_wall(const Mover& self, const StraightWay& own,
+                                      const Segment& edge, double kept_m) {
   const Eigen::Vector2d y_m = shortest_to_m(own.seen_from_above(), edge);
   keep_from_plane(self, own, on_ground(y_m), y_m.squaredNorm(), kept_m);
 }
@@ -82,7 +81,7 @@ double SeparationFilter::reached_m(const Mover& self, double clearance_m) const 
 
 /// Keeps from what lies beyond the plane through the end of `y_m`, which is perpendicular to it. A
 /// plane that no step reaches needs no set.
-void SeparationFilter::keep_from_plane(const Mover& self, const HoldingSet& own,
+void SeparationFilter::keep_from_plane(const Mover& self, const StraightWay& own,
                                        const Eigen::Vector3d& y_m, double square_m2,
                                        double clearance_m) {
   const Separation& rule = mission_.separation;
