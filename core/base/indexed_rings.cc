@@ -20,6 +20,17 @@ double middle(const Edge& edge, int axis) {
 
 }  // namespace
 
+std::vector<std::size_t> listed_oddly(std::vector<std::size_t> listed) {
+  std::ranges::sort(listed);
+  std::vector<std::size_t> odd;
+  for (auto at = listed.begin(); at != listed.end();) {
+    const auto next = std::upper_bound(at, listed.end(), *at);
+    if ((next - at) % 2 == 1) odd.push_back(*at);
+    at = next;
+  }
+  return odd;
+}
+
 IndexedRings::IndexedRings(Rings rings) {
   if (rings.empty()) return;
   auto content = std::make_shared<Content>();
@@ -78,6 +89,10 @@ double IndexedRings::Bounds::square_m2(const Eigen::Vector2d& x_m) const {
   return x * x + y * y;
 }
 
+bool IndexedRings::Bounds::beside_ray(const Eigen::Vector2d& x_m) const {
+  return low[1] > x_m.y() || high[1] < x_m.y() || high[0] < x_m.x();
+}
+
 /// By their boxes, and then by which side of the line through the way the box is on.
 bool IndexedRings::Bounds::apart(const Segment& way, double within_m) const {
   const Eigen::Vector2d &a = way.from_m, &b = way.to_m;
@@ -130,6 +145,26 @@ void IndexedRings::least_square(std::size_t node, std::size_t first, std::size_t
   if (other_first) least_square(other, half, end, x_m, more_than_m2, least_m2);
   least_square(one, first, half, x_m, more_than_m2, least_m2);
   if (!other_first) least_square(other, half, end, x_m, more_than_m2, least_m2);
+}
+
+bool IndexedRings::is_crowded() const {
+  std::size_t tests = 0;
+  const auto search_all = [&](const Segment& way, const auto& apart) {
+    search(
+        0, 0, edge_count(),
+        [&](const Bounds& bounds) { return ++tests > kMaxEdgeTests || apart(bounds, way); },
+        [&](const Edge&) { return ++tests > kMaxEdgeTests; });
+  };
+  for (const Edge& edge : edges())
+    search_all(edge.segment,
+               [](const Bounds& bounds, const Segment& way) { return bounds.apart(way, 0); });
+  if (tests > kMaxEdgeTests) return true;
+  tests = 0;
+  for (const Ring& ring : rings())
+    search_all({ring.front(), ring.front()}, [](const Bounds& bounds, const Segment& way) {
+      return bounds.beside_ray(way.from_m);
+    });
+  return tests > kMaxEdgeTests;
 }
 
 bool IndexedRings::solid_at(const Eigen::Vector2d& x_m) const {

@@ -21,6 +21,15 @@
 
 namespace ergocast {
 
+/// Those that are listed an odd number of times, ascending: the rings around a place, if each is
+/// listed once for each of its edges that a ray from there crosses.
+std::vector<std::size_t> listed_oddly(std::vector<std::size_t> listed);
+
+/// 1024 edges never need more, wherever they are; thousands of long edges side by side do.
+/// Limit (Scenario): tests by which the edges of walls find those near them. Beyond it: the
+/// scenario is refused.
+inline constexpr std::size_t kMaxEdgeTests = std::size_t{1} << 21;
+
 /// An edge of rings: its number in the order of for_segments(), its ring, and its first corner.
 struct Edge {
   Segment segment;
@@ -66,12 +75,13 @@ class IndexedRings {
   double least_square_m2(const Eigen::Vector2d& x_m, double more_than_m2 = -1) const;
   /// Whether an odd number of rings contain `x_m`.
   bool solid_at(const Eigen::Vector2d& x_m) const;
+  /// Whether it takes more than kMaxEdgeTests to find the edges near each edge, or those to the
+  /// right of each ring's first corner. Then touching_edges() or depths() would take seconds.
+  bool is_crowded() const;
   /// Calls `each(edge)` for the edges that a ray from `x_m` to the right crosses, as contains() of
   /// core/base/rings.h sees it.
   void for_crossed(const Eigen::Vector2d& x_m, auto&& each) const {
-    const auto apart = [&](const Bounds& bounds) {
-      return bounds.low[1] > x_m.y() || bounds.high[1] < x_m.y() || bounds.high[0] < x_m.x();
-    };
+    const auto apart = [&](const Bounds& bounds) { return bounds.beside_ray(x_m); };
     search(0, 0, edge_count(), apart, [&](const Edge& edge) {
       if (crosses_ray(edge.segment, x_m)) each(edge);
       return false;
@@ -85,6 +95,8 @@ class IndexedRings {
 
     /// Whether no point of the box is within a distance of `way`. Rounding never makes it true.
     bool apart(const Segment& way, double within_m) const;
+    /// Whether no edge in the box crosses the ray from `x_m` to the right.
+    bool beside_ray(const Eigen::Vector2d& x_m) const;
     double square_m2(const Eigen::Vector2d& x_m) const;
   };
   struct Content {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <utility>
 
 #include "core/base/indexed_rings.h"
 
@@ -90,20 +90,12 @@ bool contains(const Ring& ring, const Eigen::Vector2d& x_m) {
 
 std::vector<int> depths(const IndexedRings& rings) {
   std::vector<int> depths;
-  std::vector<std::uint32_t> crossed;
   for (std::size_t ring = 0; ring < rings.size(); ++ring) {
-    crossed.clear();
+    std::vector<std::size_t> crossed;
     rings.for_crossed(rings[ring].front(), [&](const Edge& edge) {
       if (edge.ring != ring) crossed.push_back(edge.ring);
     });
-    std::ranges::sort(crossed);
-    int depth = 0;  // the rings that are crossed an odd number of times
-    for (auto at = crossed.begin(); at != crossed.end();) {
-      const auto next = std::upper_bound(at, crossed.end(), *at);
-      depth += static_cast<int>((next - at) % 2);
-      at = next;
-    }
-    depths.push_back(depth);
+    depths.push_back(static_cast<int>(listed_oddly(std::move(crossed)).size()));
   }
   return depths;
 }

@@ -79,7 +79,7 @@ bool near_enough(const Eigen::Vector2d& corner_m, const Box& domain) {
 bool are_walls(const IndexedRings& walls, const Box& domain) {
   const auto ring = [&](const Ring& one) { return is_ring(one, domain); };
   if (walls.edge_count() > static_cast<std::size_t>(kMaxWallVertices) ||
-      !std::ranges::all_of(walls, ring) || touching_edges(walls))
+      !std::ranges::all_of(walls, ring) || walls.is_crowded() || touching_edges(walls))
     return false;
   const std::vector<int> depth = depths(walls);
   return in_order(walls, depth) && wide_enough(walls, depth, domain);

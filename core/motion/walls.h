@@ -42,8 +42,8 @@ std::size_t vertex_count(const Rings& walls);
 /// Whether a corner is so near to the domain that rounding does not count.
 bool near_enough(const Eigen::Vector2d& corner_m, const Box& domain);
 
-/// Whether the rings are walls: at most kMaxWallVertices corners, near the domain, no edges that
-/// touch, and each room after the wall that contains it.
+/// Whether the rings are walls: at most kMaxWallVertices corners, near the domain, not crowded
+/// (core/base/indexed_rings.h), no edges that touch, and each room after the wall that contains it.
 bool are_walls(const IndexedRings& walls, const Box& domain);
 
 /// How far the anchor (core/motion/vehicle.h) of such a vehicle keeps from all walls [m]: the sum

@@ -34,8 +34,7 @@ class WallRules {
     if (!domain_.planar()) return in_a_box();
     for (const Wall& wall : walls_) shape(wall);
     if (!all_sound() || too_many()) return;
-    apart();
-    if (all_sound()) bodies();
+    if (apart() && all_sound()) bodies();
   }
 
  private:
@@ -107,8 +106,9 @@ class WallRules {
     return rings;
   }
 
-  /// Checks that no two walls touch, and that a wall lies in another one only in a room.
-  void apart() {
+  /// Checks that no two walls touch, and that a wall lies in another one only in a room. False if
+  /// that takes too long.
+  bool apart() {
     Rings all;
     std::vector<std::size_t> owner, first;  // the wall of each ring, and each wall's first ring
     for (std::size_t i = 0; i < walls_.size(); ++i) {
@@ -119,6 +119,11 @@ class WallRules {
       }
     }
     const IndexedRings rings(std::move(all));
+    if (rings.is_crowded()) {
+      checks_.problem("world", "thousands of long edges of walls lie side by side",
+                      "draw the walls with fewer or shorter edges");
+      return false;
+    }
     std::vector<std::size_t> met(walls_.size());  // the first wall that each meets, or itself
     std::iota(met.begin(), met.end(), std::size_t{0});
     const auto meet = [&](std::size_t one, std::size_t other) {
@@ -139,23 +144,18 @@ class WallRules {
       checks_.problem(walls_[i].path, "crosses, touches or overlaps " + walls_[met[i]].path,
                       "join the two to one polygon, or move one of them");
     }
+    return true;
   }
 
   /// The other walls that are solid where a ring begins.
   static std::vector<std::size_t> solid_around(const IndexedRings& rings,
                                                const std::vector<std::size_t>& owner,
                                                std::size_t ring) {
-    std::vector<std::size_t> crossed, around;
+    std::vector<std::size_t> crossed;
     rings.for_crossed(rings[ring].front(), [&](const Edge& edge) {
       if (owner[edge.ring] != owner[ring]) crossed.push_back(owner[edge.ring]);
     });
-    std::ranges::sort(crossed);
-    for (auto at = crossed.begin(); at != crossed.end();) {
-      const auto next = std::upper_bound(at, crossed.end(), *at);
-      if ((next - at) % 2 == 1) around.push_back(*at);
-      at = next;
-    }
-    return around;
+    return listed_oddly(std::move(crossed));
   }
 
   void bodies() {

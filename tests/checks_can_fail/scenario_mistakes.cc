@@ -183,7 +183,11 @@ std::vector<Mistake> mistakes_of_walls() {
     return Mistake{kLaw, "world { " + fields + " } law {", said, has_line};
   };
   const std::string block_and_limit = limit + wall(block);
-  std::string many;
+  std::string many, grating;
+  for (int i = 0; i < 5000; ++i) {
+    const std::string x = std::to_string(20 + i / 100.0);
+    grating += wall(x + " 1 " + std::to_string(20.002 + i / 100.0) + " 1 " + x + " 40");
+  }
   for (int i = 0; i < 5462; ++i) {
     const std::string x = std::to_string(20 + i / 100.0);
     many += wall(x + " 1 " + std::to_string(20.005 + i / 100.0) + " 1 " + x + " 2");
@@ -198,6 +202,7 @@ std::vector<Mistake> mistakes_of_walls() {
             "world.walls[0].holes[0]: the hole is outside"),
       world(limit + wall("60 10 1101 10 80 30"), "world.walls[0]: has a vertex that is farther"),
       world(limit + many, "world: 16386 vertices of walls are above the limit 16384", false),
+      world(limit + grating, "world: thousands of long edges of walls lie side by side", false),
       world(block_and_limit + wall("70 20 90 20 90 40"),
             "world.walls[1]: crosses, touches or overlaps world.walls[0]"),
       world(block_and_limit + wall("65 15 70 15 70 20"),

@@ -65,6 +65,21 @@ TEST(Walls, OfAsManyCornersAsAllowedAreWalls) {
   EXPECT_FALSE(are_walls(many, kDomain));
 }
 
+/// Thin triangles along a diagonal of the domain, side by side.
+Rings grating(int count) {
+  Rings rings;
+  for (int i = 0; i < count; ++i) {
+    const double x_m = i * 100.0 / count;
+    rings.push_back({{x_m, 0}, {x_m + 100, 100}, {x_m + 100, 100 + 30.0 / count}});
+  }
+  return rings;
+}
+
+TEST(Walls, MayBeALargeGratingOnlyIfTheyHaveFewCorners) {
+  EXPECT_TRUE(are_walls(grating(1024 / 3), kDomain));
+  EXPECT_FALSE(are_walls(grating(kMaxWallVertices / 3), kDomain)) << "a plan would stall agents";
+}
+
 Mission walled() {
   Mission mission;
   mission.domain = kDomain;
