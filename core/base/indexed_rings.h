@@ -25,10 +25,10 @@ namespace ergocast {
 /// listed once for each of its edges that a ray from there crosses.
 std::vector<std::size_t> listed_oddly(std::vector<std::size_t> listed);
 
-/// 1024 edges never need more, wherever they are; thousands of long edges side by side do.
+/// Thousands of pillars in a grid need fewer; thousands of long edges side by side need more.
 /// Limit (Scenario): tests by which the edges of walls find those near them. Beyond it: the
 /// scenario is refused.
-inline constexpr std::size_t kMaxEdgeTests = std::size_t{1} << 21;
+inline constexpr std::size_t kMaxEdgeTests = std::size_t{1} << 23;
 
 /// An edge of rings: its number in the order of for_segments(), its ring, and its first corner.
 struct Edge {
