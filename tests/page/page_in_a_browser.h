@@ -24,6 +24,7 @@ class PageInABrowser : public RunningMission {
   void show_report(const std::string& fragment = "") {
     browser_->open("file://" + (out() / "report.html").string() + fragment);
     ASSERT_TRUE(browser_->becomes("return Boolean(window.ergocast && ergocast.S.run.ready)"));
+    wait_for_frame();  // the first one is drawn after the run is ready
   }
   /// Waits for two frames; the second one shows the requested change.
   void wait_for_frame() {
