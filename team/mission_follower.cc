@@ -56,7 +56,7 @@ bool MissionFollower::receive(const MissionPart& part) {
   for (auto at = collected_.rbegin(); at != collected_.rend() && at->first >= part.revision; ++at) {
     const auto any = std::find_if(at->second.begin(), at->second.end(),
                                   [](const auto& page) { return page.has_value(); });
-    const MissionPart newest = (*any)->part;
+    const MissionPart newest = at->first == part.revision ? part : (*any)->part;
     auto parts = completed(newest);
     if (!parts) continue;
     const bool committed = commit(newest, std::move(*parts));
@@ -79,7 +79,8 @@ const MissionFollower::Page* MissionFollower::newest_of(std::size_t part,
   return part < known_.size() && known_[part] ? &*known_[part] : nullptr;
 }
 
-/// The parts of the revision of `newest`, with older ones in place of those that are missing.
+/// The parts of the revision of `newest`, with older ones in place of those that are missing. Two
+/// coordinators may give one number to two revisions: their parts are not mixed.
 std::optional<std::vector<MissionPart>> MissionFollower::completed(
     const MissionPart& newest) const {
   const auto count = static_cast<std::size_t>(newest.parts);
@@ -90,7 +91,8 @@ std::optional<std::vector<MissionPart>> MissionFollower::completed(
     const Page* const page = newest_of(p, newest.revision);
     if (page == nullptr) return std::nullopt;
     pages.push_back(page);
-    all_received = all_received && page->part.revision == newest.revision;
+    all_received = all_received && page->part.revision == newest.revision &&
+                   page->part.content_hash == newest.content_hash;
     sum += page->hash;
   }
   if (!all_received && sum != newest.content_hash) return std::nullopt;

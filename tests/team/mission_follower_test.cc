@@ -87,6 +87,20 @@ TEST(MissionFollower, NeverMixesTwoRevisions) {
   EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{20, 21, 22, 23}));
 }
 
+TEST(MissionFollower, NeverMixesTwoCoordinatorsRevisionsWithOneNumber) {
+  const auto of_coordinator = [](std::int64_t which, int p) {
+    MissionPart part = part_of(which, p);
+    part.revision = 7;
+    part.content_hash = static_cast<std::uint64_t>(which);
+    return part;
+  };
+  MissionFollower follower;
+  for (const int p : {0, 1, 2}) EXPECT_FALSE(follower.receive(of_coordinator(1, p)));
+  for (const int p : {3, 0, 1}) EXPECT_FALSE(follower.receive(of_coordinator(2, p)));
+  EXPECT_TRUE(follower.receive(of_coordinator(2, 2)));
+  EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{20, 21, 22, 23}));
+}
+
 TEST(MissionFollower, APartOfARevisionThatNeverCompletesBlocksNoOlderOne) {
   MissionFollower follower;
   for (int revision = 10; revision < 100; ++revision) follower.receive(part_of(revision, 0));
