@@ -48,7 +48,6 @@ void note_gains(const Contribution& before, const HalfLife& half_life, Contribut
 CoverageExchange::CoverageExchange(const Mission& mission, const RosterEntry& self, Tick joined)
     : self_(self.author),
       kind_(self.kind),
-      realtime_(mission.timing.pace == Pace::kRealtime),
       sensors_(mission),
       table_(mission.basis, mission.timing.dt_s, joined),
       anti_entropy_(self.author, mission.seed, mission.timing.dt_s),
@@ -120,9 +119,9 @@ std::optional<Refusal> CoverageExchange::merge(const Contribution& theirs, int k
     case Merge::kRefusedRange:
       return Refusal::kRange;
     case Merge::kRefusedShift:
-      // In real time its author may know of a new target first. It sends the block again.
-      if (realtime_) return std::nullopt;
-      return Refusal::kRange;
+      // Its author may know of a new target first: in real time, or because its team goes on without
+      // us and we do not know that yet. It sends the block again.
+      return std::nullopt;
     case Merge::kRefusedLimit:
       return Refusal::kLimit;
     case Merge::kRefusedEncoding:

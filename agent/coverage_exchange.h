@@ -91,7 +91,6 @@ class CoverageExchange {
 
   Author self_;
   int kind_;
-  bool realtime_;
   Sensors sensors_;
   CoverageTable table_;
   AntiEntropy anti_entropy_;
