@@ -13,7 +13,9 @@
 namespace ergocast {
 namespace {
 
-constexpr double kCellsAlongSide = 80;
+/// Of a square domain. A finer grid takes more time, so it comes only where a coarser one shows no
+/// way between parts.
+constexpr double kCellsAlongSide[] = {80, 113, 160, 226};
 constexpr int kFewestCells = 8, kMostCells = 640;
 /// The share of free cells that may be cut off, such as corners behind a wall that is nearer to a
 /// side than a cell's width.
@@ -22,12 +24,12 @@ constexpr double kMostCutOff = 0.01;
 /// Finds which cells see each other. Every cell of the grid has a number, column · rows + row.
 class GridBuilder {
  public:
-  GridBuilder(const Box& domain, const Sees& sees) : sees_(sees) {
+  GridBuilder(const Box& domain, double along_side, const Sees& sees) : sees_(sees) {
     grid_.origin_m = domain.origin_m.head<2>();
     grid_.size_m = domain.size_m.head<2>();
     const double shape = std::sqrt(grid_.size_m.x() / grid_.size_m.y());
-    grid_.columns = cells_along(kCellsAlongSide * shape);
-    grid_.rows = cells_along(kCellsAlongSide / shape);
+    grid_.columns = cells_along(along_side * shape);
+    grid_.rows = cells_along(along_side / shape);
   }
 
   Result<FreeGrid> run() {
@@ -208,7 +210,12 @@ class GridBuilder {
 }  // namespace
 
 Result<FreeGrid> free_grid(const Box& domain, const Sees& sees) {
-  return GridBuilder(domain, sees).run();
+  Result<FreeGrid> grid = failure(std::string());
+  for (const double along_side : kCellsAlongSide) {
+    grid = GridBuilder(domain, along_side, sees).run();
+    if (grid) break;
+  }
+  return grid;
 }
 
 }  // namespace ergocast

@@ -29,9 +29,9 @@ struct FreeGrid {
   int cell_count() const { return static_cast<int>(place.size()); }
 };
 
-/// About 80 × 80 cells, or as many for other shapes of the domain. A cell is free if its middle is
-/// free. Two neighbours see each other if their middles do. Free cells that are cut off from the
-/// largest part count as walls.
+/// About 80 × 80 cells, or as many for other shapes of the domain; up to 226 × 226 where narrow
+/// ways need them. A cell is free if its middle is free. Two neighbours see each other if their
+/// middles do. Free cells that are cut off from the largest part count as walls.
 /// @return  or a sentence: nothing is free, or more than a hundredth of it is cut off
 Result<FreeGrid> free_grid(const Box& domain, const Sees& sees);
 

@@ -71,6 +71,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/command_replay_test.cc
     process/datagram_filter_test.cc
     process/commands/deploy_test.cc
+    process/commands/new_test.cc
     process/commands/doctor_test.cc
     process/driver_test.cc
     process/commands/export_test.cc

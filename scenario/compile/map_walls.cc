@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the cells near the domain, cleans them, and draws polygons around what is solid.
+// Reads the cells near the domain, cleans them, draws polygons around what is solid, and closes
+// what bodies cannot reach.
 #include "scenario/compile/map_walls.h"
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/motion/free_region.h"
 #include "core/motion/walls.h"
 #include "scenario/parse/findings.h"
 #include "target/contour/contour.h"
@@ -24,6 +26,14 @@ constexpr std::size_t kLeastSpeck = 5;
 constexpr std::size_t kFreePerPocket = 1000;
 /// By how much a domain may stick out of a map that covers it [cells]: by rounding alone.
 constexpr double kSameEdge = 0.01;
+/// How often parts are closed: closing one straightens walls anew, which may cut off a part.
+constexpr int kMostRounds = 3;
+/// Clearances with room for rounding: as a factor, and at least this share of the longer side.
+constexpr double kRoundedUp = 1.001, kLeastKept = 1e-6;
+constexpr int kUnreached = -1;
+/// Bodies come so near to each place of a room [times their clearance and a cell], by steps along
+/// the axes; niches lie deeper.
+constexpr double kNiche = 2;
 
 /// A rectangle of cells, or of places in units of cells from the map's lower left corner.
 template <class Number>
@@ -33,8 +43,13 @@ struct Extent {
 
 class MapWallReader {
  public:
-  MapWallReader(const fs::path& yaml, const Box& domain, bool unknown_free, OccupancyMap map)
-      : file_(yaml.string()), domain_(domain), unknown_free_(unknown_free), map_(std::move(map)) {
+  MapWallReader(const fs::path& yaml, const Box& domain, bool unknown_free, const MapBodies& bodies,
+                OccupancyMap map)
+      : file_(yaml.string()),
+        domain_(domain),
+        unknown_free_(unknown_free),
+        bodies_(bodies),
+        map_(std::move(map)) {
     const double turn = map_.about().yaw_rad;
     along_m_ = map_.about().resolution_m * Eigen::Vector2d(std::cos(turn), std::sin(turn));
   }
@@ -59,7 +74,12 @@ class MapWallReader {
     if (count_free(cells) == cells.size())
       return refuse("has no wall in or near the domain", "remove it, or move the domain");
     close_pockets(cells, (free + kFreePerPocket - 1) / kFreePerPocket);
-    return walls_of(cells);
+    auto walls = walls_of(cells);
+    for (int round = 0; walls && round < kMostRounds; ++round) {
+      if (!close_unreached(*walls, round > 0, cells)) break;
+      walls = walls_of(cells);
+    }
+    return walls;
   }
 
  private:
@@ -152,6 +172,69 @@ class MapWallReader {
     return placed;
   }
 
+  /// Makes free cells unknown that belong to another part of the domain than that of the first
+  /// start, and niches that no body reaches into. Returns whether there were any.
+  /// @param again  whether niches have been closed
+  bool close_unreached(const MapWalls& walls, bool again, CellGrid& cells) const {
+    const double kept_m = std::max(kRoundedUp * bodies_.clearance_m,
+                                   kLeastKept * domain_.size_m.head<2>().maxCoeff());
+    const FreeRegion region(rings_of(walls), domain_, kept_m);
+    if (region.parts() == 0 || (again && region.parts() == 1)) return false;
+    const auto at_start = bodies_.start_m ? region.part_at(*bodies_.start_m) : std::nullopt;
+    const std::vector<int> part = parts_of(cells, region, kept_m);
+    bool any = false;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i] != kFreeCell || part[i] == at_start.value_or(0)) continue;
+      cells[i] = kUnknownCell;
+      any = true;
+    }
+    return any;
+  }
+
+  static Rings rings_of(const MapWalls& walls) {
+    Rings rings;
+    for (const PlacedPolygon& wall : walls.polygons) {
+      rings.push_back(wall.polygon.outline);
+      rings.insert(rings.end(), wall.polygon.holes.begin(), wall.polygon.holes.end());
+    }
+    return rings;
+  }
+
+  /// The part of the region that is nearest to each free cell, by steps over free cells; none for
+  /// cells that no body comes near.
+  std::vector<int> parts_of(const CellGrid& cells, const FreeRegion& region, double kept_m) const {
+    const double reach_m = kNiche * (kept_m + region.cell_size_m());
+    const double most_steps = 1 + reach_m / map_.about().resolution_m;
+    std::vector<int> part(cells.size(), kUnreached);
+    std::vector<std::pair<int, int>> reached;
+    const auto reach = [&](int column, int row, int which) {
+      if (!cells.has(column, row) || cells.at(column, row) != kFreeCell) return;
+      int& its = part[cells.index(column, row)];
+      if (its != kUnreached) return;
+      its = which;
+      reached.emplace_back(column, row);
+    };
+    for (int cell = 0; cell < region.cells(); ++cell) {
+      const Eigen::Vector2d middle_m = region.center_m(cell), at = in_map(middle_m);
+      if (const auto which = region.part_at(middle_m))
+        reach(static_cast<int>(std::floor(at.x())) - window_.low_x,
+              static_cast<int>(std::floor(at.y())) - window_.low_y, *which);
+    }
+    std::size_t end_of_step = reached.size();
+    int steps = 0;
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      if (i == end_of_step) {
+        if (++steps > most_steps) break;
+        end_of_step = reached.size();
+      }
+      const auto [column, row] = reached[i];
+      const int which = part[cells.index(column, row)];
+      for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}})
+        reach(column + dx, row + dy, which);
+    }
+    return part;
+  }
+
   static std::size_t corners_of(const std::vector<Polygon>& polygons) {
     std::size_t count = 0;
     for (const Polygon& polygon : polygons) {
@@ -179,6 +262,7 @@ class MapWallReader {
   const std::string file_;
   const Box domain_;
   const bool unknown_free_;
+  const MapBodies bodies_;
   OccupancyMap map_;
   Eigen::Vector2d along_m_;  // a cell along the map's rows
   Extent<double> near_{};
@@ -188,10 +272,10 @@ class MapWallReader {
 }  // namespace
 
 Result<MapWalls, MapProblem> read_map_walls(const fs::path& yaml, const Box& domain,
-                                            bool unknown_free) {
+                                            bool unknown_free, const MapBodies& bodies) {
   auto map = OccupancyMap::open(yaml);
   if (!map) return failure(map.error());
-  return MapWallReader(yaml, domain, unknown_free, *std::move(map)).run();
+  return MapWallReader(yaml, domain, unknown_free, bodies, *std::move(map)).run();
 }
 
 }  // namespace ergocast

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/base/geometry.h"
@@ -16,13 +17,21 @@ struct MapWalls {
   std::filesystem::path image;
 };
 
+/// What map_walls need to know of the bodies.
+struct MapBodies {
+  double clearance_m = 0;                  ///< that they keep from walls
+  std::optional<Eigen::Vector2d> start_m;  ///< of the first of them, if it is planned
+};
+
 /// The solid space of a map in and near a domain, as polygons that do not touch. Occupied cells are
 /// solid; unknown ones and all outside the map, too, unless `unknown_free`. What is outside the map
 /// does not matter to a domain that the map covers. Without `unknown_free`, patches of up to four
 /// unknown cells amid free ones are free, and pockets of less than 1/1000 of the free cells are
-/// solid. The polygons have at most kMaxWallVertices corners; polygons_around() straightens them
-/// both ways if that takes less.
+/// solid. So are the parts of the domain that no way of core/motion/free_region.h joins with the
+/// part of the first start, or else with the largest, and niches that no body reaches into. The
+/// polygons have at most kMaxWallVertices corners; polygons_around() straightens them both ways if
+/// that takes less.
 Result<MapWalls, MapProblem> read_map_walls(const std::filesystem::path& yaml, const Box& domain,
-                                            bool unknown_free);
+                                            bool unknown_free, const MapBodies& bodies);
 
 }  // namespace ergocast

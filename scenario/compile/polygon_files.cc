@@ -146,7 +146,7 @@ class PolygonFileReader {
     const Box domain = domain_of(scenario_.domain());
     const bool has_area = domain.size_m.x() > 0 && domain.size_m.y() > 0;
     if (!checks_.sound("domain") || !has_area) return {};
-    auto walls = read_map_walls(file_, domain, written.unknown_free());
+    auto walls = read_map_walls(file_, domain, written.unknown_free(), bodies());
     if (!walls) {
       checks_.problem(field, walls.error().what, walls.error().remedy);
       return {};
@@ -155,6 +155,14 @@ class PolygonFileReader {
     for (const PlacedPolygon& one : walls->polygons)
       if (!sound(one, field, domain)) return {};
     return std::move(walls->polygons);
+  }
+
+  MapBodies bodies() const {
+    MapBodies bodies{std::max(0.0, scenario_.world().wall_clearance_m()), std::nullopt};
+    if (scenario_.agents().starts_size() > 0)
+      bodies.start_m.emplace(scenario_.agents().starts(0).x_m(),
+                             scenario_.agents().starts(0).y_m());
+    return bodies;
   }
 
   /// The polygons that meet the domain, if all are valid.

@@ -79,7 +79,8 @@ class YamlReader {
                     "write each key with its value on one line");
     const std::string key(trimmed(text.substr(0, colon)));
     static const std::vector<std::string> kKeys = {
-        "image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"};
+        "image",           "resolution",  "origin", "negate",
+        "occupied_thresh", "free_thresh", "mode",   "map_type"};  // nav2 ignores the last one, too
     if (std::ranges::find(kKeys, key) == kKeys.end())
       return refuse(
           line_, quoted_word(key) + " is no key of an occupancy map",

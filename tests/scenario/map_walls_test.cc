@@ -127,6 +127,40 @@ TEST_F(MapWallsTest, NamesStartsInUnknownSpace) {
   EXPECT_TRUE(has(joined(result.error()), "agents.starts[0]: is in a wall"));
 }
 
+/// A room in the west of 10 columns, and one in the east of 9.
+RoomMap two_rooms() {
+  RoomMap map;
+  for (int y = 0; y < 10; ++y) map.at(10, y) = '#';
+  return map;
+}
+
+TEST_F(MapWallsTest, CloseThePartsThatTheLargestHasNoWayTo) {
+  const Rings rings = walls(two_rooms());
+  EXPECT_FALSE(solid(rings, 5, 5));
+  EXPECT_TRUE(solid(rings, 15, 5));
+}
+
+TEST_F(MapWallsTest, KeepThePartOfTheFirstStart) {
+  RoomMap map = two_rooms();
+  for (int y = 0; y < 10; ++y) map.at(4, y) = '#';  // the start is at (10, 20) m
+  const Rings rings = walls(map);
+  EXPECT_FALSE(solid(rings, 2, 5));
+  EXPECT_TRUE(solid(rings, 7, 5));
+  EXPECT_TRUE(solid(rings, 15, 5));
+}
+
+TEST_F(MapWallsTest, CountADoorOnlyIfBodiesFitThrough) {
+  RoomMap map = two_rooms();
+  map.at(10, 5) = '.';  // 5 m wide
+  EXPECT_FALSE(solid(walls(map), 15, 5));
+  std::ofstream(folder_.path() / "wide.textproto") << small_with(
+      "agents {",
+      "world { speed_limit_mps: 1000 wall_clearance_m: 2.6 walls { file: \"room.yaml\" } } "
+      "agents {");
+  const auto wide = Scenario::load(folder_.path() / "wide.textproto");
+  EXPECT_TRUE(solid(good(wide).mission().walls, 15, 5));
+}
+
 TEST_F(MapWallsTest, ListsThePictureAmongTheFiles) {
   RoomMap map;
   map.at(12, 4) = '#';
