@@ -20,6 +20,7 @@
 #include "scenario/rules/validate_walls.h"
 #include "scenario/rules/warnings.h"
 #include "scenario/scenario.pb.h"
+#include "target/maps/occupancy_map.h"
 #include "text/input_file.h"
 
 namespace ergocast {
@@ -195,7 +196,11 @@ const std::string& Scenario::name() const { return state_->text.name(); }
 const std::string& Scenario::description() const { return state_->text.description(); }
 std::vector<std::filesystem::path> Scenario::map_files() const {
   std::vector<std::filesystem::path> files;
-  for (const proto::Map& map : state_->text.target().maps()) files.emplace_back(map.file());
+  for (const proto::Map& map : state_->text.target().maps()) {
+    files.emplace_back(map.file());
+    if (!is_occupancy_map(map.file())) continue;
+    if (auto about = read_map_yaml(map.file())) files.push_back(std::move(about->image));
+  }
   for (const proto::Voxels& voxels : state_->text.target().voxels())
     files.emplace_back(voxels.file());
   files.insert(files.end(), state_->polygon_files.begin(), state_->polygon_files.end());

@@ -48,7 +48,7 @@ void add_map(const std::string& name, MapKind kind, const proto::Domain& domain,
   proto::Map& map = *target.add_maps();
   map.set_file(name);
   map.set_weight(1);
-  if (kind == MapKind::kAsciiGrid) return;
+  if (kind == MapKind::kAsciiGrid || kind == MapKind::kOccupancy) return;
   map.set_origin_x_m(domain.origin_x_m());
   map.set_origin_y_m(domain.origin_y_m());
   map.set_size_x_m(domain.size_x_m());

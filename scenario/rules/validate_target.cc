@@ -169,21 +169,25 @@ class TargetValidator {
 
   void map(const proto::Map& map, const std::string& path) {
     if (!map.has_file() || map.file().empty()) {
-      return checks_.missing(path + ".file", "is missing", "add the name of a .png, .csv or .asc");
+      return checks_.missing(path + ".file", "is missing",
+                             "add the name of a .png, .pgm, .csv, .asc or .yaml");
     }
     layers(map, path);
     const std::optional<MapKind> kind = map_kind(map.file());
     if (!kind) {
-      return checks_.problem(path + ".file", map.file() + " does not end in .png, .csv or .asc",
+      return checks_.problem(path + ".file",
+                             map.file() + " does not end in .png, .pgm, .csv, .asc or .yaml",
                              "write the map as one of these");
     }
-    const bool states_extent = *kind == MapKind::kAsciiGrid;
+    const std::string states_extent = *kind == MapKind::kAsciiGrid   ? "an ESRI ASCII grid"
+                                      : *kind == MapKind::kOccupancy ? "an occupancy map"
+                                                                     : "";
     extent(path + ".origin_x_m", map.has_origin_x_m(), states_extent);
     extent(path + ".origin_y_m", map.has_origin_y_m(), states_extent);
     extent(path + ".size_x_m", map.has_size_x_m(), states_extent);
     extent(path + ".size_y_m", map.has_size_y_m(), states_extent);
-    if (states_extent && map.first_row() == proto::Map::SOUTH) {
-      checks_.problem(path + ".first_row", "an ESRI ASCII grid always begins in the north",
+    if (!states_extent.empty() && map.first_row() == proto::Map::SOUTH) {
+      checks_.problem(path + ".first_row", states_extent + " always begins in the north",
                       "remove it");
     }
   }
@@ -246,10 +250,11 @@ class TargetValidator {
     return false;
   }
 
-  void extent(const std::string& path, bool present, bool stated_by_file) {
-    if (present && stated_by_file) {
-      checks_.problem(path, "an ESRI ASCII grid states its own extent", "remove it");
-    } else if (!present && !stated_by_file) {
+  /// @param stated_by  the kind of file that states its own extent, else empty
+  void extent(const std::string& path, bool present, const std::string& stated_by) {
+    if (present && !stated_by.empty()) {
+      checks_.problem(path, stated_by + " states its own extent", "remove it");
+    } else if (!present && stated_by.empty()) {
       checks_.missing(path, "is missing",
                       "say where the map lies: origin_x_m, origin_y_m, size_x_m, size_y_m");
     }

@@ -6,6 +6,7 @@
 
 #include "target/maps/ascii_grid.h"
 #include "target/maps/csv_map.h"
+#include "target/maps/picture_map.h"
 #include "target/maps/png_map.h"
 #include "text/input_file.h"
 
@@ -33,6 +34,8 @@ std::optional<MapKind> map_kind(const fs::path& file) {
   std::transform(end.begin(), end.end(), end.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   if (end == ".png") return MapKind::kPng;
+  if (end == ".pgm") return MapKind::kPgm;
+  if (end == ".yaml" || end == ".yml") return MapKind::kOccupancy;
   if (end == ".csv") return MapKind::kCsv;
   if (end == ".asc") return MapKind::kAsciiGrid;
   return {};
@@ -43,6 +46,10 @@ OpenedMap open_map(const fs::path& file) {
   switch (map_kind(file).value()) {
     case MapKind::kPng:
       return open_png_map(file);
+    case MapKind::kPgm:
+      return open_pgm_map(file);
+    case MapKind::kOccupancy:
+      return open_occupancy_target(file);
     case MapKind::kCsv:
       return open_csv_map(file);
     default:

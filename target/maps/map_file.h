@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Target maps in common formats: PNG pictures, tables of numbers, ESRI ASCII grids.
+// Target maps in common formats: pictures, tables of numbers, ESRI ASCII grids, occupancy maps.
 //
 // A map is read row by row, so that a map of 8192 × 8192 cells needs the memory of one row.
 #pragma once
@@ -36,7 +36,7 @@ class MapFile {
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
-  /// The extent that the file states; only an ESRI ASCII grid has one.
+  /// The extent that the file states: an ESRI ASCII grid and an occupancy map have one.
   const std::optional<Rectangle>& extent() const { return extent_; }
 
   /// Reads the next row into `values`, the westernmost first: densities from 0 to kMaxMapValue, 0
@@ -52,12 +52,13 @@ class MapFile {
 
 using OpenedMap = Result<std::unique_ptr<MapFile>, MapProblem>;
 
-enum class MapKind { kPng, kCsv, kAsciiGrid };
+enum class MapKind { kPng, kPgm, kCsv, kAsciiGrid, kOccupancy };
 
 /// Why `file` cannot be opened; nothing if it can.
 std::optional<MapProblem> why_unreadable(const std::filesystem::path& file);
 
-/// The kind by the extension .png, .csv or .asc, in either case; nothing for any other.
+/// The kind by the extension .png, .pgm, .csv, .asc, .yaml or .yml, in either case; nothing for any
+/// other.
 std::optional<MapKind> map_kind(const std::filesystem::path& file);
 
 /// Opens a map and reads its dimensions.

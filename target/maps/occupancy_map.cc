@@ -45,6 +45,25 @@ std::uint8_t OccupancyMap::cell_of(const Pixel& pixel) const {
   return occupied < about_.free_thresh ? kFreeCell : kUnknownCell;
 }
 
+double OccupancyMap::percent_of(const Pixel& pixel) const {
+  if (about_.mode == OccupancyMode::kRaw) {
+    const double value = std::round(255 * pixel.shade);
+    return value > 100 ? 0 : value;
+  }
+  if (pixel.opacity < 1) return 0;
+  const double occupied = about_.negate ? pixel.shade : 1 - pixel.shade;
+  if (occupied < about_.free_thresh) return 0;
+  if (occupied > about_.occupied_thresh) return 100;
+  const double range = about_.occupied_thresh - about_.free_thresh;
+  return range > 0 ? 100 * (occupied - about_.free_thresh) / range : 0;
+}
+
+std::optional<MapProblem> OccupancyMap::next_percents(std::span<double> values) {
+  if (auto problem = picture_->next_row(pixels_)) return problem;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = percent_of(pixels_[i]);
+  return {};
+}
+
 std::optional<MapProblem> OccupancyMap::next_row(std::span<std::uint8_t> cells) {
   if (auto problem = picture_->next_row(pixels_)) return problem;
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = cell_of(pixels_[i]);

@@ -35,9 +35,14 @@ class OccupancyMap {
   /// @pre `cells` has columns() entries, and fewer than rows() rows have been read.
   std::optional<MapProblem> next_row(std::span<std::uint8_t> cells);
 
+  /// Reads the next row as a map in the mode scale or raw: the occupancy of each cell in percent, 0
+  /// where it is unknown. Scale: 0 below free_thresh, 100 above occupied_thresh, and even between.
+  std::optional<MapProblem> next_percents(std::span<double> values);
+
  private:
   OccupancyMap(MapYaml about, std::unique_ptr<Picture> picture);
   std::uint8_t cell_of(const Pixel& pixel) const;
+  double percent_of(const Pixel& pixel) const;
 
   MapYaml about_;
   std::unique_ptr<Picture> picture_;

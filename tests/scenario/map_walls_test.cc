@@ -161,6 +161,36 @@ TEST_F(MapWallsTest, CountADoorOnlyIfBodiesFitThrough) {
   EXPECT_TRUE(solid(good(wide).mission().walls, 15, 5));
 }
 
+TEST_F(MapWallsTest, MapsAreTargetsUniformOverTheirFreeCellsAndRefusedIfTurned) {
+  RoomMap map;
+  for (int x = 3; x < 9; ++x) map.at(x, 7) = '#';
+  good(load(map));  // writes the files
+  std::ofstream csv(folder_.path() / "same.csv");
+  for (const std::string& row : map.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) csv << (i > 0 ? "," : "") << (row[i] == '.');
+    csv << '\n';
+  }
+  csv.close();
+  const auto with = [&](const std::string& file) {
+    std::ofstream(folder_.path() / "target.textproto")
+        << small_with("uniform_weight: 1", "maps { file: " + file + " }");
+    return Scenario::load(folder_.path() / "target.textproto");
+  };
+  const Coefficients written =
+      good(with("\"same.csv\" origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50"))
+          .mission()
+          .target_coefficients;
+  const Scenario ours = good(with("\"room.yaml\""));
+  EXPECT_TRUE(ours.mission().target_coefficients.isApprox(written, 1e-12));
+  EXPECT_EQ(ours.map_files().size(), 2U);
+  good(with("\"room.pgm\" origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50"));
+  map.origin = "[0, 0, 0.1]";
+  good(load(map));
+  const Loaded turned = with("\"room.yaml\"");
+  ASSERT_FALSE(turned);
+  EXPECT_TRUE(has(joined(turned.error()), "lies turned by its yaw"));
+}
+
 TEST_F(MapWallsTest, ListsThePictureAmongTheFiles) {
   RoomMap map;
   map.at(12, 4) = '#';
