@@ -137,7 +137,7 @@ TEST_F(New, RefusesMapsWithoutRoomAndTooManyRobots) {
 }
 
 TEST_F(New, NeverWritesOverAFile) {
-  ASSERT_EQ(make(map(kCorridor)), 0) << output();
+  ASSERT_EQ(make(map(kTwoRooms)), 0) << output();
   EXPECT_EQ(ergocast({"new", "--map", map(kTwoRooms), "--out", scenario()}), 2);
   EXPECT_TRUE(answered("is there already")) << output();
 }
