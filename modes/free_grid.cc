@@ -13,7 +13,7 @@
 namespace ergocast {
 namespace {
 
-/// Of a square domain. A finer grid takes more time, so it comes only where a coarser one shows no
+/// For a square domain. A finer grid takes more time, so it comes only where a coarser one shows no
 /// way between parts.
 constexpr double kCellsAlongSide[] = {80, 113, 160, 226};
 constexpr int kFewestCells = 8, kMostCells = 640;

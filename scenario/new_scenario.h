@@ -20,7 +20,7 @@ struct NewTeam {
 
 struct NewScenario {
   std::string text;               ///< with comments; load() finds no problem in it
-  double free_m2 = 0;             ///< that the robots can reach
+  double free_m2 = 0;             ///< where the robots' centres can be
   std::vector<Problem> warnings;  ///< of load()
 };
 

@@ -35,7 +35,7 @@ int make_new(const NewOptions& options) {
   for (const Problem& warning : made->warnings) print_message("warning: " + to_string(warning));
   const std::string name = printable(file.string());
   std::printf(
-      "%s: %d robots, %.3g m^2 of free space that they can reach\n"
+      "%s: %d robots; their centres can be in %.3g m^2\n"
       "  ergocast simulate %s\n"
       "  ergocast run %s --watch\n"
       "edit first: agents.starts (where your robots stand), target, time.duration_s\n",
