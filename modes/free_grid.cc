@@ -20,11 +20,17 @@ constexpr int kFewestCells = 8, kMostCells = 640;
 /// The share of free cells that may be cut off, such as corners behind a wall that is nearer to a
 /// side than a cell's width.
 constexpr double kMostCutOff = 0.01;
+/// How much longer than straight a way of bodies may be between two cells: a factor, and as many
+/// cells of their region.
+constexpr double kDetour = 1.5, kDetourCells = 2;
+
+constexpr std::pair<int, int> kBeside[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
 
 /// Finds which cells see each other. Every cell of the grid has a number, column · rows + row.
 class GridBuilder {
  public:
-  GridBuilder(const Box& domain, double along_side, const Sees& sees) : sees_(sees) {
+  GridBuilder(const Box& domain, double along_side, const Sees& sees, const FreeRegion* bodies)
+      : sees_(sees), bodies_(bodies) {
     grid_.origin_m = domain.origin_m.head<2>();
     grid_.size_m = domain.size_m.head<2>();
     const double shape = std::sqrt(grid_.size_m.x() / grid_.size_m.y());
@@ -34,6 +40,7 @@ class GridBuilder {
 
   Result<FreeGrid> run() {
     look();
+    if (bodies_ != nullptr) close_gaps();
     if (auto problem = keep_the_largest_part()) return failure(*problem);
     number_cells();
     set_around();
@@ -83,12 +90,53 @@ class GridBuilder {
     }
   }
 
+  /// The place of bodies nearest to each cell, by steps along the axes: a cell of their region, or
+  /// −1 where no body comes near.
+  std::vector<int> places_of_bodies() const {
+    std::vector<int> place(free_.size(), -1), reached;
+    for (int at = 0; at < all(); ++at) {
+      const Eigen::Vector2d at_m = middle_m(at);
+      if (!free_[static_cast<std::size_t>(at)] || !bodies_->part_at(at_m)) continue;
+      place[static_cast<std::size_t>(at)] = bodies_->cell_at(at_m);
+      reached.push_back(at);
+    }
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      for (const auto& [a, b] : kBeside) {
+        if (!open(reached[i], a, b)) continue;
+        const int next = beside(reached[i], a, b);
+        if (place[static_cast<std::size_t>(next)] >= 0) continue;
+        place[static_cast<std::size_t>(next)] = place[static_cast<std::size_t>(reached[i])];
+        reached.push_back(next);
+      }
+    }
+    return place;
+  }
+
+  /// Parts cells that see each other through a gap which is too narrow for bodies. A cell in it
+  /// stays with the side from which bodies come nearest.
+  void close_gaps() {
+    const std::vector<int> place = places_of_bodies();
+    const auto passes = [&](int at, int other) {
+      const int from = place[static_cast<std::size_t>(at)],
+                to = place[static_cast<std::size_t>(other)];
+      if (from < 0 || to < 0 || from == to) return true;
+      const double straight_m = (bodies_->center_m(to) - bodies_->center_m(from)).norm();
+      return bodies_->has_way(from, to,
+                              kDetour * straight_m + kDetourCells * bodies_->cell_size_m());
+    };
+    for (int at = 0; at < all(); ++at) {
+      const auto lower = static_cast<std::size_t>(at);
+      if (open_x_[lower] && !passes(at, beside(at, 1, 0))) open_x_[lower] = false;
+      if (open_y_[lower] && !passes(at, beside(at, 0, 1))) open_y_[lower] = false;
+    }
+  }
+
   /// The cells that are connected with one.
   std::vector<int> part_of(int first, std::vector<bool>& seen) const {
     std::vector<int> part{first};
     seen[static_cast<std::size_t>(first)] = true;
     for (std::size_t i = 0; i < part.size(); ++i) {
-      for (const auto& [a, b] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+      for (const auto& [a, b] : kBeside) {
         if (!open(part[i], a, b)) continue;
         const int next = beside(part[i], a, b);
         if (seen[static_cast<std::size_t>(next)]) continue;
@@ -191,7 +239,7 @@ class GridBuilder {
     for (const int at : reached) nearest[static_cast<std::size_t>(at)] = at;
     for (std::size_t i = 0; i < reached.size(); ++i) {
       const int at = reached[i];
-      for (const auto& [a, b] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+      for (const auto& [a, b] : kBeside) {
         const int next = beside(at, a, b);
         if (next < 0 || nearest[static_cast<std::size_t>(next)] >= 0) continue;
         nearest[static_cast<std::size_t>(next)] = nearest[static_cast<std::size_t>(at)];
@@ -202,6 +250,7 @@ class GridBuilder {
   }
 
   const Sees& sees_;
+  const FreeRegion* const bodies_;  // null: points
   FreeGrid grid_;
   std::vector<bool> free_, open_x_, open_y_;  // to the next column, to the next row
   std::vector<int> number_;                   // of the free cells, else −1
@@ -209,13 +258,13 @@ class GridBuilder {
 
 }  // namespace
 
-Result<FreeGrid> free_grid(const Box& domain, const Sees& sees) {
+Result<FreeGrid> free_grid(const Box& domain, const Sees& sees, const FreeRegion* bodies) {
   Result<FreeGrid> grid = failure(std::string());
   for (const double along_side : kCellsAlongSide) {
-    grid = GridBuilder(domain, along_side, sees).run();
-    if (grid) break;
+    grid = GridBuilder(domain, along_side, sees, bodies).run();
+    if (grid) return grid;
   }
-  return grid;
+  return bodies != nullptr ? free_grid(domain, sees, nullptr) : grid;
 }
 
 }  // namespace ergocast

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "core/base/rings.h"
@@ -38,11 +39,22 @@ ModesTable known_table(const Fits& fits, std::vector<ModesTable> Shelf::*tables 
   return at == (all.*tables).end() ? nullptr : *at;
 }
 
+/// What the smallest bodies keep from walls, rounded down, since it depends on the domain's origin
+/// in its last digits. 0: nothing.
+double kept_m(const Mission& mission) {
+  double least_m = kept_from_walls_m(mission, motion_of_kind(mission, 0));
+  for (int kind = 1; kind < std::ssize(mission.kinds); ++kind)
+    least_m = std::min(least_m, kept_from_walls_m(mission, motion_of_kind(mission, kind)));
+  const double unit_m = std::ldexp(1.0, -30) * mission.domain.size_m.maxCoeff();
+  return unit_m * std::floor(least_m / unit_m);
+}
+
 /// The hash of what a table is computed from.
 std::uint64_t key_of(const Mission& mission) {
   std::vector<double> numbers = {mission.domain.origin_m.x(), mission.domain.origin_m.y(),
                                  mission.domain.size_m.x(), mission.domain.size_m.y(),
                                  static_cast<double>(mission.basis.mode_count())};
+  if (const double m = kept_m(mission); m > 0) numbers.push_back(m);
   for (const Ring& wall : mission.walls) {
     numbers.push_back(static_cast<double>(wall.size()));
     for (const Eigen::Vector2d& corner_m : wall)
@@ -71,11 +83,20 @@ Rings walls_from_corner(const Mission& mission) {
   return walls;
 }
 
-Result<ModesTable> computed(const Mission& mission) {
+Result<FreeGrid> grid_of(const Mission& mission) {
   const IndexedRings walls = walls_from_corner(mission);
-  auto grid = free_grid(mission.domain, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  Box domain = mission.domain;
+  domain.origin_m.setZero();
+  std::optional<FreeRegion> bodies;
+  if (const double m = kept_m(mission); m > 0) bodies.emplace(walls, domain, m);
+  const Sees seen = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return sees(walls, a, b);
-  });
+  };
+  return free_grid(mission.domain, seen, bodies ? &*bodies : nullptr);
+}
+
+Result<ModesTable> computed(const Mission& mission) {
+  auto grid = grid_of(mission);
   if (!grid) return failure(grid.error());
   const FreeGrid& cells = *grid;
   const int modes = mission.basis.mode_count();

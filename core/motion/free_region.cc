@@ -145,6 +145,28 @@ std::vector<double> FreeRegion::ways_m(const std::vector<int>& from,
   return ways;
 }
 
+bool FreeRegion::has_way(int from, int to, double most_m) const {
+  std::vector<std::pair<double, int>> reached = {{0, from}};  // the shortest way to each cell
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    std::swap(reached[i], *std::min_element(reached.begin() + static_cast<std::ptrdiff_t>(i),
+                                            reached.end()));
+    const auto [way_m, cell] = reached[i];
+    if (cell == to) return true;
+    const double so_far_m = way_m;
+    for_joined(cell, [&](int next, double step_m) {
+      const double longer_m = so_far_m + step_m;
+      if (longer_m > most_m) return;
+      const auto at = std::ranges::find(reached, next, &std::pair<double, int>::second);
+      if (at == reached.end()) {
+        reached.emplace_back(longer_m, next);
+      } else {
+        at->first = std::min(at->first, longer_m);
+      }
+    });
+  }
+  return false;
+}
+
 int FreeRegion::nearer(const std::vector<double>& ways_m, int cell) const {
   int best = cell;
   double best_m = std::numeric_limits<double>::infinity(), best_step_m = 0;

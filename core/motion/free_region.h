@@ -50,6 +50,9 @@ class FreeRegion {
   /// The same from the nearest of several cells, and only through cells that may be crossed.
   /// @param crossed  for each cell whether it may be; empty: all may
   std::vector<double> ways_m(const std::vector<int>& from, const std::vector<bool>& crossed) const;
+  /// Whether a way from one cell to another is at most so long. It takes time only for the cells
+  /// that are so near.
+  bool has_way(int from, int to, double most_m) const;
   /// The neighbour through which the shortest of these ways leads; the cell itself at the end of
   /// the ways and where there is none. Ways that differ only by rounding are equally short. Among
   /// them the one with the longest first step is taken, so neither the domain's origin nor its axes
