@@ -22,7 +22,7 @@ constexpr int kFewestCells = 8, kMostCells = 640;
 constexpr double kMostCutOff = 0.01;
 /// How much longer than straight a way of bodies may be between two cells: a factor, and as many
 /// cells of their region.
-constexpr double kDetour = 1.5, kDetourCells = 2;
+constexpr double kDetour = 1.1, kDetourCells = 0.5;
 
 constexpr std::pair<int, int> kBeside[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
 

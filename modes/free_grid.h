@@ -32,12 +32,11 @@ struct FreeGrid {
 
 /// About 80 × 80 cells, or as many for other shapes of the domain; up to 226 × 226 where narrow
 /// ways need them. A cell is free if its middle is free. Two neighbours see each other if their
-/// middles do, and no gap is between them that is too narrow for bodies. Free cells that are cut off
-/// from the largest part count as walls.
+/// middles do, and no gap is between them that is too narrow for bodies. Free cells that are cut
+/// off from the largest part count as walls.
 /// @param bodies  where they can be, in a domain with the origin 0; null: points, which pass all
 ///                gaps. So do bodies in the grid if too much of it were cut off without.
 /// @return  or a sentence: nothing is free, or more than a hundredth of it is cut off
-Result<FreeGrid> free_grid(const Box& domain, const Sees& sees,
-                           const FreeRegion* bodies = nullptr);
+Result<FreeGrid> free_grid(const Box& domain, const Sees& sees, const FreeRegion* bodies = nullptr);
 
 }  // namespace ergocast

@@ -148,8 +148,8 @@ std::vector<double> FreeRegion::ways_m(const std::vector<int>& from,
 bool FreeRegion::has_way(int from, int to, double most_m) const {
   std::vector<std::pair<double, int>> reached = {{0, from}};  // the shortest way to each cell
   for (std::size_t i = 0; i < reached.size(); ++i) {
-    std::swap(reached[i], *std::min_element(reached.begin() + static_cast<std::ptrdiff_t>(i),
-                                            reached.end()));
+    std::swap(reached[i],
+              *std::min_element(reached.begin() + static_cast<std::ptrdiff_t>(i), reached.end()));
     const auto [way_m, cell] = reached[i];
     if (cell == to) return true;
     const double so_far_m = way_m;

@@ -248,6 +248,24 @@ class CheckCanFail : public Scenarios {
   }
 
   /// Invalid files, and flags.
+  /// `ergocast new` refuses maps, and its scenario is a text, too.
+  void plant_in_maps_of_new_scenarios() {
+    const auto make = [&](const std::string& map, const std::string& robots,
+                          const std::string& radius_m) {
+      const fs::path made = folder_ / "new.textproto";
+      fs::remove(made);
+      const int code = ergocast(
+          {"new", "--map", folder_ / map, "--robots", robots, "--radius", radius_m, "--out", made});
+      note(output());
+      return code;
+    };
+    EXPECT_EQ(make("room.pgm", "2", "1"), 2) << output();
+    EXPECT_EQ(make("hall.yaml", "2", "40"), 2) << output();
+    EXPECT_EQ(make("hall.yaml", "1000", "2"), 2) << output();
+    EXPECT_EQ(make("hall.yaml", "2", "15"), 2) << output();
+    ASSERT_EQ(make("rooms.yaml", "2", "1"), 0) << output();
+    said_.push_back(text_of(folder_ / "new.textproto"));
+  }
   void plant_outside_the_text() {
     write("s.textproto", kGood);
     expect_refused({"check", folder_ / "none.textproto"}, "none.textproto: there is no such file");
@@ -446,6 +464,7 @@ TEST_F(CheckCanFail, InEachOfItsFindings) {
   plant_in_fields();
   plant_in_the_text();
   plant_outside_the_text();
+  plant_in_maps_of_new_scenarios();
   plant_warnings();
   // The texts of scenario/parse/override_options.cc are those of --help. `check` reads no targets
   // for running missions, and no zones; tests/scenario/new_target_test.cc and zone_files_test.cc

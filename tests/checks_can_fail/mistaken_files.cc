@@ -89,6 +89,11 @@ void write_rooms(const fs::path& folder) {
   room("words.yaml", "resolution: 5", "resolution: five");
   room("pair.yaml", "[0, 0, 0]", "[0, 0]");
   room("apart.yaml", "[0, 0, 0]", "[1000, 0, 0]");
+  room("turned.yaml", "[0, 0, 0]", "[0, 0, 0.5]");
+  const std::string side = repeated(20, "0 "), hall = "0 " + repeated(18, "254 ") + "0 ";
+  picture("hall", "P2 20 10 255 " + side + repeated(8, hall) + side);
+  const std::string halves = "0 " + repeated(9, "254 ") + "0 " + repeated(8, "254 ") + "0 ";
+  picture("rooms", "P2 20 10 255 " + side + repeated(6, halves) + repeated(2, hall) + side);
   picture("solid", "P2 2 1 255 0 0");
   picture("white", "P2 20 10 255 " + repeated(200, "254 "));
   picture("cut", "P2 20 10 255 254");

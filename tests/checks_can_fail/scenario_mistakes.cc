@@ -252,6 +252,8 @@ std::vector<Mistake> mistakes_of_room_maps() {
        "world.walls[0].unknown_free: is for occupancy maps"},
       {kUniform, kUniform + " keep_outs { " + map("room") + "}",
        "target.keep_outs[0].file: names an occupancy map"},
+      {kUniform, "maps { " + map("turned") + "weight: 1 }",
+       "target.maps[0].file: lies turned by its yaw"},
   };
   for (const char* name :
        {"wrong",    "percent", "fancy", "other", "again",  "grey",    "bare",  "lacks", "indented",
@@ -307,17 +309,12 @@ std::vector<Mistake> mistakes_of_free_domains() {
   const auto kind = [&](const std::string& sees, const std::string& said) {
     return Mistake{start, start + " kind { name: \"a\" count: 1 " + sees + " } } " + few, said};
   };
-  const auto wall = [](double low_m, double high_m) {
-    const std::string low = std::to_string(low_m), high = std::to_string(high_m);
-    return "walls { vertices { x_m: 49 y_m: " + low + " } vertices { x_m: 51 y_m: " + low +
-           " } vertices { x_m: 51 y_m: " + high + " } vertices { x_m: 49 y_m: " + high + " } } ";
-  };
-  // A gap between two rows of cells, which are 0.88 m high.
-  const std::string gap = wall(-5, 24.3) + wall(24.9, 55);
   return {
       {kLaw, "basis { modes_x: 21 modes_y: 20 free_domain: true } law {",
        "basis.free_domain: 420 modes are above the limit of a free domain"},
-      {kLaw, "world { speed_limit_mps: 100 " + gap + "} " + few + " } law {",
+      {kLaw,
+       "world { speed_limit_mps: 100 " + wall("20 -5 105 -5 105 55 20 55") +
+           "} basis { modes_x: 20 modes_y: 20 free_domain: true } law {",
        "basis.free_domain: the free domain has no modes"},
       in_space(kLaw, few + " } law {", "basis.free_domain: needs a plane"),
       in_space(kLaw, "law { kind: SEARCH", "law.kind: SEARCH needs a plane"),

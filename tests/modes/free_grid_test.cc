@@ -6,7 +6,10 @@
 
 #include <algorithm>
 
+#include "core/base/indexed_rings.h"
 #include "core/basis/free_modes.h"
+#include "core/motion/free_region.h"
+#include "core/motion/walls.h"
 #include "tests/modes/rooms.h"
 
 namespace ergocast {
@@ -97,6 +100,61 @@ TEST(FreeGrid, LeavesOutACornerThatIsCutOff) {
     return (a.maxCoeff() < 60) == (b.maxCoeff() < 60);
   };
   EXPECT_EQ(grid_of(square(), corner).cell_count(), 6400 - 4);
+}
+
+/// Pillars from side to side, a cell apart, which points pass everywhere. At the lower end is a way
+/// for bodies.
+class Palisade : public ::testing::Test {
+ protected:
+  static constexpr double kClearance_m = 30, kWay_m = 200;
+
+  static Rings pillars() {
+    Rings walls;
+    for (double y_m = kWay_m; y_m < test::kSide_m; y_m += 40)
+      walls.push_back({{1000, y_m}, {1010, y_m}, {1010, y_m + 10}, {1000, y_m + 10}});
+    return walls;
+  }
+  static bool sees_between(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
+    static const IndexedRings walls = pillars();
+    const Segment way{from_m, to_m};
+    return !walls.find_near(way, 0, [&](const Edge& edge) { return touch(way, edge.segment); });
+  }
+  static int doors_through(const FreeGrid& grid, double from_y_m) {
+    return static_cast<int>(std::ranges::count_if(grid.doors_x, [&](const auto& door) {
+      const double column = grid.place[static_cast<std::size_t>(door.first)] / grid.rows + 0.5;
+      const double x_m = column * test::kSide_m / grid.columns;
+      return x_m < 1005 && x_m + test::kSide_m / grid.columns > 1005 &&
+             y_of(grid, door.first) > from_y_m;
+    }));
+  }
+};
+
+TEST_F(Palisade, HasDoorsForPointsAndNoneForBodies) {
+  const FreeRegion bodies(pillars(), square(), kClearance_m);
+  EXPECT_GT(doors_through(free_grid(square(), sees_between).value(), kWay_m), 20);
+  const FreeGrid grid = free_grid(square(), sees_between, &bodies).value();
+  EXPECT_EQ(doors_through(grid, kWay_m), 0);
+  EXPECT_GT(doors_through(grid, 0), 2);
+  EXPECT_GT(grid.cell_count(), 0.95 * grid.columns * grid.rows);
+}
+
+TEST_F(Palisade, HasDoorsForPointsIfBodiesHaveNoWayBetweenParts) {
+  Rings walls = pillars();
+  walls.push_back({{1000, -10}, {1010, -10}, {1010, kWay_m - 20}, {1000, kWay_m - 20}});
+  const FreeRegion bodies(walls, square(), kClearance_m);
+  ASSERT_EQ(bodies.parts(), 2);
+  EXPECT_GT(doors_through(free_grid(square(), sees_between, &bodies).value(), kWay_m), 20);
+}
+
+TEST(FreeRegion, HasAWayIfItIsNotLongerThanTheMost) {
+  const Rings wall = {{{1000, 500}, {1010, 500}, {1010, 2100}, {1000, 2100}}};
+  const FreeRegion region(wall, square(), 10);
+  const int from = region.cell_at({900, 700}), to = region.cell_at({1100, 700});
+  const double way_m = region.ways_m(from)[static_cast<std::size_t>(to)];
+  EXPECT_GT(way_m, 400);
+  EXPECT_TRUE(region.has_way(from, to, 1.0001 * way_m));
+  EXPECT_FALSE(region.has_way(from, to, 0.9999 * way_m));
+  EXPECT_TRUE(region.has_way(from, from, 0));
 }
 
 }  // namespace
