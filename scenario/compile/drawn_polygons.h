@@ -17,10 +17,18 @@ struct PlacedPolygon {
   Polygon polygon;     ///< [m]
 };
 
-/// The drawing's viewBox becomes the planar domain. A ring inside an odd number of others of its
-/// shape is a hole of the innermost; a hole's holes are polygons again.
-/// @returns a problem if the sides of both have ratios that differ by more than 0.1 %
+struct DrawnAs {
+  bool solid_white = false;
+  bool joined = true;  ///< whether shapes that touch or overlap become one
+};
+
+/// The drawing's viewBox becomes the planar domain. Exact shapes stay exact, with holes by their
+/// fill-rule; a drawing with others, or whose shapes cross themselves, or each other if they are to
+/// be joined, is painted. Then the polygons go around its solid cells, as those of maps do.
+/// @returns a problem if the sides of both have ratios that differ by more than 0.1 %, or nothing
+///          or more than 90 % of a painted drawing is solid
 Result<std::vector<PlacedPolygon>, PolygonFileProblem> place_drawing(const Drawing& drawing,
-                                                                     const Box& domain);
+                                                                     const Box& domain,
+                                                                     const DrawnAs& as);
 
 }  // namespace ergocast

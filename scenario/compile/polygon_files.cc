@@ -40,6 +40,7 @@ void write_ring(const Ring& ring, Vertices& vertices) {
 void write_polygon(const Polygon& polygon, proto::Polygon& written) {
   written.clear_file();
   written.clear_unknown_free();
+  written.clear_solid_white();
   written.clear_vertices();
   written.clear_holes();
   write_ring(polygon.outline, *written.mutable_vertices());
@@ -112,6 +113,9 @@ class PolygonFileReader {
     if (written.has_unknown_free() && !map)
       checks_.problem(path + ".unknown_free", "is for occupancy maps: files that end in .yaml",
                       "remove it");
+    if (written.has_solid_white() && !written.file().ends_with(".svg"))
+      checks_.problem(path + ".solid_white", "is for drawings: files that end in .svg",
+                      "remove it");
     if (!written.has_file()) return {};
     const std::string field = path + ".file";
     if (written.vertices_size() > 0 || written.holes_size() > 0) {
@@ -130,7 +134,9 @@ class PolygonFileReader {
     if (!has_place || !checks_.sound("domain") || !(domain.size_x_m() > 0) ||
         !(domain.size_y_m() > 0))
       return {};
-    auto found = drawing ? drawn(field) : on_earth(field);
+    auto found = drawing
+                     ? drawn(field, {written.solid_white(), !path.starts_with("target.regions")})
+                     : on_earth(field);
     if (!found) return {};
     return inside(std::move(*found), field, area);
   }
@@ -209,23 +215,24 @@ class PolygonFileReader {
     return false;
   }
 
-  std::optional<std::vector<PlacedPolygon>> drawn(const std::string& field) {
-    const auto read = read_svg(file_);
+  std::optional<std::vector<PlacedPolygon>> drawn(const std::string& field, const DrawnAs& as) {
+    const auto read = read_svg(file_, as.solid_white);
     if (!read) {
       refuse(field, read.error());
       return std::nullopt;
     }
-    const Drawing& drawing = *read;
-    std::size_t vertices = 0;
-    for (const DrawnShape& shape : drawing.shapes)
-      for (const auto& ring : shape.rings) vertices += ring.size();
-    if (!few_enough(vertices, field, "simplify it: in Inkscape, Path > Simplify"))
-      return std::nullopt;
-    auto placed = place_drawing(drawing, domain_of(scenario_.domain()));
+    auto placed = place_drawing(*read, domain_of(scenario_.domain()), as);
     if (!placed) {
       refuse(field, placed.error());
       return std::nullopt;
     }
+    std::size_t vertices = 0;
+    for (const PlacedPolygon& one : *placed) {
+      vertices += one.polygon.outline.size();
+      for (const Ring& hole : one.polygon.holes) vertices += hole.size();
+    }
+    if (!few_enough(vertices, field, "simplify it: in Inkscape, Path > Simplify"))
+      return std::nullopt;
     return *std::move(placed);
   }
 

@@ -71,6 +71,12 @@ double SvgReader::number() {
   return value;
 }
 
+void SvgReader::flag() {
+  if (at_end() || (rest_.front() != '0' && rest_.front() != '1'))
+    fail("has an arc whose flags are not 0 or 1", "save the drawing anew as plain SVG");
+  rest_.remove_prefix(1);
+}
+
 Eigen::Vector2d SvgReader::point() {
   const double x = number();
   return {x, number()};
@@ -83,6 +89,21 @@ std::vector<double> svg_numbers(std::string_view text) {
   return numbers;
 }
 
+std::optional<double> svg_length(std::string_view text) {
+  SvgReader reader(text);
+  const double value = reader.number();
+  const std::string_view unit = reader.rest();
+  constexpr double kInch = 96;
+  for (const auto& [name, pixels] :
+       {std::pair("", 1.0), std::pair("px", 1.0), std::pair("in", kInch),
+        std::pair("cm", kInch / 2.54), std::pair("mm", kInch / 25.4), std::pair("pt", kInch / 72),
+        std::pair("pc", kInch / 6)})
+    if (unit == name) return value * pixels;
+  if (unit == "%" || unit == "em" || unit == "ex") return std::nullopt;
+  fail("is in " + std::string(unit.substr(0, 20)) + ", which is no unit of SVG",
+       "write it without a unit, or in mm, cm, in, pt or px");
+}
+
 // ---- paths ----
 
 namespace {
@@ -92,7 +113,7 @@ class Pen {
  public:
   explicit Pen(std::string_view d) : reader_(d) {}
 
-  std::vector<DrawnRing> rings() {
+  SvgPath path() {
     while (!reader_.at_end()) {
       const auto command = reader_.letter();
       if (!command)
@@ -101,13 +122,20 @@ class Pen {
         fail("does not begin with M", "save the drawing anew as plain SVG");
       obey(*command);
     }
-    return std::move(rings_);
+    return {std::move(rings_), curved_};
   }
 
  private:
   void obey(char command) {
     const bool relative = command >= 'a';
     const auto from = [&] { return relative ? at_ : Eigen::Vector2d(0, 0); };
+    const auto curve = [&](int handles) {
+      do {
+        for (int i = 0; i < handles; ++i) reader_.point();
+        line_to(from() + reader_.point());
+      } while (reader_.number_follows());
+      curved_ = true;
+    };
     switch (relative ? static_cast<char>(command - 'a' + 'A') : command) {
       case 'M':
         begin(from() + reader_.point());
@@ -125,14 +153,34 @@ class Pen {
         do line_to({at_.x(), from().y() + reader_.number()});
         while (reader_.number_follows());
         return;
+      case 'C':
+        return curve(2);
+      case 'S':
+      case 'Q':
+        return curve(1);
+      case 'T':
+        return curve(0);
+      case 'A':
+        do arc(from());
+        while (reader_.number_follows());
+        return;
       case 'Z':
         at_ = begin_;
         closed_ = true;
         return;
       default:
-        fail(std::string("has the command ") + command + ": a curve",
-             "make curves straight: in Inkscape, Extensions > Modify Path > Flatten Beziers");
+        fail(std::string("has the unknown command ") + command,
+             "save the drawing anew as plain SVG");
     }
+  }
+
+  void arc(const Eigen::Vector2d& from) {
+    reader_.point();   // radii
+    reader_.number();  // turn
+    reader_.flag();
+    reader_.flag();
+    line_to(from + reader_.point());
+    curved_ = true;
   }
 
   void begin(const Eigen::Vector2d& place) {
@@ -151,12 +199,12 @@ class Pen {
   SvgReader reader_;
   std::vector<DrawnRing> rings_;
   Eigen::Vector2d at_{0, 0}, begin_{0, 0};
-  bool closed_ = false;
+  bool closed_ = false, curved_ = false;
 };
 
 }  // namespace
 
-std::vector<DrawnRing> svg_path(std::string_view d) { return Pen(d).rings(); }
+SvgPath svg_path(std::string_view d) { return Pen(d).path(); }
 
 // ---- transforms ----
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -34,7 +35,11 @@ class SvgReader {
   bool number_follows();
   /// @throws SvgSyntaxError if no finite number follows
   double number();
+  /// A digit 0 or 1, which the next number may follow at once.
+  /// @throws SvgSyntaxError
+  void flag();
   Eigen::Vector2d point();
+  std::string_view rest() const { return rest_; }
 
  private:
   void skip_separators();
@@ -45,10 +50,19 @@ class SvgReader {
 /// @throws SvgSyntaxError
 std::vector<double> svg_numbers(std::string_view text);
 
-/// The subpaths of a path's `d`, each closed as filling closes it. M, L, H, V and Z, absolute and
-/// relative.
-/// @throws SvgSyntaxError for curves too
-std::vector<DrawnRing> svg_path(std::string_view d);
+/// A length in pixels, which are units of the viewBox. Nothing if it depends on something else: in
+/// percent, or in sizes of a font.
+/// @throws SvgSyntaxError
+std::optional<double> svg_length(std::string_view text);
+
+struct SvgPath {
+  std::vector<DrawnRing> rings;  ///< the subpaths, each closed as filling closes it
+  bool curved = false;           ///< whether a part is a curve, of which only the ends are corners
+};
+
+/// A path's `d`.
+/// @throws SvgSyntaxError
+SvgPath svg_path(std::string_view d);
 
 /// matrix, translate, scale, rotate, skewX and skewY, applied as written.
 /// @throws SvgSyntaxError

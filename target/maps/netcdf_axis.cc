@@ -28,6 +28,11 @@ const std::map<std::string, AxisKind, std::less<>> kByWord = {
     {"z", AxisKind::kZ},
 };
 
+std::string lower_case(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  return text;
+}
+
 /// Metres in a unit; nothing if it is no length.
 std::optional<double> metres_of(const std::string& units) {
   static const std::set<std::string, std::less<>> kMetre = {"m", "meter", "metre", "meters",
@@ -57,7 +62,7 @@ class AxisReader {
           MapProblem{place_ + (units.empty() ? " has no units" : " is in " + units),
                      "write it in m or km, with units; project longitude and latitude first"});
     }
-    scale_ = *metres * (file_.text(*variable, "positive") == "down" ? -1 : 1);
+    scale_ = *metres * (points_down(*variable) ? -1 : 1);
     const std::string bounds = file_.text(*variable, "bounds");
     auto problem = bounds.empty() ? by_centres(*variable) : by_bounds(bounds);
     if (!problem) problem = sort();
@@ -66,6 +71,14 @@ class AxisReader {
   }
 
  private:
+  /// A depth points down, unless `positive` has something else.
+  bool points_down(Variable variable) const {
+    const std::string positive = lower_case(file_.text(variable, "positive"));
+    if (!positive.empty()) return positive == "down";
+    return file_.text(variable, "standard_name") == "depth" ||
+           lower_case(dimension_.name) == "depth";
+  }
+
   std::optional<MapProblem> by_centres(Variable variable) {
     std::vector<double> center(dimension_.length);
     const auto shape = file_.dimensions(variable);

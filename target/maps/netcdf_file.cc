@@ -132,6 +132,28 @@ std::string NetcdfFile::text(Variable variable, const char* attribute) const {
   return text.substr(0, text.find('\0'));
 }
 
+int NetcdfFile::type_of(Variable variable) const {
+  int type = 0;
+  return library_.nc_inq_vartype(file_, variable, &type) == 0 ? type : 0;
+}
+
+int NetcdfFile::type_of(Variable variable, const char* attribute) const {
+  int type = 0;
+  std::size_t length = 0;
+  return library_.nc_inq_att(file_, variable, attribute, &type, &length) == 0 ? type : 0;
+}
+
+std::vector<double> NetcdfFile::numeric_attributes(Variable variable, const char* attribute) const {
+  constexpr std::size_t kMost = 64;
+  int type = 0;
+  std::size_t length = 0;
+  if (library_.nc_inq_att(file_, variable, attribute, &type, &length) != 0 || length > kMost)
+    return {};
+  std::vector<double> values(length);
+  if (library_.nc_get_att_double(file_, variable, attribute, values.data()) != 0) return {};
+  return values;
+}
+
 std::optional<double> NetcdfFile::numeric_attribute(Variable variable,
                                                     const char* attribute) const {
   int type = 0;

@@ -41,6 +41,11 @@ class NetcdfFile {
 
   std::string text(Variable variable, const char* attribute) const;
   std::optional<double> numeric_attribute(Variable variable, const char* attribute) const;
+  /// All numbers of an attribute that has at most 64.
+  std::vector<double> numeric_attributes(Variable variable, const char* attribute) const;
+  /// A number of netcdf.h such as NC_SHORT; 0 if there is none.
+  int type_of(Variable variable) const;
+  int type_of(Variable variable, const char* attribute) const;
 
   /// The numbers as they are stored, from `start` on, `count` along each dimension.
   std::optional<MapProblem> read(Variable variable, std::span<const std::size_t> start,

@@ -12,8 +12,30 @@
 namespace ergocast {
 namespace {
 
-/// The value that libnetcdf stores where a program wrote nothing: NC_FILL_FLOAT, NC_FILL_DOUBLE.
-constexpr double kUnwritten = 9.9692099683868690e+36;
+/// The types of netcdf.h. libnetcdf stores `fill` where a program wrote nothing; bytes have none.
+struct StoredType {
+  int type, bits;
+  bool is_float;
+  double fill;
+};
+constexpr StoredType kTypes[] = {
+    {1, 8, false, HUGE_VAL},               // NC_BYTE
+    {3, 16, false, -32767},                // NC_SHORT
+    {4, 32, false, -2147483647},           // NC_INT
+    {5, 32, true, 9.9692099683868690e36},  // NC_FLOAT
+    {6, 64, true, 9.9692099683868690e36},  // NC_DOUBLE
+    {7, 8, false, HUGE_VAL},               // NC_UBYTE
+    {8, 16, false, 65535},                 // NC_USHORT
+    {9, 32, false, 4294967295},            // NC_UINT
+    {10, 64, false, -9223372036854775806.0},
+    {11, 64, false, 18446744073709551614.0},
+};
+
+const StoredType& stored_type(int type) {
+  for (const StoredType& one : kTypes)
+    if (one.type == type) return one;
+  return kTypes[0];
+}
 
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 12;
@@ -46,9 +68,7 @@ class Grid : public NetcdfGrid {
     }
     scale_ = file_->numeric_attribute(variable_, "scale_factor").value_or(1);
     offset_ = file_->numeric_attribute(variable_, "add_offset").value_or(0);
-    for (const char* attribute : {"_FillValue", "missing_value"}) {
-      if (const auto fill = file_->numeric_attribute(variable_, attribute)) fills_.push_back(*fill);
-    }
+    find_missing();
     return std::nullopt;
   }
 
@@ -62,11 +82,13 @@ class Grid : public NetcdfGrid {
     if (axes_[0].reversed) std::reverse(values.begin(), values.end());
     for (std::size_t column = 0; column < values.size(); ++column) {
       double& value = values[column];
-      if (is_fill(value)) {
+      value = as_meant(value);
+      const double unpacked = value * scale_ + offset_;
+      if (is_missing(value, unpacked)) {
         value = 0;
         continue;
       }
-      value = value * scale_ + offset_;
+      value = unpacked;
       if (value >= 0 && value <= kMaxMapValue) continue;
       return check_density(value, place_ + ", layer " + std::to_string(layer) + ", row " +
                                       std::to_string(row) + ", column " + std::to_string(column));
@@ -134,6 +156,12 @@ class Grid : public NetcdfGrid {
       dimension_[axis] = i;
       known[axis] = true;
     }
+    if (known[0] && known[1] && !known[2]) {
+      return MapProblem{
+          place_ + " is a plane without an axis z, and voxels fill a box",
+          "write it as a map: gdal_translate -of AAIGrid NETCDF:" + file_->name().string() + ":" +
+              choice.variable + " map.asc, then maps { file: \"map.asc\" }"};
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (known[axis]) continue;
       return MapProblem{place_ + " has no axis " + "xyz"[axis],
@@ -190,12 +218,52 @@ class Grid : public NetcdfGrid {
     return std::nullopt;
   }
 
-  /// A fill value may be nan.
-  bool is_fill(double stored) const {
-    return std::any_of(fills_.begin(), fills_.end(), [stored](double fill) {
-      return stored == fill || (std::isnan(stored) && std::isnan(fill));
-    });
+  void find_missing() {
+    const StoredType& type = stored_type(file_->type_of(variable_));
+    const std::string is_unsigned = file_->text(variable_, "_Unsigned");
+    if ((is_unsigned == "true" || is_unsigned == "TRUE" || is_unsigned == "True") &&
+        type.bits < 64 && !type.is_float)
+      wrap_ = std::exp2(type.bits);
+    for (const char* attribute : {"_FillValue", "missing_value"}) {
+      for (const double fill : file_->numeric_attributes(variable_, attribute))
+        fills_.push_back(as_meant(fill));
+    }
+    const bool has_own = !file_->numeric_attributes(variable_, "_FillValue").empty();
+    if (type.is_float || !has_own) fills_.push_back(as_meant(type.fill));
+    const auto range = file_->numeric_attributes(variable_, "valid_range");
+    if (range.size() == 2) limit("valid_range", range[0], range[1], type);
+    if (const auto low = file_->numeric_attribute(variable_, "valid_min"))
+      limit("valid_min", *low, HUGE_VAL, type);
+    if (const auto high = file_->numeric_attribute(variable_, "valid_max"))
+      limit("valid_max", -HUGE_VAL, *high, type);
   }
+
+  /// Limits have the type of the stored numbers, else they are for the unpacked ones.
+  void limit(const char* attribute, double low, double high, const StoredType& type) {
+    const bool unpacked =
+        !type.is_float && stored_type(file_->type_of(variable_, attribute)).is_float;
+    ValidRange& range = unpacked ? valid_unpacked_ : valid_;
+    range.low = std::max(range.low, unpacked ? low : as_meant(low));
+    range.high = std::min(range.high, unpacked ? high : as_meant(high));
+  }
+
+  /// With _Unsigned, negative numbers are the upper half of the positive ones.
+  double as_meant(double stored) const {
+    return stored < 0 && stored > -wrap_ ? stored + wrap_ : stored;
+  }
+
+  /// A fill value may be nan.
+  bool is_missing(double stored, double unpacked) const {
+    return stored < valid_.low || stored > valid_.high || unpacked < valid_unpacked_.low ||
+           unpacked > valid_unpacked_.high ||
+           std::any_of(fills_.begin(), fills_.end(), [stored](double fill) {
+             return stored == fill || (std::isnan(stored) && std::isnan(fill));
+           });
+  }
+
+  struct ValidRange {
+    double low = -HUGE_VAL, high = HUGE_VAL;
+  };
 
   std::shared_ptr<NetcdfFile> file_;
   std::string place_;
@@ -205,7 +273,9 @@ class Grid : public NetcdfGrid {
   std::vector<std::size_t> start_, count_;  // of a row, along each dimension
   RasterGrid raster_;
   double scale_ = 1, offset_ = 0;
-  std::vector<double> fills_{kUnwritten};
+  double wrap_ = 0;  // of unsigned numbers that are stored as signed ones
+  std::vector<double> fills_;
+  ValidRange valid_, valid_unpacked_;
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ enum class Outside {
   kExpected,     // tl::expected, for Result
   kSpectra,      // Spectra, and the sparse part of Eigen
   kPng,          // libpng
-  kLoader,       // dlopen: libnetcdf
+  kLoader,       // dlopen: libnetcdf, librsvg
   kHttp,         // cpp-httplib
   kPython,       // pybind11
   kEarth,        // PROJ
@@ -79,7 +79,8 @@ inline const std::vector<Rule> kRules = {
     {"target/maps/symbol.h", {}, {kLoader}},
     {"target/maps/netcdf_library.cc", {"target/maps"}, {kLoader}},
     // Places on the earth, and drawings: for scenarios and exports, not for participants.
-    {"target/geo", {"text", "core"}, {kEarth, kFiles, kJson, kXml}},
+    {"target/geo", {"text", "core", "target/contour"}, {kEarth, kFiles, kJson, kXml}},
+    {"target/geo/svg_painter.cc", {"target/geo", "target/maps"}, {kLoader, kFiles, kSystem}},
     {"scenario/parse", {"text", "core", "plan", "target"}, {kProtobuf, kCommandLine, kFiles}},
     {"scenario/rules",
      {"text", "core", "plan", "target", "target/maps", "target/geo", "scenario/parse"},

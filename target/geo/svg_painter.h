@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Has librsvg paint a drawing, and says which cells are solid.
+//
+// It is loaded when a drawing needs it, in a child process with bounded memory and time: a drawing
+// from a stranger can ask for any amount of both.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "core/base/result.h"
+#include "target/contour/cell_grid.h"
+#include "target/geo/polygon_file.h"
+
+namespace ergocast {
+
+/// Cells along the longer side of a painted drawing. Each is painted as 2 × 2 pixels.
+/// Limit (Files of a scenario): cells along the longer side of a drawing that is painted. Finer
+/// details are not seen.
+inline constexpr int kPaintedCells = 2048;
+
+/// Cells of one side, row by row from the drawing's lower left corner; the lowest may be cut.
+struct PaintedDrawing {
+  CellGrid solid;  ///< 1: some of the cell is painted, and darker than kSolidLuminance
+  double cell;     ///< the side, in units of the viewBox
+};
+
+/// @param svg          well-formed, without entities and addresses outside of it
+/// @param size         of its viewBox
+/// @param solid_white  whether paint of any colour is solid
+Result<PaintedDrawing, PolygonFileProblem> paint_svg(const std::string& svg,
+                                                     const Eigen::Vector2d& size, bool solid_white);
+
+}  // namespace ergocast
