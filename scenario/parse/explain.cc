@@ -157,6 +157,9 @@ Problem explained(const std::string& message, const BrokenField& broken) {
     return {"", subject + "is written more than once", "keep one of them"};
   }
   if (message.starts_with("Ignoring extension")) return {"", "unknown extension", "remove it"};
+  if (message.starts_with("Interpreting non ascii codepoint"))
+    return {"", subject + "a character outside of quotes is not ASCII",
+            "write straight quotes and plain blanks: word processors replace them"};
   return {"", subject + message, "correct the text here"};
 }
 

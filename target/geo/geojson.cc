@@ -2,6 +2,7 @@
 // Walks the members of a parsed file with their names; the first problem ends the walk.
 #include "target/geo/geojson.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "text/json_bounds.h"
@@ -77,6 +78,7 @@ class Walk {
   void object(const Json& json, const std::string& member) {
     if (type_of(json) != "Feature") return geometry(json, member);
     const auto at = json.find("geometry");
+    if (at != json.end() && at->is_null()) return;  // a feature without a place (RFC 7946, 3.2)
     geometry(at == json.end() ? Json() : *at, below(member, "geometry"));
   }
 
@@ -120,6 +122,11 @@ class Walk {
       fail(member, "is not closed", "repeat its first position as the last");
     }
     ring.pop_back();
+    const auto same = [](const GeoPlace& a, const GeoPlace& b) {
+      return a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg;
+    };
+    ring.erase(std::unique(ring.begin(), ring.end(), same), ring.end());
+    while (ring.size() > 1 && same(ring.front(), ring.back())) ring.pop_back();
     return ring;
   }
 
@@ -144,6 +151,9 @@ class Walk {
 }  // namespace
 
 Result<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
+  if (text.starts_with('<'))
+    return failure(PolygonFileProblem{"", "is XML such as KML, no GeoJSON",
+                                      "convert it: ogr2ogr -f GeoJSON out.geojson in.kml"});
   try {
     Walk walk;
     walk.file(parse_bounded<Json>(text, kMostValues));

@@ -25,6 +25,12 @@ class AsciiGrid : public MapFile {
 
   std::optional<MapProblem> open() {
     if (auto problem = read_header()) return problem;
+    if (header_.contains("dx") && header_.contains("dy") && !header_.contains("cellsize")) {
+      if (header_["dx"] != header_["dy"])
+        return problem(": its cells are not square",
+                       "resample it: gdalwarp -tr 10 10 in.asc out.tif");
+      header_["cellsize"] = header_["dx"];
+    }
     for (const char* key : {"ncols", "nrows", "cellsize"}) {
       if (!header_.contains(key)) return missing(key);
     }
@@ -61,7 +67,8 @@ class AsciiGrid : public MapFile {
   /// Ends at the first number in the place of a key: it is the first cell.
   std::optional<MapProblem> read_header() {
     static const std::string kKeys[] = {"ncols",     "nrows",     "cellsize",  "xllcorner",
-                                        "xllcenter", "yllcorner", "yllcenter", "nodata_value"};
+                                        "xllcenter", "yllcorner", "yllcenter", "nodata_value",
+                                        "dx",        "dy"};
     for (;;) {
       first_ = words_.next();
       if (first_.empty() || number_in(first_)) return {};
@@ -113,7 +120,9 @@ class AsciiGrid : public MapFile {
                      "write it again, or correct its header");
     }
     const std::optional<double> number = number_in(word);
-    if (number && (*number == no_data_ || (std::isnan(*number) && std::isnan(no_data_)))) {
+    // Some programs round one of the two to a float.
+    const bool same = number && std::abs(*number - no_data_) <= 1e-7 * std::abs(no_data_);
+    if (same || (number && std::isnan(*number) && std::isnan(no_data_))) {
       value = 0;
     } else {
       const auto density = density_in(word, here());

@@ -24,8 +24,15 @@ std::optional<MapProblem> why_unreadable(const fs::path& file) {
     return MapProblem{file.string() + ' ' + problem->what,
                       other ? "name the map itself" : problem->remedy};
   }
-  if (in.peek() == InputFile::traits_type::eof())
+  const int first = in.peek();
+  if (first == InputFile::traits_type::eof())
     return MapProblem{file.string() + " is empty", "write the map again"};
+  if (first == 0xff || first == 0xfe)
+    return MapProblem{file.string() + " is in UTF-16",
+                      "convert it: iconv -f UTF-16 -t UTF-8 in > out"};
+  if (first == 0xef)
+    return MapProblem{file.string() + " begins with a byte order mark",
+                      "remove it: sed -i '1s/^\\xEF\\xBB\\xBF//' FILE"};
   return {};
 }
 

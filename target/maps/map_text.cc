@@ -38,6 +38,10 @@ std::optional<MapProblem> check_density(double value, const std::string& where) 
 
 Result<double, MapProblem> density_in(std::string_view text, const std::string& where) {
   const std::optional<double> value = number_in(text);
+  if (!value && text.find(';') != text.npos) {
+    return failure(MapProblem{where + ": semicolons separate the numbers",
+                              "write points and commas: tr ',;' '.,' < in.csv > out.csv"});
+  }
   if (!value) {
     return failure(MapProblem{where + ": " + quoted_word(text) + " is not a number",
                               "write numbers only, with a point for decimals"});
