@@ -3,6 +3,7 @@
 #include "target/geo/svg.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <map>
@@ -20,6 +21,8 @@ namespace {
 /// Limit (Files of a scenario): levels of nested tags in a drawing. Beyond it: the scenario is
 /// refused.
 constexpr int kDeepest = 64;
+/// The side of a page over the width of a polygon that may be too thin to be painted.
+constexpr double kThinnest = 1 << 17;
 /// A tag of three bytes takes sixty in memory.
 /// Limit (Files of a scenario): tags in a drawing. Beyond it: the scenario is refused.
 constexpr std::size_t kMostTags = 1'000'000;
@@ -52,6 +55,14 @@ const std::map<std::string_view, const char*> kRefused = {
 const Names kLengths = {"x",  "y",  "width", "height", "rx", "ry", "r",
                         "cx", "cy", "x1",    "y1",     "x2", "y2"};
 const Names kTransforms = {"transform", "gradientTransform", "patternTransform"};
+
+bool is_zero_length(std::string_view text) {
+  try {
+    return svg_length(text) == 0.0;
+  } catch (const SvgSyntaxError&) {
+    return false;
+  }
+}
 
 std::size_t count_lines(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count(text, '\n'));
@@ -86,6 +97,7 @@ class SvgWalk {
     result.paint_because = paint_because_;
     result.to_paint = printed(document, root);
     if (!paint_because_.empty()) {
+      if (thin_problem_) throw BadElement{*thin_problem_};
       result.shapes.clear();
     } else if (exact_problem_) {
       throw BadElement{*exact_problem_};
@@ -270,6 +282,7 @@ class SvgWalk {
     if (const char* id = node.attribute("id").value(); *id != '\0') {
       own.ids.emplace_back(id);
       ids_.insert(id);
+      if (name == "pattern") patterns_.insert(id);
     }
     own.defined = own.defined || kDefinitions.contains(name);
     attributes(node, own, name);
@@ -279,6 +292,7 @@ class SvgWalk {
     own.hidden = own.hidden || (!sheets_ && properties["display"] == "none");
     own.to_drawing = outer.to_drawing * in(node, "transform", svg_transform);
     inherit(node, own, properties);
+    check_stroke(node, own.properties);
     if (kShapes.contains(name)) shape(node, name, own);
     children(node, own, depth + 1);
   }
@@ -343,6 +357,7 @@ class SvgWalk {
     try {
       for_svg_rules(text, [&](const SvgProperties& rule) {
         paint(node, "sets properties of shapes");
+        check_stroke(node, {rule.begin(), rule.end()});
         for (const auto& [property, value] : rule)
           check_svg_value(property, value,
                           [&](std::string id) { refer(node, Inherited{}, std::move(id)); });
@@ -361,9 +376,13 @@ class SvgWalk {
 
   /// Each leads somewhere, and none back to itself.
   void check_references() const {
-    for (const auto& [node, id] : references_)
+    for (const auto& [node, id] : references_) {
       if (!ids_.contains(id))
         fail(node, "refers to #" + id + ", which is not there", "delete it, or draw #" + id);
+      // librsvg leaves out those with small tiles.
+      if (patterns_.contains(id))
+        fail(node, "has a pattern, which is not painted", "give it a colour");
+    }
     std::map<std::string, std::size_t> waiting;
     std::map<std::string, std::vector<std::string>> users;
     std::vector<std::string> ready;
@@ -425,6 +444,15 @@ class SvgWalk {
         paint(node, "has its place in its style");
   }
 
+  /// Painting gives every stroke some width.
+  void check_stroke(const pugi::xml_node& node,
+                    const std::map<std::string, std::string>& properties) const {
+    const auto stroke = properties.find("stroke"), width = properties.find("stroke-width");
+    const bool stroked = stroke != properties.end() && stroke->second != "none";
+    if (stroked && width != properties.end() && is_zero_length(width->second))
+      fail(node, "has a stroke without a width", "write a width above 0, or stroke: none");
+  }
+
   void shape(const pugi::xml_node& node, const std::string& name, const Inherited& own) {
     if (own.defined || own.hidden) return;
     const auto get = [&](const char* property) {
@@ -432,7 +460,8 @@ class SvgWalk {
       return found == own.properties.end() ? std::string() : found->second;
     };
     const std::string fill = get("fill"), stroke = get("stroke");
-    if (!stroke.empty() && stroke != "none") paint(node, "has a stroke");
+    stroked_ = !stroke.empty() && stroke != "none";
+    if (stroked_) paint(node, "has a stroke");
     if (fill == "none" || name == "line") return;
     if (!is_plainly_solid(fill, solid_white_)) paint(node, "has the fill " + fill);
     even_odd_ = get("fill-rule") == "evenodd";
@@ -486,6 +515,18 @@ class SvgWalk {
     return ring;
   }
 
+  void check_width(const pugi::xml_node& node, const DrawnRing& ring) {
+    double area = 0, length = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Eigen::Vector2d a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
+      area += (a.x() * b.y() - a.y() * b.x()) / 2;
+      length += (b - a).norm();
+    }
+    const double width = 2 * std::abs(area) / length, page = size_.maxCoeff();
+    if (stroked_ || !(width > 1e-9 * page) || width > page / kThinnest || thin_problem_) return;
+    thin_problem_ = PolygonFileProblem{place_of(node), "is too thin to be painted", "widen it"};
+  }
+
   /// Merges corners that the transform puts at one place, and a last corner that closes the ring.
   void add(const pugi::xml_node& node, const std::vector<DrawnRing>& rings,
            const Eigen::Affine2d& to_drawing) {
@@ -500,6 +541,7 @@ class SvgWalk {
         if (drawn.empty() || drawn.back() != place) drawn.push_back(place);
       }
       while (drawn.size() > 1 && drawn.back() == drawn.front()) drawn.pop_back();
+      check_width(node, drawn);
       if (drawn.size() < 3)
         empty(node, "has a part with fewer than three corners", "delete this part");
     }
@@ -512,13 +554,13 @@ class SvgWalk {
   mutable std::size_t counted_ = 0, breaks_ = 0;
   Eigen::Vector2d begin_{0, 0}, size_{0, 0};                           // of the viewBox
   std::vector<std::pair<std::string_view, std::string_view>> spaces_;  // prefix, address
-  bool sheets_ = false, even_odd_ = false;
-  std::set<std::string> ids_;
+  bool sheets_ = false, even_odd_ = false, stroked_ = false;
+  std::set<std::string> ids_, patterns_;
   std::vector<std::pair<pugi::xml_node, std::string>> references_;
   std::map<std::string, std::set<std::string>> uses_;  // by elements around the reference
   std::vector<DrawnShape> shapes_;
   std::string paint_because_;
-  std::optional<PolygonFileProblem> exact_problem_;
+  std::optional<PolygonFileProblem> exact_problem_, thin_problem_;
 };
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "target/geo/svg_luminance.h"
 #include "target/maps/symbol.h"
@@ -30,8 +31,9 @@ constexpr std::size_t kMostPaintBytes = std::size_t{1} << 30;
 /// Limit (Files of a scenario): processor time for painting a drawing [s]. Beyond it: the scenario
 /// is refused.
 constexpr unsigned kMostPaintSeconds = 120;
-/// Paint that covers less of a pixel is the rounding of an edge.
-constexpr int kLeastOpacity = 8;
+/// Every stroke is as wide as a cell at least.
+constexpr char kStrokes[] =
+    "* { stroke-width: 2px !important; vector-effect: non-scaling-stroke !important }";
 
 /// The functions with the names and types of rsvg.h and cairo.h.
 struct RsvgLibrary {
@@ -43,12 +45,21 @@ struct RsvgLibrary {
   struct Box {
     double x, y, width, height;
   };
+  /// Places in a picture are (xx x + xy y + x0, yx x + yy y + y0).
+  struct Matrix {
+    double xx, yx, xy, yy, x0, y0;
+  };
   void* (*rsvg_handle_new_from_data)(const unsigned char* data, std::size_t length, Error** error);
   void (*rsvg_handle_set_dpi)(void* handle, double dpi);
+  int (*rsvg_handle_set_stylesheet)(void* handle, const unsigned char* css, std::size_t length,
+                                    Error** error);
   int (*rsvg_handle_render_document)(void* handle, void* cairo, const Box* viewport, Error** error);
   void* (*cairo_image_surface_create)(int format, int width, int height);
   void* (*cairo_create)(void* surface);
+  void (*cairo_transform)(void* cairo, const Matrix* matrix);
   int (*cairo_status)(void* cairo);
+  void (*cairo_destroy)(void* cairo);
+  void (*cairo_surface_destroy)(void* surface);
   void (*cairo_surface_flush)(void* surface);
   unsigned char* (*cairo_image_surface_get_data)(void* surface);
   int (*cairo_image_surface_get_stride)(void* surface);
@@ -61,6 +72,9 @@ struct RsvgLibrary {
     };
     return find(rsvg_handle_new_from_data, "rsvg_handle_new_from_data") &&
            find(rsvg_handle_set_dpi, "rsvg_handle_set_dpi") &&
+           find(rsvg_handle_set_stylesheet, "rsvg_handle_set_stylesheet") &&
+           find(cairo_transform, "cairo_transform") && find(cairo_destroy, "cairo_destroy") &&
+           find(cairo_surface_destroy, "cairo_surface_destroy") &&
            find(rsvg_handle_render_document, "rsvg_handle_render_document") &&
            find(cairo_image_surface_create, "cairo_image_surface_create") &&
            find(cairo_create, "cairo_create") && find(cairo_status, "cairo_status") &&
@@ -87,7 +101,7 @@ struct Paint {
 
 bool is_solid(const unsigned char* pixel, bool solid_white) {
   const int opacity = pixel[3];  // blue, green, red, each times opacity
-  if (opacity < kLeastOpacity) return false;
+  if (opacity == 0) return false;
   const double whole = opacity;
   return solid_white ||
          luminance(pixel[2] / whole, pixel[1] / whole, pixel[0] / whole) < kSolidLuminance;
@@ -98,38 +112,70 @@ void note(Shared& shared, Outcome outcome, const char* message = "") {
   shared.outcome = outcome;
 }
 
-void paint_cells(const Paint& paint, Shared& shared, std::uint8_t* cells) {
-  RsvgLibrary rsvg{};
-  if (!rsvg.load()) return note(shared, Outcome::kNoLibrary);
-  RsvgLibrary::Error* error = nullptr;
-  const auto failed = [&] {
-    note(shared, Outcome::kError, error != nullptr ? error->message : "it cannot be painted");
-  };
-  void* const handle = rsvg.rsvg_handle_new_from_data(
-      reinterpret_cast<const unsigned char*>(paint.svg.data()), paint.svg.size(), &error);
-  if (handle == nullptr) return failed();
-  rsvg.rsvg_handle_set_dpi(handle, 96);
-  constexpr int kArgb32 = 0;
-  const int width = paint.columns * kPixelsPerCell, height = paint.rows * kPixelsPerCell;
-  void* const surface = rsvg.cairo_image_surface_create(kArgb32, width, height);
-  void* const cairo = rsvg.cairo_create(surface);
-  const RsvgLibrary::Box page{0, 0, paint.width, paint.height};
-  if (rsvg.rsvg_handle_render_document(handle, cairo, &page, &error) == 0 ||
-      rsvg.cairo_status(cairo) != 0)
-    return failed();
-  rsvg.cairo_surface_flush(surface);
-  const unsigned char* const pixels = rsvg.cairo_image_surface_get_data(surface);
-  const int stride = rsvg.cairo_image_surface_get_stride(surface);
-  if (pixels == nullptr) return failed();
-  for (int y = 0; y < height; ++y) {
-    std::uint8_t* const row =
-        cells + std::ptrdiff_t{paint.columns} * (paint.rows - 1 - y / kPixelsPerCell);
-    for (int x = 0; x < width; ++x)
-      if (is_solid(pixels + std::ptrdiff_t{stride} * y + 4 * std::ptrdiff_t{x}, paint.solid_white))
-        row[x / kPixelsPerCell] = 1;
+/// Paints a drawing as it is written, then with rows and columns exchanged and strokes of some
+/// width: edges are sampled more coarsely along one of the two.
+class Painter {
+ public:
+  Painter(const Paint& paint, Shared& shared, std::uint8_t* cells)
+      : paint_(paint), shared_(shared), cells_(cells) {}
+
+  void paint() {
+    if (!rsvg_.load()) return note(shared_, Outcome::kNoLibrary);
+    const auto* const svg = reinterpret_cast<const unsigned char*>(paint_.svg.data());
+    handle_ = rsvg_.rsvg_handle_new_from_data(svg, paint_.svg.size(), &error_);
+    if (handle_ != nullptr) rsvg_.rsvg_handle_set_dpi(handle_, 96);
+    if (handle_ == nullptr || !paint_once(false) || !widen_strokes() || !paint_once(true)) {
+      return note(shared_, Outcome::kError,
+                  error_ != nullptr ? error_->message : "it cannot be painted");
+    }
+    note(shared_, Outcome::kPainted);
   }
-  note(shared, Outcome::kPainted);
-}
+
+ private:
+  bool widen_strokes() {
+    return rsvg_.rsvg_handle_set_stylesheet(handle_,
+                                            reinterpret_cast<const unsigned char*>(kStrokes),
+                                            sizeof kStrokes - 1, &error_) != 0;
+  }
+
+  bool paint_once(bool turned) {
+    constexpr int kArgb32 = 0;
+    constexpr RsvgLibrary::Matrix kExchange{0, 1, 1, 0, 0, 0};
+    int width = paint_.columns * kPixelsPerCell, height = paint_.rows * kPixelsPerCell;
+    if (turned) std::swap(width, height);
+    void* const surface = rsvg_.cairo_image_surface_create(kArgb32, width, height);
+    void* const cairo = rsvg_.cairo_create(surface);
+    if (turned) rsvg_.cairo_transform(cairo, &kExchange);
+    const RsvgLibrary::Box page{0, 0, paint_.width, paint_.height};
+    const bool done = rsvg_.rsvg_handle_render_document(handle_, cairo, &page, &error_) != 0 &&
+                      rsvg_.cairo_status(cairo) == 0;
+    rsvg_.cairo_surface_flush(surface);
+    const unsigned char* const pixels = rsvg_.cairo_image_surface_get_data(surface);
+    const std::ptrdiff_t stride = rsvg_.cairo_image_surface_get_stride(surface);
+    if (done && pixels != nullptr) {
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+          if (is_solid(pixels + stride * y + 4 * std::ptrdiff_t{x}, paint_.solid_white))
+            turned ? mark(y, x) : mark(x, y);
+    }
+    rsvg_.cairo_destroy(cairo);
+    rsvg_.cairo_surface_destroy(surface);
+    return done && pixels != nullptr;
+  }
+
+  /// A pixel, from the upper left corner.
+  void mark(int x, int y) {
+    const std::ptrdiff_t row = paint_.rows - 1 - y / kPixelsPerCell;
+    cells_[row * paint_.columns + x / kPixelsPerCell] = 1;
+  }
+
+  const Paint& paint_;
+  Shared& shared_;
+  std::uint8_t* cells_;
+  RsvgLibrary rsvg_{};
+  RsvgLibrary::Error* error_ = nullptr;
+  void* handle_ = nullptr;
+};
 
 void bound(int resource, rlim_t most) {
   const rlimit limit{most, most};
@@ -155,7 +201,7 @@ void bound_memory() {
   bound(RLIMIT_CPU, kMostPaintSeconds);
   alarm(10 * kMostPaintSeconds);
   bound_memory();
-  paint_cells(paint, shared, cells);
+  Painter(paint, shared, cells).paint();
   _exit(0);
 }
 

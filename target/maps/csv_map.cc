@@ -32,6 +32,9 @@ class Shape {
     }
     if (!problem_) end_line();
     if (!problem_) problem_ = check_dimensions(file, columns_, rows_);
+    if (!problem_ && columns_ > 1 && blank_ends_ == rows_)
+      problem_ = MapProblem{file.string() + ": every line ends in a comma",
+                            "remove it: sed 's/,[[:space:]]*$//' in.csv > out.csv"};
   }
 
   const std::optional<MapProblem>& problem() const { return problem_; }
@@ -41,7 +44,10 @@ class Shape {
  private:
   void take(int c) {
     if (c == '\n') return end_line();
-    if (kBlanks.find(static_cast<char>(c)) == std::string_view::npos) written_ = true;
+    if (kBlanks.find(static_cast<char>(c)) == std::string_view::npos) {
+      written_ = true;
+      after_comma_ = c == ',';
+    }
     if (c == ',') ++commas_;
     if (++bytes_ <= kMaxLineBytes) return;
     problem_ = MapProblem{in_line(file_, line_) + " is longer than the limit, " +
@@ -52,6 +58,7 @@ class Shape {
   void end_line() {
     if (written_) {
       ++rows_;
+      if (after_comma_) ++blank_ends_;
       if (rows_ == 1) columns_ = commas_ + 1;
       if (commas_ + 1 != columns_) {
         problem_ = MapProblem{in_line(file_, line_) + " has " + std::to_string(commas_ + 1) +
@@ -66,8 +73,8 @@ class Shape {
 
   const fs::path& file_;
   std::optional<MapProblem> problem_;
-  long long columns_ = 0, rows_ = 0, line_ = 1, commas_ = 0, bytes_ = 0;
-  bool written_ = false;
+  long long columns_ = 0, rows_ = 0, line_ = 1, commas_ = 0, bytes_ = 0, blank_ends_ = 0;
+  bool written_ = false, after_comma_ = false;
 };
 
 class CsvMap : public MapFile {

@@ -75,8 +75,8 @@ class AxisReader {
   bool points_down(Variable variable) const {
     const std::string positive = lower_case(file_.text(variable, "positive"));
     if (!positive.empty()) return positive == "down";
-    return file_.text(variable, "standard_name") == "depth" ||
-           lower_case(dimension_.name) == "depth";
+    constexpr char kName[] = "standard_name";
+    return file_.text(variable, kName) == "depth" || lower_case(dimension_.name) == "depth";
   }
 
   std::optional<MapProblem> by_centres(Variable variable) {

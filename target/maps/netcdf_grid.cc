@@ -220,7 +220,8 @@ class Grid : public NetcdfGrid {
 
   void find_missing() {
     const StoredType& type = stored_type(file_->type_of(variable_));
-    const std::string is_unsigned = file_->text(variable_, "_Unsigned");
+    constexpr char kUnsigned[] = "_Unsigned";
+    const std::string is_unsigned = file_->text(variable_, kUnsigned);
     if ((is_unsigned == "true" || is_unsigned == "TRUE" || is_unsigned == "True") &&
         type.bits < 64 && !type.is_float)
       wrap_ = std::exp2(type.bits);
@@ -231,15 +232,15 @@ class Grid : public NetcdfGrid {
     const bool has_own = !file_->numeric_attributes(variable_, "_FillValue").empty();
     if (type.is_float || !has_own) fills_.push_back(as_meant(type.fill));
     const auto range = file_->numeric_attributes(variable_, "valid_range");
-    if (range.size() == 2) limit("valid_range", range[0], range[1], type);
+    if (range.size() == 2) keep_within("valid_range", range[0], range[1], type);
     if (const auto low = file_->numeric_attribute(variable_, "valid_min"))
-      limit("valid_min", *low, HUGE_VAL, type);
+      keep_within("valid_min", *low, HUGE_VAL, type);
     if (const auto high = file_->numeric_attribute(variable_, "valid_max"))
-      limit("valid_max", -HUGE_VAL, *high, type);
+      keep_within("valid_max", -HUGE_VAL, *high, type);
   }
 
   /// Limits have the type of the stored numbers, else they are for the unpacked ones.
-  void limit(const char* attribute, double low, double high, const StoredType& type) {
+  void keep_within(const char* attribute, double low, double high, const StoredType& type) {
     const bool unpacked =
         !type.is_float && stored_type(file_->type_of(variable_, attribute)).is_float;
     ValidRange& range = unpacked ? valid_unpacked_ : valid_;

@@ -115,6 +115,7 @@ world {
   speed_limit_mps: 100 wall_clearance_m: 1 objects { count: 3 }
   walls { vertices { x_m: 80 y_m: 10 } vertices { x_m: 90 y_m: 10 } vertices { x_m: 90 y_m: 20 } }
   walls { file: "room.yaml" unknown_free: true }
+  walls { file: "dot.svg" solid_white: true }
 }
 vehicle { kind: FIXED_WING max_turn_radps: 1 min_speed_mps: 4 }
 )";
@@ -447,6 +448,9 @@ const std::vector<Unsayable> kUnsayable = {
      "the map has to change between two reads"},
     {"target/maps/png_reader.cc", "cannot be opened any more", "it was opened a moment before"},
     {"scenario/compile/map_walls.cc", "the wall at x", "no polygon around cells has a flaw"},
+    {"scenario/compile/drawn_polygons.cc", "is full of specks",
+     "no page of 2 : 1 has as many cells"},
+    {"scenario/compile/drawn_polygons.cc", "the shape at x", "no polygon around cells has a flaw"},
     {"target/maps/picture.cc", "is gone, though it was there", "it was opened a moment before"},
     {"target/maps/netcdf_file.cc", "needs libnetcdf", "this machine has it"},
     {"target/maps/netcdf_file.cc", "write the file again",

@@ -40,6 +40,7 @@ void write_grids(const fs::path& folder) {
   grid("words.nc", [](WaterColumn& c) { c.at("chl").type = NetcdfType::kText; });
   grid("member.nc", [](WaterColumn& c) { c.rename("depth", "member"); });
   grid("flat.nc", [](WaterColumn& c) { c.at("chl").dimensions = {"time", "y", "x"}; });
+  grid("plane.nc", [](WaterColumn& c) { c.at("chl").dimensions = {"time", "depth", "x"}; });
   grid("billion.nc", [](WaterColumn& c) { c.grow(1000); });
   grid("long.nc", [](WaterColumn& c) { c.grow(9000); });
   grid("uneven.nc", [](WaterColumn& c) { c.at("x").values[3] += 0.02; });
@@ -147,12 +148,28 @@ void write_mistaken_files(const fs::path& folder) {
   write("even.csv", "1,2\n3,4\n");
   write("pier.geojson", R"({"type":"Polygon","coordinates":[[[9.2005,47.5001],[9.2006,47.5001],)"
                         R"([9.2006,47.5002],[9.2005,47.5001]]]})");
-  write("many.geojson",
-        R"({"type":"Polygon","coordinates":[[)" + repeated(4100, "[9.2,47.5],") + "[9.2,47.5]]]}");
+  std::string positions;
+  for (int i = 0; i < 4100; ++i) positions += "[9.2" + std::to_string(1000 + i) + ",47.5],";
+  write("many.geojson", R"({"type":"Polygon","coordinates":[[)" + positions + "[9.21000,47.5]]]}");
   write("line.geojson", R"({"type":"LineString","coordinates":[]})");
   write("square.svg", "<svg viewBox='0 0 1 1'><rect width='1' height='1'/></svg>");
   write("many.svg",
         "<svg viewBox='0 0 2 1'><path d='M0 0" + repeated(2100, "h.1v.1") + "'/></svg>");
+  const std::string page = "<svg viewBox='0 0 2 1'>";
+  write("dot.svg", page + "<rect x='1.9' y='.9' width='.01' height='.01' fill='white'/></svg>");
+  write("crossing.svg", page + "<path d='M0 0H2V1H0V.5H2V.6H0z'/></svg>");
+  write("overlap.svg",
+        page + "<rect width='1' height='1'/><rect x='.9' width='2' height='1'/></svg>");
+  write("outside.svg", page + "<circle cx='9' r='1'/></svg>");
+  write("marked.csv",
+        "\xef\xbb\xbf"
+        "1,2\n");
+  write("wide_words.csv", std::string("\xff\xfe"
+                                      "1\0",
+                                      4));
+  write("semicolons.csv", "1;2\n");
+  write("commas.csv", "1,2,\n");
+  write("oblong.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ndx 5\ndy 6\n1 2\n");
   fs::create_directory(folder / "folder.csv");
   fs::create_symlink(unreadable_file(), folder / "locked.csv");
   write("empty.csv", "");

@@ -92,6 +92,10 @@ std::vector<Mistake> mistakes_between_fields() {
       {kLaw, wings("min_speed_mps: 5 max_turn_radps: 1"), "vehicle.min_speed_mps: 5 is not below"},
       {kLaw, wings("min_speed_mps: 2 max_turn_radps: 0.1"),
        "vehicle.max_turn_radps: 0.1 turns a vehicle on a circle"},
+      {kTime,
+       "duration_s:\xc2\xa0"
+       "60",
+       "a character outside of quotes is not ASCII"},
       {"agents {", wings("min_speed_mps: 2 max_turn_radps: 0.16", "agents {"),
        "agents.starts[0]: is nearer to an edge than"},
       {kLaw, wings("min_speed_mps: 2 max_turn_radps: 1 max_acceleration_mps2: 1"),

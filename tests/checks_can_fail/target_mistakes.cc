@@ -91,6 +91,11 @@ std::vector<Mistake> mistakes_of_targets() {
        "target.regions[0].polygon.file: "},
       {kUniform, kUniform + " keep_outs { file: \"square.svg\" }", "target.keep_outs[0].file: "},
       {kUniform, kUniform + " keep_outs { file: \"many.svg\" }", "target.keep_outs[0].file: "},
+      {kUniform, kUniform + " keep_outs { file: \"crossing.svg\" }", "target.keep_outs[0].file: "},
+      {kUniform, kUniform + " keep_outs { file: \"overlap.svg\" }", "target.keep_outs[0].file: "},
+      {kUniform, kUniform + " keep_outs { file: \"outside.svg\" }", "target.keep_outs[0].file: "},
+      {kUniform, kUniform + " keep_outs { file: \"pier.geojson\" solid_white: true }",
+       "target.keep_outs[0].solid_white: is for drawings"},
       {kUniform, "regions { polygon { " + repeated(2, "vertices { x_m: 1 y_m: 1 } ") + "} }",
        "target.regions[0].polygon: 2 vertices enclose nothing"},
       {kUniform, "uniform_weight: 1 keep_outs { vertices { x_m: 1 y_m: 1 } }",
@@ -143,11 +148,13 @@ std::vector<Mistake> mistakes_of_maps() {
                    std::string("target.maps[0].") + name + ": an ESRI ASCII grid states"});
   }
   for (const char* bad :
-       {"none.csv",   "folder.csv", "locked.csv", "empty.csv",    "wide.csv", "long.csv",
-        "ragged.csv", "zero.csv",   "words.csv",  "negative.csv", "huge.csv", "nan.csv",
-        "key.asc",    "twice.asc",  "bare.asc",   "lacks.asc",    "both.asc", "half.asc",
-        "flat.asc",   "short.asc",  "more.asc",   "text.png",     "cut.png",  "palette.png",
-        "colour.png", "bits.png",   "laced.png"}) {
+       {"none.csv",   "folder.csv", "locked.csv", "empty.csv",      "wide.csv",
+        "long.csv",   "ragged.csv", "zero.csv",   "words.csv",      "negative.csv",
+        "huge.csv",   "nan.csv",    "marked.csv", "wide_words.csv", "semicolons.csv",
+        "commas.csv", "oblong.asc", "key.asc",    "twice.asc",      "bare.asc",
+        "lacks.asc",  "both.asc",   "half.asc",   "flat.asc",       "short.asc",
+        "more.asc",   "text.png",   "cut.png",    "palette.png",    "colour.png",
+        "bits.png",   "laced.png"}) {
     all.push_back({kUniform, map_of(bad), at});
   }
   return all;
@@ -171,6 +178,7 @@ std::vector<Mistake> mistakes_of_grids() {
       of_grid("good.nc", "", "time_index: 1 x_axis: \"y\" y_axis: \"y\""),
       of_grid("member.nc", ""),
       of_grid("flat.nc", ""),
+      of_grid("plane.nc", ""),
       of_grid("billion.nc", ""),
       of_grid("long.nc", ""),
       of_grid("uneven.nc", ""),

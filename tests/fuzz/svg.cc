@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An SVG drawing: refused with a problem, or rings of finite corners.
+// An SVG drawing: refused with a problem, left to be painted, or rings of finite corners.
 #include "target/geo/svg.h"
 
 #include "tests/fuzz/target.h"
@@ -13,7 +13,8 @@ FUZZ_TARGET(svg) {
     return;
   }
   const auto& drawing = *parsed;
-  ERGOCAST_REQUIRE(!drawing.shapes.empty() && drawing.size.minCoeff() > 0);
+  ERGOCAST_REQUIRE(drawing.size.minCoeff() > 0 && !drawing.to_paint.empty());
+  ERGOCAST_REQUIRE(drawing.shapes.empty() == !drawing.paint_because.empty());
   for (const DrawnShape& shape : drawing.shapes) {
     ERGOCAST_REQUIRE(!shape.rings.empty());
     for (const auto& ring : shape.rings) {

@@ -62,15 +62,25 @@ TEST_F(SvgTarget, TheDrawingCoversTheDomainWithYUp) {
 }
 
 TEST_F(SvgTarget, ARingInsideAnotherIsAHoleAndOneInAHoleIsNone) {
-  expect_same(drawing(R"(<path d="M1 1h8v8h-8z M2 2h6v6h-6z M3 3h2v2h-2z"/>)"),
+  expect_same(drawing(R"(<path fill-rule="evenodd" d="M1 1h8v8h-8z M2 2h6v6h-6z M3 3h2v2h-2z"/>)"),
               "keep_outs { " + ring(5, 5, 45, 45) + "holes { " + ring(10, 10, 40, 40) +
                   "} } keep_outs { " + ring(15, 25, 25, 35) + "}");
 }
 
+TEST_F(SvgTarget, ARingThatGoesRoundTheSameWayIsNoHole) {
+  expect_same(drawing(R"(<path d="M1 1h8v8h-8z M2 2h6v6h-6z"/>)"),
+              "keep_outs { " + ring(5, 5, 45, 45) + "}");
+}
+
 TEST_F(SvgTarget, NamesTheElementThatIsWrong) {
-  expect_problem(drawing(R"(<circle r="1"/>)"),
-                 "line 2: <circle>: is no rect, polygon or path (turn it into a path");
-  expect_problem(drawing("\n<path d=\"M1 1 8 8 8 1 1 8z\"/>"), "line 3: <path>: ring 0: ");
+  expect_problem(drawing(R"(<polygon points="1 1 1"/>)"),
+                 "line 2: <polygon>: has an odd number of coordinates (save it anew");
+  expect_problem(
+      drawing("\n<path d=\"M0 0H20V10H0V5H20V6H0z\"/>"),
+      "more than 90 % of it is solid (it is painted because line 3: <path> crosses itself)");
+  expect_problem(drawing(R"(<rect width="12" height="10"/><rect x="10" width="10" height="10"/>)"),
+                 "more than 90 % of it is solid (it is painted because line 2: <rect> touches or "
+                 "overlaps line 2: <rect>)");
   expect_problem(drawing(R"(<rect x="25" width="1" height="1"/>)"),
                  "none of its polygons meets the domain");
   expect_problem(drawing(R"(<rect width="1" height="1"/>)", "0 0 20 15"),

@@ -254,6 +254,7 @@ const std::map<std::string, Rule>& rules() {
 
       {"Polygon.solid", may(kTrue)},
       {"Polygon.unknown_free", {kTrue, 0, 0}},  // for maps of robots alone
+      {"Polygon.solid_white", {kTrue, 0, 0}},   // for drawings alone
       {"World.walls", many(0, 2)},
       {"World.objects", may(draw_block)},
       {"Objects.count", may(number(1, 6))},  // or places: see drawn_agreement.h

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files as drawing programs, spreadsheets and models write them: walls and targets where their
+// authors see them, or words that say why not.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/motion/walls.h"
+#include "tests/scenario/scenarios.h"
+#include "tests/scenario/water_column.h"
+#include "tests/support/temp_folder.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+using Places = std::vector<Eigen::Vector2d>;
+
+/// A drawing of 40 × 30 units, which are metres. Its content begins on line 2.
+std::string drawing(const std::string& content, const std::string& more = "") {
+  return R"(<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" )"
+         R"(viewBox="0 0 40 30" )" +
+         more + ">\n" + content + "\n</svg>";
+}
+
+class OtherPeoplesFiles : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_.path() / name, std::ios::binary) << content;
+  }
+  Loaded walls_of(const std::string& svg, const std::string& more) const {
+    write("floor.svg", svg);
+    write("mine.textproto",
+          "domain { size_x_m: 40 size_y_m: 30 }\ntarget { uniform_weight: 1 }\n"
+          "world { speed_limit_mps: 1000 walls { file: \"floor.svg\" " +
+              more +
+              " } }\nlaw { u_max_mps: 5 }\ntime { duration_s: 60 }\n"
+              "agents { starts { x_m: 0.5 y_m: 0.5 } }\n");
+    return Scenario::load(folder_.path() / "mine.textproto");
+  }
+  /// At places of the drawing, y down.
+  void expect_walls(const std::string& svg, const Places& solid, const Places& free,
+                    const std::string& more = "") const {
+    const Loaded loaded = walls_of(svg, more);
+    ASSERT_TRUE(loaded) << svg << '\n' << joined(loaded.error());
+    const Rings& walls = loaded->mission().walls;
+    for (const auto& [places, is_solid] : {std::pair(&solid, true), std::pair(&free, false)})
+      for (const Eigen::Vector2d& at : *places)
+        EXPECT_EQ(solid_at(walls, {at.x(), 30 - at.y()}), is_solid)
+            << at.transpose() << " of " << svg;
+  }
+  void expect_refused(const std::string& svg, const std::string& words) const {
+    const Loaded loaded = walls_of(svg, "");
+    ASSERT_FALSE(loaded) << svg;
+    const std::string said = joined(loaded.error());
+    EXPECT_TRUE(has(said, "mine.textproto:3:39: world.walls[0].file: "));
+    EXPECT_TRUE(has(said, words)) << svg;
+  }
+  Loaded of_target(const std::string& target) const {
+    write("mine.textproto", small_with("uniform_weight: 1", target));
+    return Scenario::load(folder_.path() / "mine.textproto");
+  }
+  Coefficients mu(const std::string& target) const {
+    return good(of_target(target)).mission().target_coefficients;
+  }
+  std::string problems(const std::string& target) const {
+    const Loaded loaded = of_target(target);
+    return loaded ? "no problem" : joined(loaded.error());
+  }
+
+  const TempFolder folder_;
+};
+
+struct Drawn {
+  std::string content;
+  Places solid, free;
+};
+
+/// From (10, 5) to (20, 15), and (30, 20) always free.
+const Places kBox = {{10.1, 5.1}, {15, 10}, {19.9, 14.9}};
+const Places kAround = {{9.9, 10}, {20.1, 10}, {15, 4.9}, {15, 15.1}, {30, 20}};
+
+TEST_F(OtherPeoplesFiles, BoxesAreWhereEveryProgramShowsThem) {
+  const std::string box = "<rect x='10' y='5' width='10' height='10'/>";
+  const std::string page = "<rect width='40' height='30' ";
+  const std::vector<std::string> contents = {
+      box,
+      "<g transform='translate(10,5)'><rect width='10' height='10'/></g>",
+      "<style>.w{fill:#333}</style><g fill='none'><rect class='w' x='10' y='5' width='10' "
+      "height='10'/></g>",
+      "<style>#w{fill:#333 !important}</style><rect id='w' fill='none' x='10' y='5' width='10' "
+      "height='10'/>",
+      "<style>.w{transform:translate(10px,5px)}</style><rect class='w' width='10' height='10'/>",
+      "<style>.w{display:none}</style><rect class='w' width='40' height='30'/>" + box,
+      page + "visibility='hidden'/>" + box,
+      page + "fill='white'/>" + box,
+      page + "fill='transparent'/>" + box,
+      page + "fill='rgba(0,0,0,0)'/>" + box,
+      page + "fill='#00000000'/>" + box,
+      page + "fill='ivory'/>" + box,
+      page + "opacity='0'/>" + box,
+      "<rect x='10' y='5' width='10' height='10' fill='#3338'/>",
+      "<rect x='10' y='5' width='10' height='10' fill='yellow'/>",
+      "<rect x='25%' y='5' width='25%' height='10'/>",
+      "<rect x='10' y='5' width='2.6458333mm' height='10px'/>",
+      "<switch><g>" + box + "</g></switch>",
+      "<svg x='10' y='5' width='20' height='10' viewBox='0 0 40 20'>"
+      "<rect width='20' height='20'/></svg>",
+      "<defs><rect id='r' width='10' height='10'/></defs><use href='#r' x='10' y='5'/>",
+      "<symbol id='r' viewBox='0 0 1 1'><rect width='1' height='1'/></symbol>"
+      "<use xlink:href='#r' x='10' y='5' width='10' height='10'/>",
+      "<clipPath id='c'>" + box + "</clipPath>" + page + "clip-path='url(#c)'/>",
+      "<mask id='c'><rect x='10' y='5' width='10' height='10' fill='white'/></mask>" + page +
+          "mask='url(#c)'/>",
+      "<linearGradient id='f'><stop/><stop offset='1' stop-color='red'/></linearGradient>"
+      "<rect x='10' y='5' width='10' height='10' fill='url(#f)'/>",
+      "<line x1='15' y1='5' x2='15' y2='15' stroke='red' stroke-width='10'/>",
+      "<style>.w{stroke:#000;stroke-width:10}</style><polyline class='w' points='10,10 20,10'/>",
+      "<path d='M10 5H20V15H10z'/><path d='M12 7h4v4h-4z'/>",
+      "<path d='M10 5H20V15H10z M12 7h4v4h-4z'/>",
+      "<rect x='10' y='5' width='6' height='10'/><rect x='15' y='5' width='5' height='10'/>",
+      "<rect x='10' y='5' width='6' height='10'/><rect x='16' y='5' width='4' height='10'/>",
+      "<a href='https://example.org'>" + box + "</a>",
+      "<text display='none'>Room</text><title>Floor</title>" + box,
+      "<g xmlns:i='http://www.inkscape.org/namespaces/inkscape' i:label='a'>" + box +
+          "<i:grid/></g>",
+  };
+  for (const std::string& content : contents) expect_walls(drawing(content), kBox, kAround);
+  const std::string dot = "<circle cx='15' cy='10' r='1'/>";
+  expect_walls(
+      "<s:svg xmlns:s='http://www.w3.org/2000/svg' viewBox='0 0 40 30'><s:rect x='10' y='5' "
+      "width='10' height='10'/><s:circle cx='15' cy='10' r='1'/></s:svg>",
+      kBox, kAround);
+  for (const char* size :
+       {"width='400' height='100'", "width='50%' preserveAspectRatio='xMinYMin slice'",
+        "style='width:100%;height:auto'", "style='width:20px;height:300px'"})
+    expect_walls(drawing(box + dot, size), kBox, kAround);
+}
+
+TEST_F(OtherPeoplesFiles, ShapesAreWhereEveryProgramShowsThem) {
+  for (const Drawn& one : std::vector<Drawn>{
+           {"<circle cx='15' cy='10' r='5'/>",
+            {{15, 10}, {15, 5.1}, {18.4, 13.4}},
+            {{18.7, 13.7}, {15, 4.9}}},
+           {"<ellipse cx='15' cy='10' rx='8' ry='4'/>",
+            {{7.1, 10}, {15, 13.9}},
+            {{6.9, 10}, {15, 14.1}, {21, 13}}},
+           {"<path d='M10 10A5 5 0 0120 10z'/>", {{15, 5.1}, {11, 9}}, {{15, 10.1}, {10.5, 6}}},
+           {"<path d='M10 10C10 0 20 0 20 10z'/>", {{15, 2.6}}, {{15, 2.4}, {15, 10.1}}},
+           {"<rect x='10' y='5' width='10' height='10' rx='4'/>",
+            {{15, 5.1}, {10.1, 10}, {11.3, 6.3}},
+            {{10.5, 5.5}, {19.5, 14.5}}},
+           // Rooms, and a door that is painted over a wall.
+           {"<path fill='none' stroke='#000' d='M10 5H30V25H10z'/>",
+            {{10, 15}, {20, 5.4}, {29.6, 24.6}},
+            {{20, 15}, {5, 15}, {10.6, 5.6}}},
+           {"<style>.w{fill:none;stroke:#000;stroke-width:1}</style>"
+            "<path class='w' d='M10 5H30V25H10z'/>",
+            {{10, 15}, {20, 5.4}},
+            {{20, 15}, {5, 15}}},
+           {"<rect x='5' y='5' width='30' height='20'/>"
+            "<rect x='6' y='6' width='28' height='18' fill='#fff'/>"
+            "<path stroke='white' stroke-width='2' d='M5.5 10v4'/>",
+            {{5.5, 8}, {20, 5.5}, {34.5, 20}},
+            {{5.5, 12}, {20, 15}}},
+           {"<path stroke='black' stroke-dasharray='4 4' d='M10 10h16'/>",
+            {{12, 10}, {20, 10}},
+            {{16, 10}, {24, 10}}},
+           {"<path d='M10 5H30V25H10z M12 7V23H28V7z'/>", {{11, 15}}, {{20, 15}}},
+           {"<path fill-rule='evenodd' d='M10 5H30V25H10z M12 7H28V23H12z'/>",
+            {{11, 15}},
+            {{20, 15}}},
+           {"<path d='M10 5L30 25V5L10 25z'/>", {{11, 15}, {29, 15}}, {{20, 10}, {20, 20}}},
+           {"<g transform='rotate(90 20 15)'><rect x='10' y='14' width='20' height='2' "
+            "rx='.1'/></g>",
+            {{20, 5.2}, {19.1, 24}},
+            {{18.9, 15}, {11, 15}}},
+           {"<marker id='m' markerWidth='6' markerHeight='6' refX='3' refY='3'>"
+            "<rect width='6' height='6'/></marker>"
+            "<path d='M10 10h10' stroke='#000' marker-end='url(#m)'/>",
+            {{20, 12.5}, {22.5, 10}},
+            {{20, 13.3}, {10, 12}}},
+       })
+    expect_walls(drawing(one.content), one.solid, one.free);
+  expect_walls(drawing("<rect x='10' y='5' width='10' height='10' fill='white'/>"), kBox, kAround,
+               "solid_white: true");
+  expect_walls(drawing("<circle cx='15' cy='10' r='9' fill='white'/>"), kBox, {{30, 20}},
+               "solid_white: true");
+}
+
+// However thin; the circle has the drawing painted.
+TEST_F(OtherPeoplesFiles, ThinWallsAreClosed) {
+  const std::string circle = R"(<circle cx="35" cy="25" r="1"/>)";
+  Places along_x, along_y, across;
+  for (int i = 0; i <= 997; ++i) {
+    const double at = 5 + 20 * i / 997.0;
+    along_x.emplace_back(at, 10.00013);
+    along_y.emplace_back(10.00013, at);
+    across.emplace_back(at, at + 1);
+  }
+  for (const char* width : {"0.5", "0.01", "0.001", "0.0004"}) {
+    const std::string w(width);
+    for (const char* edges : {"auto", "crispEdges"}) {
+      const std::string group = "<g shape-rendering=\"" + std::string(edges) + "\">" + circle;
+      const auto solid_near = [&](const std::string& content, const Places& line) {
+        const Loaded loaded = walls_of(drawing(group + content + "</g>"), "");
+        ASSERT_TRUE(loaded) << content << joined(loaded.error());
+        // The cell of 0.02 that has the wall in it is solid as a whole.
+        int open = 0;
+        for (const auto& at : line)
+          open += solid_at(loaded->mission().walls, {at.x(), 30 - at.y()}) ? 0 : 1;
+        EXPECT_EQ(open, 0) << content << ' ' << edges;
+        EXPECT_FALSE(solid_at(loaded->mission().walls, {20, 5})) << content;
+      };
+      solid_near("<rect x=\"5\" y=\"10\" width=\"20\" height=\"" + w + "\"/>", along_x);
+      solid_near("<rect y=\"5\" x=\"10\" height=\"20\" width=\"" + w + "\"/>", along_y);
+      solid_near("<path d=\"M5 6L25 26l" + w + " 0L5 6z\" stroke=\"red\" stroke-width=\"" + w +
+                     "\" fill=\"none\"/>",
+                 across);
+    }
+  }
+  for (const char* width : {"0.01", "1e-4", "1e-9"}) {
+    const std::string stroke = "stroke=\"#000\" stroke-width=\"" + std::string(width) + "\"/>";
+    expect_walls(drawing(circle + "<path d=\"M5 10.00013h20\" " + stroke), along_x, {{15, 11}});
+    expect_walls(drawing(circle + "<path d=\"M10.00013 5v20\" " + stroke), along_y, {{11, 15}});
+    expect_walls(drawing(circle + "<path d=\"M5 6l20 20\" " + stroke), across, {{15, 20}});
+    expect_walls(drawing("<style>.w{stroke:#000;stroke-width:" + std::string(width) +
+                         "}</style><g transform=\"scale(.01)\"><path class=\"w\" "
+                         "d=\"M1000.013 500v2000\"/></g>"),
+                 along_y, {{11, 15}});
+  }
+  expect_refused(drawing(circle + R"(<rect x="5" y="10" width="20" height="0.0001"/>)"),
+                 "line 2: <rect>: is too thin to be painted");
+  expect_refused(drawing(R"(<path d="M5 6l20 20" stroke="#000" stroke-width="0"/>)"),
+                 "line 2: <path>: has a stroke without a width");
+}
+
+TEST_F(OtherPeoplesFiles, DrawingsThatCouldLoseAWallAreRefused) {
+  const std::string box = R"(<rect x="10" y="5" width="10" height="10"/>)";
+  for (const auto& [content, words] : std::vector<std::pair<std::string, std::string>>{
+           {"<text>Room</text>", "line 2: <text>: is not read (delete it, hide it"},
+           {"<image href=\"a.png\"/>", "line 2: <image>: is not read"},
+           {"<foreignObject/>", "line 2: <foreignObject>: is not read"},
+           {"<script/>", "line 2: <script>: is not read"},
+           {"<wall/>", "line 2: <wall>: is no element that is painted"},
+           {"<g clip-path=\"url(#c)\"><rect/></g>",
+            "line 2: <g>: refers to #c, which is not there"},
+           {"<use href=\"b.svg#a\"/>", "line 2: <use>: refers to another file"},
+           {"<g id=\"a\"><use href=\"#a\"/></g>", "line 2: <use>: refers to itself through #a"},
+           {"<path d=\"M1 1 L2 2 Q\"/>", "line 2: <path>: d has no finite number"},
+           {"<path d=\"M1 1 X2 2\"/>", "line 2: <path>: d has the unknown command X"},
+           {"<path d=\"M1 1A5 5 0 2 0 9 9\"/>", "d has an arc whose flags are not 0 or 1"},
+           {"<circle r=\"3furlongs\"/>", "line 2: <circle>: r is in furlongs"},
+           {"<rect filter=\"url(#f)\"/>", "line 2: <rect>: has a filter"},
+           {"<rect style=\"fill\"/>", "line 2: <rect>: style has no property at \"fill\""},
+           {"<rect style=\"fil: red\"/>", "style has the property fil, which is not painted"},
+           {"<rect style=\"fill: var(--wall)\"/>", "fill has the function \"var\""},
+           {"<style>@media print { rect { fill: none } }</style>", "line 2: <style>: has the rule"},
+           {"<style>rect:hover { fill: none }</style>", "has the selector \"rect:hover\""},
+           {"<style media=\"print\"/>", "is no style sheet for every display"},
+           {"<g systemLanguage=\"de\"/>", "makes it show on some machines only"},
+           {"<pattern id=\"p\"/><rect fill=\"url(#p)\"/>", "<rect>: has a pattern"},
+           {"<g onclick=\"a()\"/>", "onclick runs a script"},
+           {"<rect width=\"40\" height=\"30\" rx=\"1\"/>", "more than 90 % of it is solid"},
+           {"<circle cx=\"90\" cy=\"5\" r=\"1\"/>", "shows nothing that is solid"},
+       })
+    expect_refused(
+        drawing(content + (words.find('%') == words.npos && content[1] != 'c' ? box : "")), words);
+  expect_refused("<!DOCTYPE svg [<!ENTITY a \"b\">]>" + drawing(box), "declares entities");
+  expect_refused("<?xml-stylesheet href=\"a.css\"?>" + drawing(box),
+                 "has its style in another file");
+  expect_refused(std::string("\xff\xfe<\0s\0", 6) + drawing(box), "is in UTF-16, not UTF-8");
+}
+
+TEST_F(OtherPeoplesFiles, TablesAreReadOrNamed) {
+  const std::string at = " origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 }";
+  const auto table = [&](const std::string& content) {
+    write("a.csv", content);
+    return "maps { file: \"a.csv\"" + at;
+  };
+  const Coefficients plain = mu(table("1,2\n3,4\n"));
+  EXPECT_EQ(mu(table("1, 2\r\n3, 4\r\n\r\n")), plain);
+  EXPECT_TRUE(has(problems(table("1;2\n3;4\n")), "line 1: semicolons separate the numbers"));
+  EXPECT_TRUE(has(problems(table("1,2,\n3,4,\n")), "every line ends in a comma"));
+  EXPECT_TRUE(has(problems(table("1,2, \n3,4,\t\r\n")), "every line ends in a comma"));
+  EXPECT_EQ(mu(table("1,\n3,4\n")), mu(table("1,0\n3,4\n")));
+  EXPECT_TRUE(has(problems(table("\xef\xbb\xbf"
+                                 "1,2\n3,4\n")),
+                  "begins with a byte order mark"));
+  EXPECT_TRUE(has(problems(table(std::string("\xff\xfe"
+                                             "1\0,\0",
+                                             6))),
+                  "is in UTF-16"));
+  const auto grid = [&](const std::string& content) {
+    write("a.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\n" + content);
+    return std::string("maps { file: \"a.asc\" }");
+  };
+  const Coefficients square = mu(grid("cellsize 50\n1 2\n"));
+  EXPECT_EQ(mu(grid("dx 50\ndy 50\n1 2\n")), square);
+  EXPECT_TRUE(has(problems(grid("dx 50\ndy 25\n1 2\n")), "its cells are not square"));
+  const Coefficients west = mu(grid("cellsize 50\n1 0\n"));
+  EXPECT_EQ(mu(grid("cellsize 50\nnodata_value 3.4028234663852886e+38\n1 3.40282347e+38\n")), west);
+}
+
+TEST_F(OtherPeoplesFiles, PlacesOnTheEarthAreReadOrNamed) {
+  const auto region = [&](const std::string& content) {
+    write("a.geojson", content);
+    return "regions { polygon { file: \"a.geojson\" } } } "
+           "origin { latitude_deg: 47.5 longitude_deg: 9.2";
+  };
+  const auto collection = [](const std::string& geometry, const std::string& more = "") {
+    return R"({"type":"FeatureCollection","features":[)" + more +
+           R"({"type":"Feature","properties":{},"geometry":)" + geometry + "}]}";
+  };
+  const std::string triangle =
+      R"({"type":"Polygon","coordinates":[[[9.2005,47.5001],[9.2009,47.5001],[9.2009,47.5003],)";
+  const std::string end = "[9.2005,47.5001]]]}";
+  const Coefficients plain = mu(region(collection(triangle + end)));
+  EXPECT_EQ(mu(region(collection(triangle + "[9.2009,47.5003]," + end))), plain);
+  EXPECT_EQ(mu(region(collection(triangle + end,
+                                 R"({"type":"Feature","properties":{},"geometry":null},)"))),
+            plain);
+  EXPECT_TRUE(has(problems(region("<?xml version=\"1.0\"?><kml/>")), "is XML such as KML"));
+}
+
+// Numbers outside the valid range, and those that no program wrote, are no part of the target.
+TEST_F(OtherPeoplesFiles, GridsHaveTheNumbersThatTheirAttributesMean) {
+  const auto of = [&](const WaterColumn& column) {
+    column.write(folder_.path() / "column.nc");
+    const Loaded loaded =
+        Scenario::parse(water_column_scenario(), (folder_.path() / "c.textproto").string());
+    return good(loaded).mission().target_coefficients;
+  };
+  const Coefficients plain = of({});
+  using Change = void (*)(WaterColumn&);
+  const auto land = [](WaterColumn& column, double value) {
+    auto& chl = column.at("chl");
+    chl.attributes.pop_back();  // _FillValue
+    for (double& one : chl.values) one = one == -999 ? value : one;
+  };
+  for (const auto& [attribute, value, stored] :
+       {std::tuple("valid_max", 9000.0, 9999.0), std::tuple("valid_min", -5.0, -6.0),
+        std::tuple("missing_value", 9999.0, 9999.0), std::tuple("", 0.0, -32767.0)}) {
+    WaterColumn column;
+    land(column, stored);
+    if (*attribute != '\0') column.at("chl").attributes.emplace_back(attribute, value);
+    EXPECT_EQ(of(column), plain) << attribute;
+  }
+  WaterColumn wrong;
+  land(wrong, 9999);
+  EXPECT_NE(of(wrong), plain);
+  for (const Change change : std::initializer_list<Change>{
+           [](WaterColumn& c) { c.at("depth").attributes[1].second = "Down"; },
+           [](WaterColumn& c) {
+             c.at("depth").attributes.erase(c.at("depth").attributes.begin() + 1);
+           },
+       }) {
+    WaterColumn column;
+    change(column);
+    EXPECT_EQ(of(column), plain);
+  }
+  WaterColumn shifted;  // 40000 is −25536 in 16 bits
+  auto& chl = shifted.at("chl");
+  chl.attributes = {
+      {"_Unsigned", "true"}, {"scale_factor", 0.01}, {"add_offset", -400.0}, {"_FillValue", -1.0}};
+  for (double& one : chl.values) one = one == -999 ? -1 : one + 40000 - 65536;
+  EXPECT_LE((of(shifted) - plain).cwiseAbs().maxCoeff(), 1e-9);
+  write("name.textproto", "name: \xe2\x80\x9cmine\xe2\x80\x9d\n");
+  const Loaded curly = Scenario::load(folder_.path() / "name.textproto");
+  ASSERT_FALSE(curly);
+  EXPECT_TRUE(has(joined(curly.error()), "a character outside of quotes is not ASCII"));
+}
+
+}  // namespace
+}  // namespace ergocast
