@@ -17,7 +17,7 @@ using namespace test;
 using Places = std::vector<Eigen::Vector2d>;
 
 /// A drawing of 40 × 30 units, which are metres. Its content begins on line 2.
-std::string drawing(const std::string& content, const std::string& more = "") {
+std::string page_of(const std::string& content, const std::string& more = "") {
   return R"(<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" )"
          R"(viewBox="0 0 40 30" )" +
          more + ">\n" + content + "\n</svg>";
@@ -125,7 +125,7 @@ TEST_F(OtherPeoplesFiles, BoxesAreWhereEveryProgramShowsThem) {
       "<g xmlns:i='http://www.inkscape.org/namespaces/inkscape' i:label='a'>" + box +
           "<i:grid/></g>",
   };
-  for (const std::string& content : contents) expect_walls(drawing(content), kBox, kAround);
+  for (const std::string& content : contents) expect_walls(page_of(content), kBox, kAround);
   const std::string dot = "<circle cx='15' cy='10' r='1'/>";
   expect_walls(
       "<s:svg xmlns:s='http://www.w3.org/2000/svg' viewBox='0 0 40 30'><s:rect x='10' y='5' "
@@ -134,7 +134,7 @@ TEST_F(OtherPeoplesFiles, BoxesAreWhereEveryProgramShowsThem) {
   for (const char* size :
        {"width='400' height='100'", "width='50%' preserveAspectRatio='xMinYMin slice'",
         "style='width:100%;height:auto'", "style='width:20px;height:300px'"})
-    expect_walls(drawing(box + dot, size), kBox, kAround);
+    expect_walls(page_of(box + dot, size), kBox, kAround);
 }
 
 TEST_F(OtherPeoplesFiles, ShapesAreWhereEveryProgramShowsThem) {
@@ -181,10 +181,10 @@ TEST_F(OtherPeoplesFiles, ShapesAreWhereEveryProgramShowsThem) {
             {{20, 12.5}, {22.5, 10}},
             {{20, 13.3}, {10, 12}}},
        })
-    expect_walls(drawing(one.content), one.solid, one.free);
-  expect_walls(drawing("<rect x='10' y='5' width='10' height='10' fill='white'/>"), kBox, kAround,
+    expect_walls(page_of(one.content), one.solid, one.free);
+  expect_walls(page_of("<rect x='10' y='5' width='10' height='10' fill='white'/>"), kBox, kAround,
                "solid_white: true");
-  expect_walls(drawing("<circle cx='15' cy='10' r='9' fill='white'/>"), kBox, {{30, 20}},
+  expect_walls(page_of("<circle cx='15' cy='10' r='9' fill='white'/>"), kBox, {{30, 20}},
                "solid_white: true");
 }
 
@@ -203,7 +203,7 @@ TEST_F(OtherPeoplesFiles, ThinWallsAreClosed) {
     for (const char* edges : {"auto", "crispEdges"}) {
       const std::string group = "<g shape-rendering=\"" + std::string(edges) + "\">" + circle;
       const auto solid_near = [&](const std::string& content, const Places& line) {
-        const Loaded loaded = walls_of(drawing(group + content + "</g>"), "");
+        const Loaded loaded = walls_of(page_of(group + content + "</g>"), "");
         ASSERT_TRUE(loaded) << content << joined(loaded.error());
         // The cell of 0.02 that has the wall in it is solid as a whole.
         int open = 0;
@@ -221,17 +221,17 @@ TEST_F(OtherPeoplesFiles, ThinWallsAreClosed) {
   }
   for (const char* width : {"0.01", "1e-4", "1e-9"}) {
     const std::string stroke = "stroke=\"#000\" stroke-width=\"" + std::string(width) + "\"/>";
-    expect_walls(drawing(circle + "<path d=\"M5 10.00013h20\" " + stroke), along_x, {{15, 11}});
-    expect_walls(drawing(circle + "<path d=\"M10.00013 5v20\" " + stroke), along_y, {{11, 15}});
-    expect_walls(drawing(circle + "<path d=\"M5 6l20 20\" " + stroke), across, {{15, 20}});
-    expect_walls(drawing("<style>.w{stroke:#000;stroke-width:" + std::string(width) +
+    expect_walls(page_of(circle + "<path d=\"M5 10.00013h20\" " + stroke), along_x, {{15, 11}});
+    expect_walls(page_of(circle + "<path d=\"M10.00013 5v20\" " + stroke), along_y, {{11, 15}});
+    expect_walls(page_of(circle + "<path d=\"M5 6l20 20\" " + stroke), across, {{15, 20}});
+    expect_walls(page_of("<style>.w{stroke:#000;stroke-width:" + std::string(width) +
                          "}</style><g transform=\"scale(.01)\"><path class=\"w\" "
                          "d=\"M1000.013 500v2000\"/></g>"),
                  along_y, {{11, 15}});
   }
-  expect_refused(drawing(circle + R"(<rect x="5" y="10" width="20" height="0.0001"/>)"),
+  expect_refused(page_of(circle + R"(<rect x="5" y="10" width="20" height="0.0001"/>)"),
                  "line 2: <rect>: is too thin to be painted");
-  expect_refused(drawing(R"(<path d="M5 6l20 20" stroke="#000" stroke-width="0"/>)"),
+  expect_refused(page_of(R"(<path d="M5 6l20 20" stroke="#000" stroke-width="0"/>)"),
                  "line 2: <path>: has a stroke without a width");
 }
 
@@ -265,11 +265,11 @@ TEST_F(OtherPeoplesFiles, DrawingsThatCouldLoseAWallAreRefused) {
            {"<circle cx=\"90\" cy=\"5\" r=\"1\"/>", "shows nothing that is solid"},
        })
     expect_refused(
-        drawing(content + (words.find('%') == words.npos && content[1] != 'c' ? box : "")), words);
-  expect_refused("<!DOCTYPE svg [<!ENTITY a \"b\">]>" + drawing(box), "declares entities");
-  expect_refused("<?xml-stylesheet href=\"a.css\"?>" + drawing(box),
+        page_of(content + (words.find('%') == words.npos && content[1] != 'c' ? box : "")), words);
+  expect_refused("<!DOCTYPE svg [<!ENTITY a \"b\">]>" + page_of(box), "declares entities");
+  expect_refused("<?xml-stylesheet href=\"a.css\"?>" + page_of(box),
                  "has its style in another file");
-  expect_refused(std::string("\xff\xfe<\0s\0", 6) + drawing(box), "is in UTF-16, not UTF-8");
+  expect_refused(std::string("\xff\xfe<\0s\0", 6) + page_of(box), "is in UTF-16, not UTF-8");
 }
 
 TEST_F(OtherPeoplesFiles, TablesAreReadOrNamed) {
