@@ -2,6 +2,7 @@
 // Walks the elements of a parsed drawing with their transforms; the first problem ends the walk.
 #include "target/geo/svg.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -23,6 +24,8 @@ namespace {
 constexpr int kDeepest = 64;
 /// The side of a page over the width of a polygon that may be too thin to be painted.
 constexpr double kThinnest = 1 << 17;
+/// The same for a stroke: a quarter of a pixel. Cairo leaves out those below a fifth.
+constexpr double kThinnestStroke = 1 << 14;
 /// A tag of three bytes takes sixty in memory.
 /// Limit (Files of a scenario): tags in a drawing. Beyond it: the scenario is refused.
 constexpr std::size_t kMostTags = 1'000'000;
@@ -56,11 +59,12 @@ const Names kLengths = {"x",  "y",  "width", "height", "rx", "ry", "r",
                         "cx", "cy", "x1",    "y1",     "x2", "y2"};
 const Names kTransforms = {"transform", "gradientTransform", "patternTransform"};
 
-bool is_zero_length(std::string_view text) {
+/// Infinite if it is unknown.
+double length_of(std::string_view text) {
   try {
-    return svg_length(text) == 0.0;
+    return svg_length(text).value_or(HUGE_VAL);
   } catch (const SvgSyntaxError&) {
-    return false;
+    return HUGE_VAL;
   }
 }
 
@@ -292,7 +296,7 @@ class SvgWalk {
     own.hidden = own.hidden || (!sheets_ && properties["display"] == "none");
     own.to_drawing = outer.to_drawing * in(node, "transform", svg_transform);
     inherit(node, own, properties);
-    check_stroke(node, own.properties);
+    if (kShapes.contains(name)) check_stroke(node, own);
     if (kShapes.contains(name)) shape(node, name, own);
     children(node, own, depth + 1);
   }
@@ -357,10 +361,12 @@ class SvgWalk {
     try {
       for_svg_rules(text, [&](const SvgProperties& rule) {
         paint(node, "sets properties of shapes");
-        check_stroke(node, {rule.begin(), rule.end()});
-        for (const auto& [property, value] : rule)
+        for (const auto& [property, value] : rule) {
+          if (property == "stroke-width")
+            least_sheet_width_ = std::min(least_sheet_width_, length_of(value));
           check_svg_value(property, value,
                           [&](std::string id) { refer(node, Inherited{}, std::move(id)); });
+        }
       });
     } catch (const SvgSyntaxError& error) {
       fail(node, error.what(), error.remedy);
@@ -444,13 +450,18 @@ class SvgWalk {
         paint(node, "has its place in its style");
   }
 
-  /// Painting gives every stroke some width.
-  void check_stroke(const pugi::xml_node& node,
-                    const std::map<std::string, std::string>& properties) const {
-    const auto stroke = properties.find("stroke"), width = properties.find("stroke-width");
-    const bool stroked = stroke != properties.end() && stroke->second != "none";
-    if (stroked && width != properties.end() && is_zero_length(width->second))
-      fail(node, "has a stroke without a width", "write a width above 0, or stroke: none");
+  /// Sheets may set any of their widths.
+  void check_stroke(const pugi::xml_node& node, const Inherited& own) {
+    const auto stroke = own.properties.find("stroke"), width = own.properties.find("stroke-width");
+    const bool stroked = stroke != own.properties.end() && stroke->second != "none";
+    if ((!stroked && !sheets_) || own.hidden) return;
+    double least = width == own.properties.end() ? 1 : length_of(width->second);
+    if (sheets_) least = std::min(least, least_sheet_width_);
+    const Eigen::Matrix2d scale = own.to_drawing.linear();
+    least *= scale.jacobiSvd().singularValues().minCoeff();
+    if (least < size_.maxCoeff() / kThinnestStroke && !thin_problem_)
+      thin_problem_ = {place_of(node), "has a stroke too thin to be painted",
+                       "write a greater stroke-width, or stroke: none"};
   }
 
   void shape(const pugi::xml_node& node, const std::string& name, const Inherited& own) {
@@ -552,6 +563,7 @@ class SvgWalk {
   const bool solid_white_;
   // The elements come in the order of the text: what was counted before is not counted again.
   mutable std::size_t counted_ = 0, breaks_ = 0;
+  double least_sheet_width_ = HUGE_VAL;
   Eigen::Vector2d begin_{0, 0}, size_{0, 0};                           // of the viewBox
   std::vector<std::pair<std::string_view, std::string_view>> spaces_;  // prefix, address
   bool sheets_ = false, even_odd_ = false, stroked_ = false;

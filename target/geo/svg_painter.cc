@@ -31,9 +31,6 @@ constexpr std::size_t kMostPaintBytes = std::size_t{1} << 30;
 /// Limit (Files of a scenario): processor time for painting a drawing [s]. Beyond it: the scenario
 /// is refused.
 constexpr unsigned kMostPaintSeconds = 120;
-/// Every stroke is as wide as a cell at least.
-constexpr char kStrokes[] =
-    "* { stroke-width: 2px !important; vector-effect: non-scaling-stroke !important }";
 
 /// The functions with the names and types of rsvg.h and cairo.h.
 struct RsvgLibrary {
@@ -51,8 +48,6 @@ struct RsvgLibrary {
   };
   void* (*rsvg_handle_new_from_data)(const unsigned char* data, std::size_t length, Error** error);
   void (*rsvg_handle_set_dpi)(void* handle, double dpi);
-  int (*rsvg_handle_set_stylesheet)(void* handle, const unsigned char* css, std::size_t length,
-                                    Error** error);
   int (*rsvg_handle_render_document)(void* handle, void* cairo, const Box* viewport, Error** error);
   void* (*cairo_image_surface_create)(int format, int width, int height);
   void* (*cairo_create)(void* surface);
@@ -72,7 +67,6 @@ struct RsvgLibrary {
     };
     return find(rsvg_handle_new_from_data, "rsvg_handle_new_from_data") &&
            find(rsvg_handle_set_dpi, "rsvg_handle_set_dpi") &&
-           find(rsvg_handle_set_stylesheet, "rsvg_handle_set_stylesheet") &&
            find(cairo_transform, "cairo_transform") && find(cairo_destroy, "cairo_destroy") &&
            find(cairo_surface_destroy, "cairo_surface_destroy") &&
            find(rsvg_handle_render_document, "rsvg_handle_render_document") &&
@@ -112,8 +106,8 @@ void note(Shared& shared, Outcome outcome, const char* message = "") {
   shared.outcome = outcome;
 }
 
-/// Paints a drawing as it is written, then with rows and columns exchanged and strokes of some
-/// width: edges are sampled more coarsely along one of the two.
+/// Paints a drawing as it is written, and with rows and columns exchanged: what is thinner than a
+/// fifteenth of a pixel can fall between the samples along one of the two.
 class Painter {
  public:
   Painter(const Paint& paint, Shared& shared, std::uint8_t* cells)
@@ -124,7 +118,7 @@ class Painter {
     const auto* const svg = reinterpret_cast<const unsigned char*>(paint_.svg.data());
     handle_ = rsvg_.rsvg_handle_new_from_data(svg, paint_.svg.size(), &error_);
     if (handle_ != nullptr) rsvg_.rsvg_handle_set_dpi(handle_, 96);
-    if (handle_ == nullptr || !paint_once(false) || !widen_strokes() || !paint_once(true)) {
+    if (handle_ == nullptr || !paint_once(false) || !paint_once(true)) {
       return note(shared_, Outcome::kError,
                   error_ != nullptr ? error_->message : "it cannot be painted");
     }
@@ -132,12 +126,6 @@ class Painter {
   }
 
  private:
-  bool widen_strokes() {
-    return rsvg_.rsvg_handle_set_stylesheet(handle_,
-                                            reinterpret_cast<const unsigned char*>(kStrokes),
-                                            sizeof kStrokes - 1, &error_) != 0;
-  }
-
   bool paint_once(bool turned) {
     constexpr int kArgb32 = 0;
     constexpr RsvgLibrary::Matrix kExchange{0, 1, 1, 0, 0, 0};

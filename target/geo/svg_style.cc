@@ -185,6 +185,8 @@ void check_svg_value(std::string_view name, std::string_view value,
   if (name == "filter" && trim(value) != "none")
     reject("has a filter, which is not painted",
            "remove it: in Inkscape, Filters > Remove Filters");
+  if (name == "vector-effect" && trim(value) != "none")
+    reject("has a vector-effect, which is not painted", "write a stroke-width in its own units");
   for (std::size_t open = value.find('('); open != value.npos; open = value.find('(', open + 1)) {
     std::size_t begin = open;
     while (begin > 0 && is_name(value.substr(begin - 1, 1))) --begin;
