@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "target/geo/svg_painter.h"
 #include "target/geo/svg_style.h"
 #include "target/geo/svg_syntax.h"
 
@@ -22,10 +23,9 @@ namespace {
 /// Limit (Files of a scenario): levels of nested tags in a drawing. Beyond it: the scenario is
 /// refused.
 constexpr int kDeepest = 64;
-/// The side of a page over the width of a polygon that may be too thin to be painted.
-constexpr double kThinnest = 1 << 17;
-/// The same for a stroke: a quarter of a pixel. Cairo leaves out those below a fifth.
-constexpr double kThinnestStroke = 1 << 14;
+/// The longer side of a page over the width of what is painted surely: half a cell. Cairo leaves
+/// out strokes below a fifth, and on a white page, less paint does not make a cell dark.
+constexpr double kThinnest = 2 * kPaintedCells;
 /// A tag of three bytes takes sixty in memory.
 /// Limit (Files of a scenario): tags in a drawing. Beyond it: the scenario is refused.
 constexpr std::size_t kMostTags = 1'000'000;
@@ -459,7 +459,7 @@ class SvgWalk {
     if (sheets_) least = std::min(least, least_sheet_width_);
     const Eigen::Matrix2d scale = own.to_drawing.linear();
     least *= scale.jacobiSvd().singularValues().minCoeff();
-    if (least < size_.maxCoeff() / kThinnestStroke && !thin_problem_)
+    if (least < size_.maxCoeff() / kThinnest && !thin_problem_)
       thin_problem_ = {place_of(node), "has a stroke too thin to be painted",
                        "write a greater stroke-width, or stroke: none"};
   }
@@ -535,7 +535,8 @@ class SvgWalk {
     }
     const double width = 2 * std::abs(area) / length, page = size_.maxCoeff();
     if (stroked_ || !(width > 1e-9 * page) || width > page / kThinnest || thin_problem_) return;
-    thin_problem_ = PolygonFileProblem{place_of(node), "is too thin to be painted", "widen it"};
+    thin_problem_ =
+        PolygonFileProblem{place_of(node), "is too thin to be painted", "widen or delete it"};
   }
 
   /// Merges corners that the transform puts at one place, and a last corner that closes the ring.

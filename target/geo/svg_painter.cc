@@ -1,36 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The child paints into memory that it shares with its parent, and ends.
+// The child answers with one byte for each cell, or with a letter and a message.
 #include "target/geo/svg_painter.h"
 
 #include <dlfcn.h>
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
-#include <cstdio>
+#include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <utility>
+#include <vector>
 
+#include "target/geo/bounded_child.h"
 #include "target/geo/svg_luminance.h"
 #include "target/maps/symbol.h"
 
 namespace ergocast {
 namespace {
-
-constexpr int kPixelsPerCell = 2;
-/// Limit (Files of a scenario): memory for painting a drawing [bytes]. Beyond it: the scenario is
-/// refused.
-constexpr std::size_t kMostPaintBytes = std::size_t{1} << 30;
-/// Limit (Files of a scenario): processor time for painting a drawing [s]. Beyond it: the scenario
-/// is refused.
-constexpr unsigned kMostPaintSeconds = 120;
 
 /// The functions with the names and types of rsvg.h and cairo.h.
 struct RsvgLibrary {
@@ -78,58 +64,52 @@ struct RsvgLibrary {
   }
 };
 
-enum class Outcome : int { kNone, kNoLibrary, kError, kPainted };
-
-/// What the child writes for its parent; the cells follow it.
-struct Shared {
-  Outcome outcome;
-  std::array<char, 200> message;
-};
+/// The first byte of the child's answer.
+enum class Outcome : char { kNoLibrary, kError, kPainted };
 
 struct Paint {
   const std::string& svg;
-  int columns, rows;     // cells
-  double width, height;  // pixels
+  int columns, rows;     // cells, which are pixels
+  double width, height;  // of the page, in pixels
   bool solid_white;
 };
 
-bool is_solid(const unsigned char* pixel, bool solid_white) {
-  const int opacity = pixel[3];  // blue, green, red, each times opacity
-  if (opacity == 0) return false;
-  const double whole = opacity;
-  return solid_white ||
-         luminance(pixel[2] / whole, pixel[1] / whole, pixel[0] / whole) < kSolidLuminance;
+/// @param pixel  opacity, red, green, blue, from the highest byte; the others times opacity
+bool is_solid(std::uint32_t pixel, bool solid_white) {
+  const std::uint32_t opacity = pixel >> 24;
+  if (opacity == 0 || pixel == 0xffffffff) return solid_white && opacity > 0;
+  const auto part = [&](unsigned shift) {
+    return (pixel >> shift & 255) / static_cast<double>(opacity);
+  };
+  return solid_white || luminance(part(16), part(8), part(0)) < kSolidLuminance;
 }
 
-void note(Shared& shared, Outcome outcome, const char* message = "") {
-  std::snprintf(shared.message.data(), shared.message.size(), "%s", message);
-  shared.outcome = outcome;
+std::string answer(Outcome outcome, const std::string& rest) {
+  return static_cast<char>(outcome) + rest;
 }
 
 /// Paints a drawing as it is written, and with rows and columns exchanged: what is thinner than a
 /// fifteenth of a pixel can fall between the samples along one of the two.
 class Painter {
  public:
-  Painter(const Paint& paint, Shared& shared, std::uint8_t* cells)
-      : paint_(paint), shared_(shared), cells_(cells) {}
+  explicit Painter(const Paint& paint)
+      : paint_(paint), cells_(static_cast<std::size_t>(paint.columns * paint.rows), '\0') {}
 
-  void paint() {
-    if (!rsvg_.load()) return note(shared_, Outcome::kNoLibrary);
+  std::string paint() {
+    if (!rsvg_.load()) return answer(Outcome::kNoLibrary, "");
     const auto* const svg = reinterpret_cast<const unsigned char*>(paint_.svg.data());
     handle_ = rsvg_.rsvg_handle_new_from_data(svg, paint_.svg.size(), &error_);
     if (handle_ != nullptr) rsvg_.rsvg_handle_set_dpi(handle_, 96);
-    if (handle_ == nullptr || !paint_once(false) || !paint_once(true)) {
-      return note(shared_, Outcome::kError,
-                  error_ != nullptr ? error_->message : "it cannot be painted");
-    }
-    note(shared_, Outcome::kPainted);
+    if (handle_ == nullptr || !paint_once(false) || !paint_once(true))
+      return answer(Outcome::kError, error_ != nullptr ? error_->message : "it cannot be painted");
+    return answer(Outcome::kPainted, cells_);
   }
 
  private:
   bool paint_once(bool turned) {
     constexpr int kArgb32 = 0;
     constexpr RsvgLibrary::Matrix kExchange{0, 1, 1, 0, 0, 0};
-    int width = paint_.columns * kPixelsPerCell, height = paint_.rows * kPixelsPerCell;
+    int width = paint_.columns, height = paint_.rows;
     if (turned) std::swap(width, height);
     void* const surface = rsvg_.cairo_image_surface_create(kArgb32, width, height);
     void* const cairo = rsvg_.cairo_create(surface);
@@ -140,11 +120,12 @@ class Painter {
     rsvg_.cairo_surface_flush(surface);
     const unsigned char* const pixels = rsvg_.cairo_image_surface_get_data(surface);
     const std::ptrdiff_t stride = rsvg_.cairo_image_surface_get_stride(surface);
-    if (done && pixels != nullptr) {
-      for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-          if (is_solid(pixels + stride * y + 4 * std::ptrdiff_t{x}, paint_.solid_white))
-            turned ? mark(y, x) : mark(x, y);
+    std::vector<std::uint32_t> row(static_cast<std::size_t>(width));
+    for (int y = 0; done && pixels != nullptr && y < height; ++y) {
+      std::memcpy(row.data(), pixels + stride * y, 4 * row.size());
+      for (int x = 0; x < width; ++x)
+        if (is_solid(row[static_cast<std::size_t>(x)], paint_.solid_white))
+          turned ? mark(y, x) : mark(x, y);
     }
     rsvg_.cairo_destroy(cairo);
     rsvg_.cairo_surface_destroy(surface);
@@ -153,62 +134,14 @@ class Painter {
 
   /// A pixel, from the upper left corner.
   void mark(int x, int y) {
-    const std::ptrdiff_t row = paint_.rows - 1 - y / kPixelsPerCell;
-    cells_[row * paint_.columns + x / kPixelsPerCell] = 1;
+    cells_[static_cast<std::size_t>((paint_.rows - 1 - y) * paint_.columns + x)] = 1;
   }
 
   const Paint& paint_;
-  Shared& shared_;
-  std::uint8_t* cells_;
+  std::string cells_;
   RsvgLibrary rsvg_{};
   RsvgLibrary::Error* error_ = nullptr;
   void* handle_ = nullptr;
-};
-
-void bound(int resource, rlim_t most) {
-  const rlimit limit{most, most};
-  setrlimit(static_cast<__rlimit_resource>(resource), &limit);
-}
-
-/// Sanitizers need more memory than there is.
-void bound_memory() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  std::ifstream pages("/proc/self/statm");
-  std::size_t now = 0;
-  pages >> now;
-  bound(RLIMIT_AS, now * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + kMostPaintBytes);
-#endif
-}
-
-[[noreturn]] void become_painter(const Paint& paint, Shared& shared, std::uint8_t* cells) {
-  for (const int signal : {SIGABRT, SIGSEGV, SIGXCPU, SIGALRM, SIGINT, SIGTERM, SIGTRAP})
-    std::signal(signal, SIG_DFL);
-  std::freopen("/dev/null", "w", stdout);
-  std::freopen("/dev/null", "w", stderr);
-  bound(RLIMIT_CORE, 0);
-  bound(RLIMIT_CPU, kMostPaintSeconds);
-  alarm(10 * kMostPaintSeconds);
-  bound_memory();
-  Painter(paint, shared, cells).paint();
-  _exit(0);
-}
-
-/// Memory that a child writes and its parent reads.
-class SharedMemory {
- public:
-  explicit SharedMemory(std::size_t bytes)
-      : bytes_(bytes),
-        at_(mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {}
-  ~SharedMemory() {
-    if (at_ != MAP_FAILED) munmap(at_, bytes_);
-  }
-  SharedMemory(const SharedMemory&) = delete;
-  SharedMemory& operator=(const SharedMemory&) = delete;
-  void* at() const { return at_ == MAP_FAILED ? nullptr : at_; }
-
- private:
-  std::size_t bytes_;
-  void* at_;
 };
 
 tl::unexpected<PolygonFileProblem> refuse(std::string what, std::string remedy) {
@@ -224,32 +157,23 @@ Result<PaintedDrawing, PolygonFileProblem> paint_svg(const std::string& svg,
   const auto count = [&](double length) {
     return std::clamp(static_cast<int>(std::ceil(length / cell - 1e-6)), 1, kPaintedCells);
   };
-  const double pixel = cell / kPixelsPerCell;
-  const Paint paint{
-      svg, count(size.x()), count(size.y()), size.x() / pixel, size.y() / pixel, solid_white};
+  const Paint paint{svg,        count(size.x()), count(size.y()), size.x() / cell, size.y() / cell,
+                    solid_white};
   PaintedDrawing painted{CellGrid(paint.columns, paint.rows), cell};
-  const SharedMemory memory(sizeof(Shared) + painted.solid.size());
-  if (memory.at() == nullptr) return refuse("cannot be painted: no memory", "try again");
-  auto& shared = *new (memory.at()) Shared{};
-  auto* const cells = static_cast<std::uint8_t*>(memory.at()) + sizeof(Shared);
-  const pid_t child = fork();
-  if (child == 0) become_painter(paint, shared, cells);
-  int status = 0;
-  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  switch (child < 0 ? Outcome::kNone : shared.outcome) {
+  const auto told = in_bounded_child(std::size_t{1} << 23, [&] { return Painter(paint).paint(); });
+  if (!told || told->empty())
+    return refuse("librsvg cannot paint it within 20 s of processor time and 768 MiB",
+                  "delete or hide all but the walls: in Inkscape, by layers");
+  const std::string rest = told->substr(1);
+  switch (static_cast<Outcome>(told->front())) {
     case Outcome::kNoLibrary:
       return refuse("needs librsvg, which this machine does not have", "apt install librsvg2-2");
     case Outcome::kError:
-      return refuse(std::string("librsvg: ") + shared.message.data(),
-                    "save the drawing anew as plain SVG");
-    case Outcome::kNone:
-      return refuse("cannot be painted with 1 GiB and 120 s of processor time",
-                    "leave out all but the walls");
+      return refuse("librsvg: " + rest.substr(0, 200), "save the drawing anew as plain SVG");
     case Outcome::kPainted:
       break;
   }
-  for (std::size_t i = 0; i < painted.solid.size(); ++i) painted.solid[i] = cells[i] != 0;
+  for (std::size_t i = 0; i < painted.solid.size(); ++i) painted.solid[i] = rest[i] != 0;
   return painted;
 }
 

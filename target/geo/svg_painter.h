@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Has librsvg paint a drawing, and says which cells are solid.
 //
-// It is loaded when a drawing needs it, in a child process with bounded memory and time: a drawing
-// from a stranger can ask for any amount of both.
+// It is loaded when a drawing needs it, in a bounded child process.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +13,7 @@
 
 namespace ergocast {
 
-/// Cells along the longer side of a painted drawing. Each is painted as 2 × 2 pixels.
+/// Cells along the longer side of a painted drawing.
 /// Limit (Files of a scenario): cells along the longer side of a drawing that is painted. Finer
 /// details are not seen.
 inline constexpr int kPaintedCells = 2048;

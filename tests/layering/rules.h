@@ -80,7 +80,8 @@ inline const std::vector<Rule> kRules = {
     {"target/maps/netcdf_library.cc", {"target/maps"}, {kLoader}},
     // Places on the earth, and drawings: for scenarios and exports, not for participants.
     {"target/geo", {"text", "core", "target/contour"}, {kEarth, kFiles, kJson, kXml}},
-    {"target/geo/svg_painter.cc", {"target/geo", "target/maps"}, {kLoader, kFiles, kSystem}},
+    {"target/geo/bounded_child.cc", {"target/geo"}, {kFiles, kSystem}},
+    {"target/geo/svg_painter.cc", {"target/geo", "target/maps"}, {kLoader}},
     {"scenario/parse", {"text", "core", "plan", "target"}, {kProtobuf, kCommandLine, kFiles}},
     {"scenario/rules",
      {"text", "core", "plan", "target", "target/maps", "target/geo", "scenario/parse"},

@@ -184,46 +184,39 @@ TEST_F(OtherPeoplesFiles, ShapesAreWhereEveryProgramShowsThem) {
                "solid_white: true");
 }
 
-// However thin; the circle has the drawing painted.
+// However thin, on a page with and without paper; the circle has the drawing painted.
 TEST_F(OtherPeoplesFiles, ThinWallsAreClosed) {
   const std::string circle = R"(<circle cx="35" cy="25" r="1"/>)";
-  Places along_x, along_y, across, across_fill;
+  const std::string paper = R"(<rect width="40" height="30" fill="#fff"/>)";
+  Places solid, wedge;
   for (int i = 0; i <= 997; ++i) {
     const double at = 5.01 + 19.98 * i / 997.0;
-    along_x.emplace_back(at, 10.00013);
-    along_y.emplace_back(10.00013, at);
-    across.emplace_back(at, at + 1);
-    if (i > 100) across_fill.push_back(across.back());  // a wedge
+    solid.emplace_back(at, 10.00013);
+    solid.emplace_back(10.00013, at);
+    solid.emplace_back(at, at + 1);
+    if (i < 300) wedge.push_back(solid.back());
   }
-  for (const char* width : {"0.01", "0.0004"}) {
-    const std::string w(width);
-    for (const char* edges : {"auto", "crispEdges"}) {
-      const std::string group = "<g shape-rendering=\"" + std::string(edges) + "\">" + circle;
-      const auto solid_near = [&](const std::string& content, const Places& line) {
-        const Loaded loaded = walls_of(page_of(group + content + "</g>"), "");
-        ASSERT_TRUE(loaded) << content << joined(loaded.error());
-        // The cell of 0.02 that has the wall in it is solid as a whole.
-        int open = 0;
-        for (const auto& at : line)
-          open += solid_at(loaded->mission().walls, {at.x(), 30 - at.y()}) ? 0 : 1;
-        EXPECT_EQ(open, 0) << content << ' ' << edges;
-        EXPECT_FALSE(solid_at(loaded->mission().walls, {20, 5})) << content;
-      };
-      solid_near("<rect x=\"5\" y=\"10\" width=\"20\" height=\"" + w + "\"/>", along_x);
-      solid_near("<rect y=\"5\" x=\"10\" height=\"20\" width=\"" + w + "\"/>", along_y);
-      if (w == "0.01") solid_near("<path d=\"M5 6L25 26l" + w + " 0L5 6z\"/>", across_fill);
-    }
+  const auto with_wedge = [&](const std::string& edges, const std::string& page) {
+    return page_of("<g shape-rendering='" + edges + "'>" + page + circle +
+                   "<rect x='5' y='10' width='20' height='.01'/>"
+                   "<rect y='5' x='10' height='20' width='.01'/>"
+                   "<path d='M4.98 6L25 26v.04z'/></g>");
+  };
+  Places filled = solid;
+  std::erase_if(filled, [&](const Eigen::Vector2d& at) {
+    return std::ranges::find(wedge, at) != wedge.end();
+  });
+  for (const std::string& page : {std::string(), paper}) {
+    expect_walls(with_wedge("auto", page), filled, {{20, 5}});
+    const std::string lines = " d='M5 10.00013h20M10.00013 5v20M5 6l20 20'/>";
+    expect_walls(page_of(page + "<path fill='none' stroke='#f00' stroke-width='.01'" + lines),
+                 solid, {{15, 11}, {15, 20}});
+    expect_walls(page_of("<style>.w{fill:none;stroke:#000;stroke-width:.01}</style>" + page +
+                         "<path transform='translate(5)' class='w' "
+                         "d='M0 10.00013h20M5.00013 5v20M0 6l20 20'/>"),
+                 solid, {{15, 11}});
   }
-  for (const char* width : {"0.01", "0.003"}) {
-    const std::string stroke = "stroke=\"#000\" stroke-width=\"" + std::string(width) + "\"/>";
-    expect_walls(page_of(circle + "<path d=\"M5 10.00013h20\" " + stroke), along_x, {{15, 11}});
-    expect_walls(page_of(circle + "<path d=\"M10.00013 5v20\" " + stroke), along_y, {{11, 15}});
-    expect_walls(page_of(circle + "<path d=\"M5 6l20 20\" " + stroke), across, {{15, 20}});
-    expect_walls(page_of("<style>.w{stroke:#000;stroke-width:" + std::string(width) +
-                         "}</style><g transform=\"scale(2)\"><path class=\"w\" "
-                         "d=\"M5.000065 2.5v10\"/></g>"),
-                 along_y, {{11, 15}});
-  }
+  expect_walls(with_wedge("crispEdges", ""), filled, {{20, 5}});
   expect_refused(page_of(circle + R"(<rect x="5" y="10" width="20" height="0.0001"/>)"),
                  "line 2: <rect>: is too thin to be painted");
   for (const char* thin : {

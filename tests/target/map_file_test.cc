@@ -154,7 +154,7 @@ TEST_F(Maps, CsvThatIsNoneIsRefusedWithItsLine) {
   expect_said(written("a.csv", "1,2e30\n"), ", line 1: 2e30 is above the limit 1e30");
   expect_said(written("a.csv", "1,1e999\n"), ", line 1: 1e999 is not a number");
   expect_said(written("a.csv", "x,y\n1,2\n"), ", line 1: x is not a number (write numbers only");
-  expect_said(written("a.csv", "1;2\n"), ", line 1: 1;2 is not a number");
+  expect_said(written("a.csv", "1;2\n"), ", line 1: semicolons separate the numbers");
   expect_said(written("a.csv", ""), " is empty");
   expect_said(written("a.csv", "\n \n"), " has 0 columns and 0 rows");
   expect_said(written("a.csv", std::string(99999, ',')), " has 100000 columns and 1 rows");
