@@ -47,8 +47,8 @@ bool write_all(int out, const std::string& answer) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGABRT, SIGSEGV, SIGXCPU, SIGALRM, SIGINT, SIGTERM, SIGTRAP, SIGPIPE})
     std::signal(signal, SIG_DFL);
-  std::freopen("/dev/null", "w", stdout);
-  std::freopen("/dev/null", "w", stderr);
+  for (std::FILE* const stream : {stdout, stderr})
+    if (std::freopen("/dev/null", "w", stream) == nullptr) _exit(1);
   bound(RLIMIT_CORE, 0);
   bound(RLIMIT_CPU, kMostChildSeconds);
   alarm(10 * kMostChildSeconds);

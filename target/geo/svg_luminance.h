@@ -7,7 +7,7 @@ namespace ergocast {
 /// Colours that are darker are solid: yellow is, a page in white or ivory is not.
 inline constexpr double kSolidLuminance = 0.95;
 
-/// Of a colour with parts from 0 to 1 (ITU-R BT.709, of the stored parts).
+/// ITU-R BT.709, of the stored parts, which are from 0 to 1.
 inline double luminance(double red, double green, double blue) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 }

@@ -13,9 +13,9 @@
 
 namespace ergocast {
 
-/// Cells along the longer side of a painted drawing.
-/// Limit (Files of a scenario): cells along the longer side of a drawing that is painted. Finer
-/// details are not seen.
+/// Finer details are not seen.
+/// Limit (Files of a scenario): cells along the longer side of a drawing that is painted. Beyond
+/// it: walls are widened to whole cells.
 inline constexpr int kPaintedCells = 2048;
 
 /// Cells of one side, row by row from the drawing's lower left corner; the lowest may be cut.
