@@ -40,12 +40,6 @@ constexpr double kFarthest = 10;
 
 std::string field(const std::string& name) { return std::string(kPath) + "." + name; }
 
-bool is_geojson(const fs::path& file) {
-  const std::string end = file.extension().string();
-  return end == ".geojson" || end == ".json";
-}
-bool is_drawing(const fs::path& file) { return is_geojson(file) || file.extension() == ".svg"; }
-
 /// Whether the text has any field of a scenario, which may have mistakes.
 bool is_scenario(const std::string& text) {
   proto::Scenario scenario;
@@ -63,7 +57,8 @@ std::optional<FileProblem> why_no_polygon(const std::string& text) {
   if (is_scenario(text))
     return is("is a scenario, and a zone is one polygon", "write only " + kCorners);
   if (text.find("x_m") == text.npos && text.find("file") == text.npos)
-    return is("is no polygon", "name GeoJSON (.geojson), a drawing (.svg) or a text: " + kCorners);
+    return is("is no polygon",
+              "name GeoJSON (.geojson), KML (.kml), a drawing (.svg) or a text: " + kCorners);
   return std::nullopt;
 }
 
@@ -85,7 +80,7 @@ Problems as_in_file(Problems problems, const fs::path& file) {
       replace_all(*text, kBlock, "");
       replace_all(*text, " in Polygon", "");
     }
-    if (is_drawing(file) && problem.where == file.string() + ": file") {
+    if (is_polygon_file(file) && problem.where == file.string() + ": file") {
       problem.where = file.string();
       replace_all(problem.what, whole_name, "");
     }
@@ -100,7 +95,7 @@ Problems as_in_file(Problems problems, const fs::path& file) {
 /// Fills in the keep-out; false if the file cannot be read, which is then reported.
 bool read_polygon(const fs::path& file, proto::Scenario& scenario, Findings& findings) {
   std::error_code ignored;
-  if (is_drawing(file) && fs::file_size(file, ignored) != 0) {
+  if (is_polygon_file(file) && fs::file_size(file, ignored) != 0) {
     scenario.mutable_target()->add_keep_outs()->set_file(file.filename().string());
     return true;
   }
@@ -195,7 +190,7 @@ Zone zone_of(const proto::Polygon& polygon, const Box& domain) {
 }  // namespace
 
 bool looks_like_zone(const fs::path& file) {
-  if (is_drawing(file)) return false;  // such a file may also be a target
+  if (is_polygon_file(file)) return false;  // such a file may also be a target
   const auto text = read_whole(file, kMaxScenarioBytes);
   if (!text) return false;
   Findings findings(file.string());
@@ -214,7 +209,7 @@ Result<Zone, Problems> load_zone(const fs::path& file, const std::string& runnin
   if (!read_polygon(file, scenario, findings) || !findings.empty()) return problems();
   Checks checks(findings);
   place_in(mission, scenario, checks);
-  if (is_geojson(file) && !scenario.has_origin()) {
+  if (is_geodata(file) && !scenario.has_origin()) {
     findings.add_to_file(
         "needs the origin of the mission's scenario, which has none, or is not on this host",
         "write the corners in metres in a text: " + kCorners);

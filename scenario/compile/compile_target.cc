@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenario/parse/convert.h"
+#include "target/geo/gdal_files.h"
 #include "target/maps/map_file.h"
 #include "target/maps/netcdf_grid.h"
 #include "target/raster_integral.h"
@@ -49,6 +50,7 @@ class TargetCompiler {
  public:
   TargetCompiler(const proto::Scenario& scenario, Checks& checks)
       : written_(scenario.target()),
+        origin_{scenario.origin().latitude_deg(), scenario.origin().longitude_deg()},
         checks_(checks),
         domain_(domain_of(scenario.domain())),
         base_m_(domain_.size_m.head<2>()),
@@ -89,7 +91,9 @@ class TargetCompiler {
 
   void map(const proto::Map& map, const std::string& path) {
     const std::string field = path + ".file";
-    OpenedMap opened = open_map(map.file());
+    OpenedMap opened = map_kind(map.file()) == MapKind::kGeoTiff
+                           ? open_geotiff(map.file(), origin_, domain_)
+                           : open_map(map.file());
     if (!opened) return checks_.problem(field, opened.error().what, opened.error().remedy);
     MapFile& file = **opened;
     const Rectangle extent = file.extent() ? *file.extent() : extent_of(map);
@@ -238,6 +242,7 @@ class TargetCompiler {
   }
 
   const proto::Target& written_;
+  const GeoPlace origin_;
   Checks& checks_;
   const Box domain_;
   const Eigen::Vector2d base_m_;

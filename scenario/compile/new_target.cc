@@ -48,7 +48,7 @@ void add_map(const std::string& name, MapKind kind, const proto::Domain& domain,
   proto::Map& map = *target.add_maps();
   map.set_file(name);
   map.set_weight(1);
-  if (kind == MapKind::kAsciiGrid || kind == MapKind::kOccupancy) return;
+  if (states_extent(kind)) return;
   map.set_origin_x_m(domain.origin_x_m());
   map.set_origin_y_m(domain.origin_y_m());
   map.set_size_x_m(domain.size_x_m());
@@ -64,7 +64,7 @@ bool read_target_file(const std::string& file, const proto::Domain& domain,
   proto::Target& target = *scenario.mutable_target();
   if (const auto kind = map_kind(file)) {
     add_map(name, *kind, domain, target);
-  } else if (end == ".geojson" || end == ".json" || end == ".svg") {
+  } else if (is_polygon_file(file)) {
     proto::Region& region = *target.add_regions();
     region.set_weight(1);
     region.mutable_polygon()->set_file(name);
@@ -72,9 +72,6 @@ bool read_target_file(const std::string& file, const proto::Domain& domain,
     findings.add_to_file("a NetCDF file may have several variables",
                          "name one in a scenario's text: target { voxels { file: \"" + name +
                              "\" variable: \"…\" weight: 1 } }");
-  } else if (end == ".tif" || end == ".tiff") {
-    findings.add_to_file("GeoTIFF cannot be read",
-                         "convert it: gdal_translate -of AAIGrid " + name + " map.asc");
   } else {
     scenario.clear_target();
     return false;

@@ -11,7 +11,9 @@
 #include "scenario/parse/convert.h"
 #include "scenario/rules/polygon_flaw.h"
 #include "scenario/rules/validate_target.h"
+#include "target/geo/gdal_files.h"
 #include "target/geo/geojson.h"
+#include "target/geo/kml.h"
 
 namespace ergocast {
 namespace {
@@ -237,7 +239,9 @@ class PolygonFileReader {
   }
 
   std::optional<std::vector<PlacedPolygon>> on_earth(const std::string& field) {
-    const auto read = read_geojson(file_);
+    const auto read = is_gdal_polygons(file_)   ? read_gdal_polygons(file_)
+                      : file_.ends_with(".kml") ? read_kml(file_)
+                                                : read_geojson(file_);
     if (!read) {
       refuse(field, read.error());
       return std::nullopt;
@@ -291,11 +295,26 @@ class PolygonFileReader {
 
 }  // namespace
 
+bool is_geodata(const std::filesystem::path& file) {
+  const std::filesystem::path end = file.extension();
+  return end == ".geojson" || end == ".json" || end == ".kml" || is_gdal_polygons(file);
+}
+
+bool is_polygon_file(const std::filesystem::path& file) {
+  return is_geodata(file) || file.extension() == ".svg";
+}
+
 std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario, Checks& checks,
                                                       Findings& findings) {
   std::vector<std::filesystem::path> files;
   const auto add = [&files](const proto::Polygon& polygon) {
-    if (polygon.has_file()) files.emplace_back(polygon.file());
+    if (!polygon.has_file()) return;
+    files.emplace_back(polygon.file());
+    if (!polygon.file().ends_with(".shp")) return;
+    for (const char* part : {".shx", ".dbf", ".prj", ".cpg"}) {
+      const auto beside = std::filesystem::path(polygon.file()).replace_extension(part);
+      if (std::filesystem::exists(beside)) files.push_back(beside);
+    }
   };
   for (const proto::Region& region : scenario.target().regions()) add(region.polygon());
   for (const proto::Polygon& keep_out : scenario.target().keep_outs()) add(keep_out);

@@ -10,6 +10,11 @@
 
 namespace ergocast {
 
+/// Whether the name is one of GeoJSON, KML, a GeoPackage or a shapefile.
+bool is_geodata(const std::filesystem::path& file);
+/// Whether it is geodata or a drawing.
+bool is_polygon_file(const std::filesystem::path& file);
+
 /// Reads the file of each polygon that has one. The first polygon in it takes the place of the
 /// name, the others follow at the end of the list; those that lie apart from the domain are left
 /// out. The polygons of a region share its weight by their areas. Reports problems of a file with

@@ -41,7 +41,7 @@ constexpr double kLeastHeightPerDomain = 1e-8;
 class TargetValidator {
  public:
   TargetValidator(const proto::Scenario& scenario, Checks& checks)
-      : target_(scenario.target()), checks_(checks) {
+      : target_(scenario.target()), has_origin_(scenario.has_origin()), checks_(checks) {
     if (!checks.sound("domain")) return;
     domain_ = domain_of(scenario.domain());
     longer_side_m_ = domain_.size_m.maxCoeff();
@@ -167,28 +167,36 @@ class TargetValidator {
 
   // Maps.
 
+  static std::string remedy_for(const std::string& file) {
+    if (file.ends_with(".nc"))
+      return "write the plane as one: gdal_translate NETCDF:in.nc:VARIABLE out.tif";
+    return "write the map as one of these: convert in out.png, or gdal_translate in out.tif";
+  }
+
   void map(const proto::Map& map, const std::string& path) {
     if (!map.has_file() || map.file().empty()) {
       return checks_.missing(path + ".file", "is missing",
-                             "add the name of a .png, .pgm, .csv, .asc or .yaml");
+                             "add the name of a .png, .pgm, .csv, .asc, .tif or .yaml");
     }
     layers(map, path);
     const std::optional<MapKind> kind = map_kind(map.file());
     if (!kind) {
       return checks_.problem(path + ".file",
-                             map.file() + " does not end in .png, .pgm, .csv, .asc or .yaml",
-                             "write the map as one of these");
+                             map.file() + " does not end in .png, .pgm, .csv, .asc, .tif or .yaml",
+                             remedy_for(map.file()));
     }
-    const std::string states_extent = *kind == MapKind::kAsciiGrid   ? "an ESRI ASCII grid"
-                                      : *kind == MapKind::kOccupancy ? "an occupancy map"
-                                                                     : "";
-    extent(path + ".origin_x_m", map.has_origin_x_m(), states_extent);
-    extent(path + ".origin_y_m", map.has_origin_y_m(), states_extent);
-    extent(path + ".size_x_m", map.has_size_x_m(), states_extent);
-    extent(path + ".size_y_m", map.has_size_y_m(), states_extent);
-    if (!states_extent.empty() && map.first_row() == proto::Map::SOUTH) {
-      checks_.problem(path + ".first_row", states_extent + " always begins in the north",
+    const bool states = states_extent(*kind);
+    extent(path + ".origin_x_m", map.has_origin_x_m(), states);
+    extent(path + ".origin_y_m", map.has_origin_y_m(), states);
+    extent(path + ".size_x_m", map.has_size_x_m(), states);
+    extent(path + ".size_y_m", map.has_size_y_m(), states);
+    if (states && map.first_row() == proto::Map::SOUTH) {
+      checks_.problem(path + ".first_row", "this kind of map always begins in the north",
                       "remove it");
+    }
+    if (*kind == MapKind::kGeoTiff && !has_origin_) {
+      checks_.problem(path + ".file", "needs to know where on the earth the scenario lies",
+                      "add origin { latitude_deg: … longitude_deg: … }, the place of (0, 0)");
     }
   }
 
@@ -250,11 +258,10 @@ class TargetValidator {
     return false;
   }
 
-  /// @param stated_by  the kind of file that states its own extent, else empty
-  void extent(const std::string& path, bool present, const std::string& stated_by) {
-    if (present && !stated_by.empty()) {
-      checks_.problem(path, stated_by + " states its own extent", "remove it");
-    } else if (!present && stated_by.empty()) {
+  void extent(const std::string& path, bool present, bool stated_by_file) {
+    if (present && stated_by_file) {
+      checks_.problem(path, "this kind of map states its own extent", "remove it");
+    } else if (!present && !stated_by_file) {
       checks_.missing(path, "is missing",
                       "say where the map lies: origin_x_m, origin_y_m, size_x_m, size_y_m");
     }
@@ -297,6 +304,7 @@ class TargetValidator {
   }
 
   const proto::Target& target_;
+  const bool has_origin_;
   Checks& checks_;
   Box domain_;                // a plane while it is invalid
   double longer_side_m_ = 0;  // 0 while the domain is invalid

@@ -153,7 +153,7 @@ class Walk {
 Result<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
   if (text.starts_with('<'))
     return failure(PolygonFileProblem{"", "is XML such as KML, no GeoJSON",
-                                      "convert it: ogr2ogr -f GeoJSON out.geojson in.kml"});
+                                      "name KML as such: a file that ends in .kml"});
   try {
     Walk walk;
     walk.file(parse_bounded<Json>(text, kMostValues));

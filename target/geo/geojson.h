@@ -3,21 +3,14 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
-#include "target/geo/local_plane.h"
+#include "target/geo/geo_polygon.h"
 #include "target/geo/polygon_file.h"
 
 namespace ergocast {
-
-/// The outline, then the holes; without the repeated last position.
-struct GeoPolygon {
-  std::string member;  ///< "features[2].geometry"
-  std::vector<std::vector<GeoPlace>> rings;
-};
 
 /// All Polygons and MultiPolygons of a FeatureCollection, a Feature or a geometry, at least one.
 /// Heights are not used. Anything else is a problem: other geometries, another reference system,

@@ -14,8 +14,8 @@ struct GeoPlace {
 };
 
 /// How far from its origin a plane is used [m]. An area there is wrong by 0.4 %.
-/// Limit (Files of a scenario): distance of a place in a GeoJSON file from the origin [m]. Beyond
-/// it: the scenario is refused.
+/// Limit (Files of a scenario): distance of a place in a file of polygons from the origin [m].
+/// Beyond it: the scenario is refused.
 inline constexpr double kFarthest_m = 1e6;
 
 /// The azimuthal equidistant projection on the ellipsoid: x is east, y is north; distances and

@@ -2,11 +2,16 @@
 // Reads a whole file, if it is one.
 #include "target/geo/polygon_file.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "text/input_file.h"
 
 namespace ergocast {
+
+std::string line_of(std::string_view text, std::size_t offset) {
+  return "line " + std::to_string(1 + std::ranges::count(text.substr(0, offset), '\n'));
+}
 
 Result<std::string, PolygonFileProblem> text_of_polygon_file(const std::filesystem::path& file,
                                                              const std::string& extension,

@@ -4,19 +4,23 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/base/result.h"
 
 namespace ergocast {
 
-/// Limit (Files of a scenario): length of a GeoJSON file or drawing [bytes]. Beyond it: the
-/// scenario is refused.
+/// Limit (Files of a scenario): length of a GeoJSON or KML file, or a drawing [bytes]. Beyond it:
+/// the scenario is refused.
 inline constexpr std::size_t kMaxPolygonFileBytes = std::size_t{16} << 20;
 
 struct PolygonFileProblem {
   std::string member;  ///< the place in the file, or empty for the whole file
   std::string what, remedy;
 };
+
+/// "line 12", of the byte at `offset`.
+std::string line_of(std::string_view text, std::size_t offset);
 
 /// The bytes of a file of polygons, at most kMaxPolygonFileBytes.
 /// @param extension  ".svg"

@@ -45,6 +45,7 @@ std::optional<MapKind> map_kind(const fs::path& file) {
   if (end == ".yaml" || end == ".yml") return MapKind::kOccupancy;
   if (end == ".csv") return MapKind::kCsv;
   if (end == ".asc") return MapKind::kAsciiGrid;
+  if (end == ".tif" || end == ".tiff") return MapKind::kGeoTiff;
   return {};
 }
 

@@ -36,7 +36,7 @@ class MapFile {
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
-  /// The extent that the file states: an ESRI ASCII grid and an occupancy map have one.
+  /// The extent that the file states, if its kind states one.
   const std::optional<Rectangle>& extent() const { return extent_; }
 
   /// Reads the next row into `values`, the westernmost first: densities from 0 to kMaxMapValue, 0
@@ -52,17 +52,23 @@ class MapFile {
 
 using OpenedMap = Result<std::unique_ptr<MapFile>, MapProblem>;
 
-enum class MapKind { kPng, kPgm, kCsv, kAsciiGrid, kOccupancy };
+enum class MapKind { kPng, kPgm, kCsv, kAsciiGrid, kGeoTiff, kOccupancy };
+
+/// Whether files of a kind state their extent.
+inline bool states_extent(MapKind kind) {
+  return kind == MapKind::kAsciiGrid || kind == MapKind::kGeoTiff ||
+         kind == MapKind::kOccupancy;
+}
 
 /// Why `file` cannot be opened; nothing if it can.
 std::optional<MapProblem> why_unreadable(const std::filesystem::path& file);
 
-/// The kind by the extension .png, .pgm, .csv, .asc, .yaml or .yml, in either case; nothing for any
+/// The kind by the extension .png, .pgm, .csv, .asc, .tif, .tiff, .yaml or .yml, in either case; nothing for any
 /// other.
 std::optional<MapKind> map_kind(const std::filesystem::path& file);
 
 /// Opens a map and reads its dimensions.
-/// @pre map_kind(file)
+/// @pre map_kind(file), which is not kGeoTiff: open_geotiff() reads those
 OpenedMap open_map(const std::filesystem::path& file);
 
 /// 1 to kMaxMapSide columns and rows, or what is wrong with them.

@@ -131,7 +131,7 @@ std::vector<Mistake> mistakes_of_maps() {
       {kUniform, "maps { " + extent + " }", at + "is missing"},
       {kUniform, map_of("even.tif"), at},
       {kUniform, map_of("good.asc", extent),
-       "target.maps[0].origin_x_m: an ESRI ASCII grid states"},
+       "target.maps[0].origin_x_m: this kind of map states"},
       {kUniform, map_of("good.asc", "first_row: SOUTH"),
        "target.maps[0].first_row: an ESRI ASCII grid"},
       {kUniform, map_of("even.csv", "origin_x_m: 500 origin_y_m: 0 size_x_m: 1 size_y_m: 1"),
@@ -145,7 +145,7 @@ std::vector<Mistake> mistakes_of_maps() {
     all.push_back({kUniform, map_of("even.csv", others),
                    std::string("target.maps[0].") + name + ": is missing"});
     all.push_back({kUniform, map_of("good.asc", std::string(name) + ": 1"),
-                   std::string("target.maps[0].") + name + ": an ESRI ASCII grid states"});
+                   std::string("target.maps[0].") + name + ": this kind of map states"});
   }
   for (const char* bad :
        {"none.csv",   "folder.csv", "locked.csv", "empty.csv",      "wide.csv",

@@ -26,7 +26,7 @@ enum class Outside {
   kExpected,     // tl::expected, for Result
   kSpectra,      // Spectra, and the sparse part of Eigen
   kPng,          // libpng
-  kLoader,       // dlopen: libnetcdf, librsvg
+  kLoader,       // dlopen: libnetcdf, librsvg, libgdal
   kHttp,         // cpp-httplib
   kPython,       // pybind11
   kEarth,        // PROJ
@@ -82,6 +82,9 @@ inline const std::vector<Rule> kRules = {
     {"target/geo", {"text", "core", "target/contour"}, {kEarth, kFiles, kJson, kXml}},
     {"target/geo/bounded_child.cc", {"target/geo"}, {kFiles, kSystem}},
     {"target/geo/svg_painter.cc", {"target/geo", "target/maps"}, {kLoader}},
+    {"target/geo/gdal_library.cc", {"target/geo", "target/maps"}, {kLoader, kFiles}},
+    {"target/geo/gdal_files.h", {"core", "target/geo", "target/maps"}, {kFiles}},
+    {"target/geo/geotiff.cc", {"text", "core", "target/geo", "target/maps"}, {kFiles, kJson}},
     {"scenario/parse", {"text", "core", "plan", "target"}, {kProtobuf, kCommandLine, kFiles}},
     {"scenario/rules",
      {"text", "core", "plan", "target", "target/maps", "target/geo", "scenario/parse"},

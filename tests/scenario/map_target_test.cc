@@ -193,9 +193,9 @@ TEST_F(MapTarget, ThatCannotBeUsedIsOneProblemAtItsField) {
        "to 209 m, y 0 to 9 m, the domain x 0 to 100 m, y 0 to 50 m (move its extent over the "
        "domain)"},
       {map_of("good.asc", "size_x_m: 5"),
-       "target.maps[0].size_x_m: an ESRI ASCII grid states its own extent"},
+       "target.maps[0].size_x_m: this kind of map states its own extent"},
       {map_of("good.asc", "first_row: SOUTH"),
-       "target.maps[0].first_row: an ESRI ASCII grid always begins"},
+       "target.maps[0].first_row: this kind of map always begins"},
   };
   for (const auto& [target, expected] : mistakes) {
     const std::string printed = problem_of(target);
