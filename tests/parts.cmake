@@ -211,6 +211,7 @@ ergocast_test(NAME scenario_tests LABELS unit
   SOURCES
     scenario/assign_test.cc
     scenario/free_domain_test.cc
+    scenario/geodata_test.cc
     scenario/geojson_target_test.cc
     scenario/map_target_test.cc
     scenario/map_walls_test.cc

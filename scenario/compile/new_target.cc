@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/rings.h"
+#include "scenario/compile/polygon_files.h"
 #include "scenario/parse/convert.h"
 #include "target/maps/map_file.h"
 

@@ -98,7 +98,7 @@ TEST_F(AmendCommand, NamesTheProblemsOfATarget) {
   refuses({"--target", "lake_search"}, "domain: has ");
   refuses({"--target", file("far.textproto", gaussian_at(90000))}, "far.textproto:1:1: target: ");
   refuses({"--target", file("typo.textproto", "target { gaussian { } }")}, "did you mean");
-  refuses({"--target", file("map.tif", "II")}, "GeoTIFF cannot be read");
+  refuses({"--target", file("map.tif", "II")}, "needs to know where on the earth");
   refuses({"--target", file("map.png", "no picture")}, "map.png");
   refuses({"--target", east(), "--at", "10"}, "write +10s");
   refuses({"--target", east(), "--list"}, "--list");

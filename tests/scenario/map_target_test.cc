@@ -178,8 +178,8 @@ TEST_F(MapTarget, ThatCannotBeUsedIsOneProblemAtItsField) {
       {map_of("negative.csv"), file + here + "negative.csv, line 2: -4 is negative"},
       {map_of("ragged.csv"), file + here + "ragged.csv, line 2 has 1 numbers"},
       {map_of("wide.png"), file + here + "wide.png has 100000 columns and 1 rows"},
-      {map_of("good.tif"),
-       "target.maps[0].file: " + here + "good.tif does not end in .png, .pgm, .csv, .asc or .yaml"},
+      {map_of("good.bmp"), "target.maps[0].file: " + here +
+                               "good.bmp does not end in .png, .pgm, .csv, .asc, .tif or .yaml"},
       {map_of(""), "target.maps[0].file: is missing"},
       {map_of("good.csv", "origin_x_m: 0 origin_y_m: 0 size_x_m: 1"),
        "mine.textproto:3:10: target.maps[0].size_y_m: is missing (say where the map lies"},

@@ -108,7 +108,7 @@ TEST_F(NewTarget, IsRefusedWithItsPlaceAndARemedy) {
                   "a.textproto:1:1: target: only "));
   EXPECT_TRUE(has(problem_of("a.textproto", "target {\n uniform_wait: 1 }"), "a.textproto:2:"));
   EXPECT_TRUE(has(problem_of("a.textproto", "seed: 1"), "target"));
-  EXPECT_TRUE(has(problem_of("a.tif", ""), "a.tif: GeoTIFF cannot be read (convert it: gdal"));
+  EXPECT_TRUE(has(problem_of("a.tif", ""), "needs to know where on the earth"));
   EXPECT_TRUE(has(problem_of("a.nc", ""), "a NetCDF file may have several variables"));
   EXPECT_TRUE(has(problem_of("a.csv", "0,0\n"), "has no number above 0"));
   const Loaded missing = Scenario::load_target(folder_.path() / "none.csv", {}, running_);
