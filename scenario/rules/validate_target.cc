@@ -195,8 +195,9 @@ class TargetValidator {
                       "remove it");
     }
     if (*kind == MapKind::kGeoTiff && !has_origin_) {
-      checks_.problem(path + ".file", "needs to know where on the earth the scenario lies",
-                      "add origin { latitude_deg: … longitude_deg: … }, the place of (0, 0)");
+      checks_.problem(path + ".file",
+                      "a GeoTIFF needs to know where on the earth the scenario lies",
+                      "write origin { latitude_deg: … longitude_deg: … }");
     }
   }
 

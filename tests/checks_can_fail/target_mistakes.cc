@@ -129,11 +129,13 @@ std::vector<Mistake> mistakes_of_maps() {
   const std::string file = "file: \"even.csv\" ";
   std::vector<Mistake> all = {
       {kUniform, "maps { " + extent + " }", at + "is missing"},
-      {kUniform, map_of("even.tif"), at},
-      {kUniform, map_of("good.asc", extent),
-       "target.maps[0].origin_x_m: this kind of map states"},
+      {kUniform, map_of("even.pgm"), at},
+      {kUniform, map_of("even.yaml"), at},
+      {kUniform, map_of("even.nc"), at},
+      {kUniform, map_of("even.tif", " "), at + "a GeoTIFF needs to know"},
+      {kUniform, map_of("good.asc", extent), "target.maps[0].origin_x_m: this kind of map states"},
       {kUniform, map_of("good.asc", "first_row: SOUTH"),
-       "target.maps[0].first_row: an ESRI ASCII grid"},
+       "target.maps[0].first_row: this kind of map always"},
       {kUniform, map_of("even.csv", "origin_x_m: 500 origin_y_m: 0 size_x_m: 1 size_y_m: 1"),
        "target.maps[0]: nothing of it is left"},
   };

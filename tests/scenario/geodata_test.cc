@@ -44,7 +44,7 @@ class Geodata : public ::testing::Test {
     return "regions { polygon { file: \"" + file + "\" } }";
   }
   static std::string map(const std::string& file) { return "maps { file: \"" + file + "\" }"; }
-  /// Of files in UTM: the plane is turned against it by 2 mrad, and 0.4 mm longer in each metre.
+  /// The plane is turned against UTM by 2 mrad, and 0.4 mm longer in each metre.
   void expect_near(const Coefficients& one, const Coefficients& other) const {
     EXPECT_LE((one - other).cwiseAbs().maxCoeff(), 4e-3);
   }
