@@ -256,8 +256,7 @@ std::vector<Mistake> mistakes_of_room_maps() {
        "world.walls[0].unknown_free: is for occupancy maps"},
       {kUniform, kUniform + " keep_outs { " + map("room") + "}",
        "target.keep_outs[0].file: names an occupancy map"},
-      {kUniform, "maps { " + map("turned") + "weight: 1 }",
-       "target.maps[0].file: lies turned by its yaw"},
+      {kUniform, "maps { " + map("turned") + "weight: 1 }", "turned.yaml lies turned by its yaw"},
   };
   for (const char* name :
        {"wrong",    "percent", "fancy", "other", "again",  "grey",    "bare",  "lacks", "indented",
