@@ -9,6 +9,7 @@
 #include "scenario/compile/defaults.h"
 #include "scenario/compile/free_domain.h"
 #include "scenario/compile/new_target.h"
+#include "scenario/compile/omit_defaults.h"
 #include "scenario/compile/polygon_files.h"
 #include "scenario/origin.h"
 #include "scenario/parse/convert.h"
@@ -137,6 +138,7 @@ Result<Scenario, Problems> Scenario::compile(Written& written) {
   validate_ways_home(mission_of(scenario), checks);
   if (std::vector<Problem> unreachable = findings.take(); !unreachable.empty())
     return failure(unreachable);
+  omit_defaults(mission_of(scenario), scenario);
   auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
   state->polygon_files = std::move(polygon_files);
   state->by_whole_path = std::move(by_whole_path);
@@ -174,6 +176,7 @@ Scenario Scenario::with_seed(std::uint64_t seed) const {
   agents.mutable_starts()->DeleteSubrange(state_->listed_starts, drawn);
   agents.set_random_count(drawn);
   draw_starts(scenario);
+  omit_defaults(mission_of(scenario), scenario);
   auto state = std::make_shared<State>(
       std::move(scenario), CompiledTarget{mission().target_coefficients, state_->target_density},
       state_->listed_starts);

@@ -76,6 +76,32 @@ TEST(MissionText, ReadsBackToEveryFieldOfAMission) {
   }
 }
 
+// A default that is written out is no field of its own: scenario and record have one text.
+TEST(MissionText, HasNoDefaultThatAScenarioWritesOut) {
+  const std::string kind = "kind { name: \"a\" count: 1 ";
+  for (const std::string written :
+       {"sensor { detections_per_s: 0.5 }", "sensor { radius_m: 0 }", "sensor { }",
+        "sensor { radius_m: 3 detections_per_s: 0.5 }", "vehicle { kind: POINT }",
+        "separation { distance_m: 2 lease_s: 0 } world { speed_limit_mps: 5 }"}) {
+    const Scenario scenario = good(small_with("law {", written + " law {"));
+    EXPECT_EQ(without_block(scenario.print(), "target"), mission_text(scenario.mission()))
+        << written;
+  }
+  for (const std::string written :
+       {"band { from: 0 } }", "vehicle { kind: POINT } }", "band { from: 2 } }"}) {
+    const Scenario scenario = good(small_with("agents {", "agents { " + kind + written));
+    EXPECT_EQ(without_block(scenario.print(), "target"), mission_text(scenario.mission()))
+        << written;
+  }
+  for (const char* written : {"memory_half_life_s: 0", "high_mode_period_factor: 1"}) {
+    const bool of_law = written[0] == 'm';
+    const Scenario scenario = good(of_law ? small_with("law {", "law { " + std::string(written))
+                                          : small_with("time {", "time { " + std::string(written)));
+    EXPECT_EQ(without_block(scenario.print(), "target"), mission_text(scenario.mission()))
+        << written;
+  }
+}
+
 /// The names in the list of a mission's fields.
 class Names : public FieldVisitor {
  public:
