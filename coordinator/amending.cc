@@ -6,6 +6,7 @@
 #include <chrono>
 #include <span>
 
+#include "core/mission/end_by_finding.h"
 #include "core/motion/zones.h"
 #include "plan/amendment_list.h"
 
@@ -134,6 +135,8 @@ bool Amending::possible(const Wish& wish, const Mission& mission, Tick newest, T
     return may_follow(list_.laws, wish.law, plans_law(mission), newest, from, law_hash);
   if (wish.kind == AmendmentKind::kReopen) return can_reopen(list_, wish.number, from);
   if (wish.kind != AmendmentKind::kEnd) return true;
+  if (wish.tick_count == 0)
+    return soonest_tick_count(list_, from) < tick_count_of(mission.timing, list_.ends);
   const auto agents = team.places.of(team.roster);
   return end_rules_.problem(mission, list_, team.places.tick(), from, wish.tick_count, agents) ==
          EndProblem::kNone;
@@ -195,6 +198,24 @@ std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Missio
     wish.zone = *std::move(zone);
   }
   return wish;
+}
+
+void Amending::note_found(int by_world, int known, const Mission& mission, const TickWatch& ticks,
+                          const SignsOfLife& signs, Announcement& announcement) {
+  if (!lacks_end_by_finding(mission, list_, known, ticks.newest())) return;
+  Wish wish{.kind = AmendmentKind::kEnd, .by = kByFinding};
+  const bool realtime = mission.timing.pace == Pace::kRealtime;
+  if (!realtime && !lacks_end_by_finding(mission, list_, by_world, ticks.tick())) {
+    // The world has lost what its predecessor knew, and goes on.
+    if (stand_by_revision_ >= 0) return;
+    wish_ = std::move(wish);
+    return stand_by(announcement);
+  }
+  const auto tick = realtime ? tick_with_notice(mission.timing, ticks, signs)
+                             : std::optional(ticks.tick() + kLockstepNotice);
+  if (!tick) return;
+  wish_.reset();  // its operator repeats it
+  name(ticks.newest(), *tick, std::move(wish), announcement);
 }
 
 void Amending::stand_by(Announcement& announcement) {
@@ -278,7 +299,8 @@ void Amending::list_wish(Tick now, Tick tick, Wish wish) {
       return waits(list_.laws, tick + delay) ? replace_law(list_, std::move(wish.law))
                                              : name_law(list_, tick + delay, std::move(wish.law));
     case AmendmentKind::kEnd:
-      return name_end(list_, tick + delay, wish.tick_count);
+      return name_end(list_, tick + delay,
+                      wish.tick_count > 0 ? wish.tick_count : soonest_tick_count(list_, tick));
     case AmendmentKind::kZone:
       return name_zone(list_, now, tick, delay, std::move(wish.zone));
     case AmendmentKind::kReopen:

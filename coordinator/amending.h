@@ -56,6 +56,13 @@ class Amending {
   void obey(const Amend& amend, const Mission& mission, const TickWatch& ticks, const Team& team,
             Announcement& announcement);
 
+  /// Names the next possible end if the mission has to end because objects are found
+  /// (core/mission/end_by_finding.h).
+  /// @param by_world  as many as the world knows of: in lockstep it stays at its tick by itself
+  /// @param known     as many as any process knows of
+  void note_found(int by_world, int known, const Mission& mission, const TickWatch& ticks,
+                  const SignsOfLife& signs, Announcement& announcement);
+
   /// Lockstep: names a tick, or lists the next planned target, zone or law, if the world stands by.
   void note_world(const Mission& mission, const TickWatch& ticks, const Team& team,
                   Announcement& announcement);
@@ -66,7 +73,7 @@ class Amending {
     AmendmentKind kind = AmendmentKind::kPause;
     Tick delay_ticks = 0;
     TargetChange target{};    // of kTarget
-    Tick tick_count = 0;      // of kEnd
+    Tick tick_count = 0;      // of kEnd; 0: as soon as possible
     Zone zone{};              // of kZone
     LawChange law{};          // of kLaw
     std::int32_t number = 0;  // of kReopen: the zone's

@@ -3,6 +3,7 @@
 #include "coordinator/coordinator.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <utility>
 
@@ -126,11 +127,24 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   const bool is_newest = ticks_.receive(world, now);
   const SignsOfLife signs = signs_at(now);
   amending_.note_world(*mission_, ticks_, team_at(signs), announcement_);
-  if (is_newest && tick() >= end_tick()) end(false, "mission complete", now);
+  found_ |= world.found;
+  if (is_newest && state_ == MissionState::kRunning)
+    amending_.note_found(std::popcount(world.found), std::popcount(found_), *mission_, ticks_,
+                         signs, announcement_);
+  if (is_newest && tick() >= end_tick()) end(false, why_complete(), now);
 }
 
 void Coordinator::on(const RecordAck& ack, const Arrival& arrival) {
-  if (arrival.fresh) ending_.note_logger(ack.last);
+  if (!arrival.fresh) return;
+  ending_.note_logger(ack.last);
+  for (const Find& find : ack.all_finds()) found_ |= ObjectSet{1} << find.object;
+}
+
+std::string Coordinator::why_complete() const {
+  const HiddenObjects& objects = mission_->objects;
+  const int found = std::popcount(found_);
+  if (objects.end_when_found == 0 || found < objects.end_when_found) return "mission complete";
+  return std::to_string(found) + " of " + std::to_string(objects.total()) + " objects are found";
 }
 
 void Coordinator::on(const TeamStatus& theirs, const Arrival& arrival) {

@@ -130,6 +130,7 @@ class Coordinator {
   void admit(const Newcomer& newcomer, Instant now);
   void check_admission(Instant now);
   void check_tick(Instant now);
+  std::string why_complete() const;
   void start_with_quorum(Instant now);
   void publish_due(Instant now, Outbox& out);
   void publish_mission(Outbox& out);
@@ -148,6 +149,7 @@ class Coordinator {
   TickWatch ticks_;
   CoverageReview coverage_review_;
   TeamPlaces places_;
+  ObjectSet found_ = 0;  // as world and logger have reported
   Amending amending_;
   MissionEnd ending_;
   Announcement announcement_;

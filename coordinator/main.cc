@@ -149,6 +149,12 @@ class MissionLog {
 };
 
 int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover) {
+  if (const auto mission = decode_plan(plan); mission && !plan.empty()) {
+    if (const auto problem = why_key_is_needed(*mission, node.authenticator)) {
+      spdlog::error("{}", *problem);
+      return kExitBadInput;
+    }
+  }
   StopSignals signals;
   Coordinator coordinator({node.run, random_identity(), host_name(), version()}, std::move(plan),
                           takeover);

@@ -82,7 +82,8 @@ bool IdealTeam::stands_for(const Mission& mission, const LawNeeds& needs) {
   const bool all_is_known = !needs.coverage || (looks_ahead(mission) && mission.dead_reckoning);
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
-         (all_is_sent || all_is_known) && !needs.search && !any_station(mission);
+         (all_is_sent || all_is_known) && !needs.search && !any_station(mission) &&
+         mission.objects.end_when_found == 0;
 }
 
 void IdealTeam::note(const Amendments& list) {

@@ -105,6 +105,8 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
   if (const auto* block = std::get_if<Contribution>(&outgoing.message)) {
     return check(t_s, *block, outgoing.relayer, speaker);
   }
+  const auto* effort = std::get_if<Effort>(&outgoing.message);
+  if (effort != nullptr && outgoing.relayer == kUnassigned) note_looks(*effort);
   const auto* digest = std::get_if<Digest>(&outgoing.message);
   if (digest != nullptr && speaker != nullptr) check(t_s, *digest, *speaker);
 }

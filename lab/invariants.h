@@ -47,6 +47,7 @@ enum class Invariant : std::uint8_t {
   kDamagedMessagesRefused,
   kHeldNeverShrinks,
   kDetectionsInReach,
+  kLooksAreTrue,
   kNoStepCountsTwice,
   kNothingCountsWhilePaused,
   kWhatIsNotPausedCounts,
@@ -73,6 +74,7 @@ enum class Invariant : std::uint8_t {
   kLastTickReached,
   kRecordIsWhole,
   kFindsAreRecorded,
+  kEndsOnceFound,
   kGoalReached,
   kCount,
 };
@@ -95,6 +97,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kDamagedMessagesRefused, "no damaged message is accepted"},
         {Invariant::kHeldNeverShrinks, "what is held never shrinks"},
         {Invariant::kDetectionsInReach, "sensors detect only objects within their radius"},
+        {Invariant::kLooksAreTrue, "looks are as their author sent them, and count once"},
         {Invariant::kNoStepCountsTwice, "no step counts twice"},
         {Invariant::kNothingCountsWhilePaused, "nothing counts while paused or at rest"},
         {Invariant::kWhatIsNotPausedCounts, "every tick counts unless paused or at rest"},
@@ -122,6 +125,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kLastTickReached, "the mission reaches its last tick"},
         {Invariant::kRecordIsWhole, "the record has every tick"},
         {Invariant::kFindsAreRecorded, "the record has the finds of the simulated world"},
+        {Invariant::kEndsOnceFound, "the mission ends once enough objects are found"},
         {Invariant::kGoalReached, "the goal is reached"},
     }};
 constexpr std::string_view name_of(Invariant invariant) {
@@ -288,6 +292,9 @@ class Invariants {
   bool zone_may_delay(AgentId id, Tick home_from) const;
   void check_detections(double t_s, const WorldState& world);
   void check_finds(double t_s, const Finds& finds, Tick excused);
+  void check_end_by_finding(double t_s, Tick excused);
+  void note_looks(const Effort& own);
+  void check_looks(double t_s, const TableView& holder);
   bool all_states_count(Tick excused) const;
   void check_home(double t_s, const WorldState& world);
   double nearest_to_station_m(const Vehicle& vehicle) const;
@@ -341,6 +348,10 @@ class Invariants {
   std::vector<Eigen::Vector3d> objects_m_;
   /// For each object by tick and agent.
   std::map<int, std::set<std::pair<Tick, AgentId>>> detections_;
+  std::set<Incarnation> worlds_;  // that have sent a state
+  /// The counts that each author has sent, by tile and newest look.
+  std::map<Author, std::map<std::pair<std::int32_t, Tick>, std::array<std::uint16_t, kTileCells>>>
+      looks_sent_;
   std::map<AgentId, Eigen::Vector3d>
       positions_m_;  // only with a radio range, like the next members
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first

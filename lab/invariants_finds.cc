@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks what sensors detect, and that the record has what the world's states have.
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "core/measure/detection.h"
+#include "core/mission/end_by_finding.h"
 #include "core/mission/station.h"
 #include "lab/invariants.h"
 
 namespace ergocast::lab {
 
 void Invariants::check_detections(double t_s, const WorldState& world) {
+  worlds_.insert(world.header.incarnation);
   const double radius_m = objects_m_.empty() ? 0 : sensor_radius_m(mission_);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     for (int object = 0; object < kMaxObjects; ++object) {
@@ -50,6 +54,29 @@ void Invariants::check_finds(double t_s, const Finds& finds, Tick excused) {
       wrong = text("object ", object, " was detected at tick ", all.begin()->first);
   }
   if (!wrong.empty()) violate(t_s, Invariant::kFindsAreRecorded, "the logger", wrong);
+  check_end_by_finding(t_s, excused);
+}
+
+/// If all detections count, an end that is named by finding is named in time, and for a find. A
+/// restarted world may not know at once what was found.
+void Invariants::check_end_by_finding(double t_s, Tick excused) {
+  const int wanted = mission_.objects.end_when_found;
+  if (wanted == 0 || !all_states_count(excused)) return;
+  std::vector<Tick> found;
+  for (const auto& [object, all] : detections_)
+    if (!all.empty()) found.push_back(all.begin()->first);
+  std::ranges::sort(found);
+  const Tick ticks = ticks_of(mission_, &truth_.amendments());
+  const bool enough = std::ssize(found) >= wanted;
+  const Tick last = enough ? found[static_cast<std::size_t>(wanted - 1)] : ticks;
+  const bool named = std::ranges::find(truth_.amendments().recent, kByFinding, &Amendment::by) !=
+                     truth_.amendments().recent.end();
+  if (named && last >= ticks)
+    violate(t_s, Invariant::kEndsOnceFound, "the coordinator",
+            text("names an end, and ", found.size(), " objects are found"));
+  if (worlds_.size() == 1 && last + 3 < ticks)
+    violate(t_s, Invariant::kEndsOnceFound, "the coordinator",
+            text("names no end at tick ", last, ", and the mission has ", ticks, " ticks"));
 }
 
 }  // namespace ergocast::lab

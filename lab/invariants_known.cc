@@ -43,6 +43,7 @@ void Invariants::answered(double t_s, const TableView& holder,
   // error.
   if (holder.answered % kTicksBetweenAverages != 0) return;
   check_average(t_s, holder);
+  check_looks(t_s, holder);
   if (looks_ahead) check_forecast(t_s, holder);
 }
 

@@ -15,6 +15,7 @@
 #include "core/basis/basis.h"
 #include "core/law/coverage_table.h"
 #include "core/mission/mission.h"
+#include "core/search/efforts.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {
@@ -30,6 +31,7 @@ struct TableView {
   std::span<const Hold> holds{};           ///< the holds that the agent knows
   const Amendments* amendments = nullptr;  ///< the list that the agent knows; null: empty
   Tick counted = -1;                       ///< the number of `answered` among ticks that count
+  const Efforts* efforts = nullptr;        ///< where the team has searched; null: it does not
   bool held = false;                       ///< whether `answered` does not count
 };
 

@@ -232,6 +232,7 @@ TableView Trial::view_of(NodeId node) const {
           agent.follower().holds(),
           &agent.follower().amendments(),
           agent.counted_tick(),
+          agent.efforts(),
           agent.held()};
 }
 

@@ -240,6 +240,7 @@ struct Fields<WorldState> {
     io.count(m.clamped_commands);
     io.count(m.uncounted_ticks);
     io.holds(m.uncounted_ticks <= m.header.tick);
+    io.number(m.found);
     io.within(m.part, 0, kMaxAgents - 1);
     io.within(m.parts, 1, kMaxAgents);
     io.holds(m.part < m.parts);

@@ -104,6 +104,8 @@ class TextWriter : public FieldVisitor {
     for (const Eigen::Vector3d& x_m : objects.places_m)
       text_ += "    places {\n      x_m: " + shortest(x_m.x()) +
                "\n      y_m: " + shortest(x_m.y()) + "\n    }\n";
+    if (objects.end_when_found > 0)
+      text_ += "    end_when_found: " + std::to_string(objects.end_when_found) + '\n';
     text_ += "  }\n";
   }
   void part(const Field& field, const auto& part) {

@@ -170,6 +170,9 @@ void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
 void list_fields(auto& io, MaybeConst<HiddenObjects> auto& objects) {
   io.number({1, "count", limits::between(1, kMaxObjects), unless(objects.count, 0)}, objects.count);
   io.places({2, "places"}, {3, "place_heights_m"}, objects.places_m);
+  io.number(
+      {4, "end_when_found", limits::between(1, kMaxObjects), unless(objects.end_when_found, 0)},
+      objects.end_when_found);
 }
 
 void list_fields(auto& io, MaybeConst<SearchSensor> auto& sensor) {

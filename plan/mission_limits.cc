@@ -7,6 +7,7 @@
 
 #include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
+#include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/home.h"
 #include "core/motion/starts.h"
@@ -204,8 +205,11 @@ bool are_kinds(const Mission& mission) {
          std::ranges::all_of(kinds, [&](const AgentKind& kind) { return fits(kind, mission); });
 }
 
-/// Either a count or places, in a plane. Places are free.
+/// Either a count or places, in a plane. Places are free. An end that nobody knows before leaves no
+/// time to go to a station.
 bool fits(const HiddenObjects& objects, const Mission& mission) {
+  if (objects.end_when_found > objects.total()) return false;
+  if (objects.end_when_found > 0 && any_station(mission)) return false;
   if (objects.total() == 0) return true;
   const auto free = [&](const Eigen::Vector3d& x_m) {
     return in_domain(mission.domain, x_m) && !solid_at(mission.walls, x_m.head<2>());

@@ -3,9 +3,11 @@
 #include "sim/world.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <utility>
 
+#include "core/mission/end_by_finding.h"
 #include "core/motion/filter_rules.h"
 
 namespace ergocast {
@@ -50,6 +52,8 @@ void World::on(const MissionPart&, const Arrival& arrival) {
 void World::on(const RecordAck& ack, const Arrival& arrival) {
   if (!arrival.fresh) return;
   record_.acknowledge(ack, arrival.now);
+  // A restarted world learns what its predecessor's team had found.
+  for (const Find& find : ack.all_finds()) found_ |= ObjectSet{1} << find.object;
   if (over_since_ && (emergency_stopped_ || follower().over()) && record_.complete(tick_))
     finish(why_over());
 }
@@ -135,7 +139,9 @@ void World::take_roster() {
 
 void World::on(const WorldState& before, const Arrival&) {
   if (!question_.since || !begins_by_state(mission())) return;
-  if (before.header.tick <= me_.end_tick()) question_.before.take(before);
+  if (before.header.tick > me_.end_tick()) return;
+  question_.before.take(before);
+  found_ |= before.found;
 }
 
 // ---- commands ----
@@ -168,9 +174,27 @@ bool World::is_possible(const Command& command) const {
 /// Lockstep: whether the coordinator must name a tick before the next tick. So all agents know the
 /// named tick before it comes.
 bool World::stands_by() const {
+  if (mission().timing.pace != Pace::kLockstep || record_.empty()) return false;
   const std::int64_t since = follower().stand_by_revision();
-  return since >= 0 && mission().timing.pace == Pace::kLockstep && !record_.empty() &&
-         record_.newest().front().roster_revision >= since;
+  return (since >= 0 && record_.newest().front().roster_revision >= since) ||
+         lacks_end_by_finding(mission(), follower().amendments(), std::popcount(found_), tick_);
+}
+
+/// Adds what is found at this tick, by the rule of the record (logger/record_tables.h): by members
+/// that cover.
+void World::note_found(std::vector<WorldState>& states) {
+  const auto covers = [this](AgentId id) {
+    return std::ranges::any_of(follower().roster(), [&](const RosterEntry& entry) {
+      return entry.author.agent == id && entry.active_at(tick_) &&
+             !entry.recalled_at(follower().revision());
+    });
+  };
+  for (const WorldState& state : states) {
+    if (me_.is_held(tick_) || me_.is_over(tick_)) break;
+    for (const Vehicle& vehicle : state.vehicles_in_part())
+      if (vehicle.detected != 0 && covers(vehicle.id)) found_ |= vehicle.detected;
+  }
+  for (WorldState& state : states) state.found = found_;
 }
 
 /// Whether the next step of a paused mission waits only for the clock.
@@ -272,6 +296,7 @@ std::vector<WorldState> World::snapshot() const {
     state.uncounted_ticks = tick_ - me_.counted(tick_);
     state.roster_revision = follower().revision();
     state.header.tick = tick_;
+    state.found = found_;
   }
   return states;
 }
@@ -304,7 +329,9 @@ void World::remember_and_publish(Instant now, Outbox& out) {
   const double least_s =
       me_.is_held(tick_) ? std::min(mission().timing.dt_s, kLongestHeldTick_s) : 0;
   schedule_.note_published(now, seconds(least_s));
-  record_.remember(snapshot());
+  std::vector<WorldState> states = snapshot();
+  note_found(states);
+  record_.remember(std::move(states));
   publish(record_.newest(), out);
 }
 

@@ -98,6 +98,7 @@ class World {
   bool knows_bodies() const;
   bool is_possible(const Command& command) const;
   bool stands_by() const;
+  void note_found(std::vector<WorldState>& states);
   bool waits_for_time(Instant now) const;
   bool record_is_close(Instant now);
   void advance_lockstep(Instant now, Outbox& out);
@@ -117,6 +118,7 @@ class World {
   std::string reason_;
   Tick tick_ = 0;
   Fleet fleet_;
+  ObjectSet found_ = 0;  // that count, up to the newest tick
   Question question_;
   std::optional<Tick> begun_at_;
   TickSchedule schedule_;

@@ -71,6 +71,9 @@ class Observer : public lab::SimulationObserver {
         judge_(mission),
         vehicles_(mission.starts_m.size()) {}
 
+  /// @pre no message has been received
+  void follow(const lab::Simulation& simulation) { simulation_ = &simulation; }
+
   void received(lab::NodeId node, const Message& message) override {
     if (node != logger_) return;
     if (std::holds_alternative<Contribution>(message)) ++contributions_;
@@ -100,7 +103,8 @@ class Observer : public lab::SimulationObserver {
   /// Takes in all of one tick, agent by agent.
   void take(Tick tick) {
     tick_ = tick;
-    const bool ended = tick >= mission_.timing.tick_count;
+    const Amendments& list = simulation_->coordinator().amendments();
+    const bool ended = tick >= tick_count_of(mission_.timing, list.ends);
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
       if (tick > 0) measure_.command(vehicles_[i].velocity_mps);
       if (ended) continue;
@@ -114,6 +118,7 @@ class Observer : public lab::SimulationObserver {
   }
 
   const Mission& mission_;
+  const lab::Simulation* simulation_ = nullptr;
   const lab::NodeId logger_;
   StudyMeasure measure_;
   Judge judge_;
@@ -152,7 +157,9 @@ StudyFigures run_with_messages(std::span<const std::byte> plan, const LawMaker& 
   Observer observer(judged);
   NullBuffer nowhere;
   lab::SimulationOptions options{.plan = {plan.begin(), plan.end()}, .laws = laws};
-  lab::Simulation(std::move(options), nowhere, nowhere, &observer).run();
+  lab::Simulation simulation(std::move(options), nowhere, nowhere, &observer);
+  observer.follow(simulation);
+  simulation.run();
   return observer.figures();
 }
 

@@ -238,6 +238,7 @@ struct WorldState {
   std::int64_t skipped_ticks = 0;     ///< real time: ticks that a delayed world skipped
   std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
   Tick uncounted_ticks = 0;  ///< ticks before this one that did not count, core/mission/hold.h
+  ObjectSet found = 0;       ///< the objects that count as found by this tick, as far as it knows
   std::int32_t part = 0, parts = 1;
   bool last = false;  ///< the mission is over, and the world leaves: this is its last message
   std::int32_t vehicle_count = 0;

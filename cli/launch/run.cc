@@ -298,6 +298,8 @@ int run(const RunOptions& options) {
   if (!scenario) return kExitBadInput;
   if (!options.authenticator.can_sign())
     return report_error(kExitBadInput, cannot_sign(options.key_file));
+  if (const auto problem = why_key_is_needed(scenario->mission(), options.authenticator))
+    return report_error(kExitBadInput, *problem);
   StopSignals signals;
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
   const auto world = world_program(options.world, setup.programs);

@@ -3,6 +3,7 @@
 // The order is: the sources of the plan, the trajectory, and the files that follow from both.
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "cli/report_error.h"
 #include "core/base/ids.h"
 #include "core/mission/amendments.h"
+#include "core/mission/end_by_finding.h"
 #include "lab/simulation.h"
 #include "logger/amendments_file.h"
 #include "logger/recorder.h"
@@ -240,15 +242,19 @@ int verify(const fs::path& run_dir) {
     return report_error(kExitBadInput, run_dir.string() +
                                            " cannot be verified: its agents followed " +
                                            law.dump() + ", a law of its user");
-  Repetition repetition(*mission, amendments->list());
+  std::optional<Repetition> repetition;
+  repetition.emplace(*mission, amendments->list());
   if (!summary.is_object()) {
     print_message(run_dir.string() + ": no " + kSummaryFile +
                   ", so restarts are unknown; comparing anyway");
     summary = Json::object();
-  } else if (!is_simulated(summary, repetition.simulation.recorder())) {
+  } else if (!is_simulated(summary, repetition->simulation.recorder())) {
     const auto reason = why_not_repeatable(summary, *mission);
     if (!reason.empty())
       return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);
+  } else {
+    // Its messages are compared, too: the end has to be named again.
+    repetition.emplace(*mission, without_end_by_finding(amendments->list()));
   }
 
   std::vector<FileComparison> files = compare_sources(run_dir, *mission, summary);
@@ -256,7 +262,7 @@ int verify(const fs::path& run_dir) {
     if (!file.difference.empty()) return report_difference(run_dir, file.difference, summary);
   }
   if (summary.value("emergency_stop", Json()) == true) comparison.expect_halt();
-  repetition.run(comparison);
+  repetition->run(comparison);
   if (const auto& problem = comparison.problem()) return report_error(kExitBadInput, *problem);
   if (const auto difference = difference_of(comparison, run_dir, summary); !difference.empty()) {
     const std::string where = comparison.same() ? "" : ", first at " + comparison.place();
@@ -265,7 +271,7 @@ int verify(const fs::path& run_dir) {
   files.push_back({kTrajectoryFile, std::to_string(comparison.rows()) + " rows", "", ""});
   auto rows = read_tracks(run_dir);
   if (!rows) return report_difference(run_dir, rows.error() + '\n', summary);
-  auto rest = compare_the_rest(run_dir, *mission, *std::move(rows), *amendments, repetition,
+  auto rest = compare_the_rest(run_dir, *mission, *std::move(rows), *amendments, *repetition,
                                comparison, summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, files);

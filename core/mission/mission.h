@@ -135,6 +135,7 @@ inline constexpr int kMaxObjects = 32;
 struct HiddenObjects {
   int count = 0;  ///< drawn from the target
   std::vector<Eigen::Vector3d> places_m{};
+  int end_when_found = 0;  ///< so many are found: the mission ends; 0: it goes on
 
   int total() const { return places_m.empty() ? count : static_cast<int>(places_m.size()); }
 };

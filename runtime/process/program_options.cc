@@ -131,6 +131,13 @@ void add_key_option(CLI::App& app, MessageAuthenticator& authenticator, std::str
   app.parse_complete_callback([option] { refuse_empty_key_variable(*option); });
 }
 
+std::optional<std::string> why_key_is_needed(const Mission& mission,
+                                             const MessageAuthenticator& authenticator) {
+  if (mission.objects.end_when_found == 0 || authenticator.keyed()) return std::nullopt;
+  return "world.objects.end_when_found: without a key any program on the network could end the "
+         "mission with a forged find (make a key with `ergocast keygen`, or leave the field out)";
+}
+
 std::string cannot_sign(const std::string& key_file) {
   return key_file +
          ": cannot begin or end missions, nor pause them; take the file NAME.coordinator.key that "

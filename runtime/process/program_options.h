@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/mission/mission.h"
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/bus/lcm_url.h"
 
@@ -38,6 +40,9 @@ void add_url_option(CLI::App& app, LcmUrl& url);
 void add_key_option(CLI::App& app, MessageAuthenticator& authenticator,
                     std::string* file = nullptr);
 
+/// Why a team without a key cannot fly this mission; nothing if it can, or if there is a key.
+std::optional<std::string> why_key_is_needed(const Mission& mission,
+                                             const MessageAuthenticator& authenticator);
 /// The error text for a command that needs the coordinator's key file.
 std::string cannot_sign(const std::string& key_file);
 

@@ -50,9 +50,9 @@ class Omission : public FieldVisitor {
   void part(const Field& field, const std::vector<AgentKind>& kinds) {
     in_block(block_, field.name, [&](Message& block, const FieldDescriptor& found) {
       for (std::size_t i = 0; i < kinds.size(); ++i) {
-        Omission inner(*block.GetReflection()->MutableRepeatedMessage(&block, &found,
-                                                                      static_cast<int>(i)),
-                       planar_);
+        Omission inner(
+            *block.GetReflection()->MutableRepeatedMessage(&block, &found, static_cast<int>(i)),
+            planar_);
         list_fields(inner, kinds[i]);
       }
     });

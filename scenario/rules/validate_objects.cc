@@ -2,6 +2,8 @@
 // Checks the objects of the simulated world.
 #include "scenario/rules/validate_objects.h"
 
+#include <algorithm>
+
 #include "core/motion/walls.h"
 #include "scenario/parse/convert.h"
 
@@ -32,6 +34,24 @@ void validate_places(const proto::Scenario& scenario, Checks& checks) {
   }
 }
 
+void validate_end(const proto::Scenario& scenario, Checks& checks) {
+  const proto::Objects& objects = scenario.world().objects();
+  if (!objects.has_end_when_found()) return;
+  const int total = objects.places_size() > 0 ? objects.places_size() : objects.count();
+  if (total > 0 && objects.end_when_found() > total) {
+    checks.problem("world.objects.end_when_found",
+                   std::to_string(objects.end_when_found()) + " is above the number of objects, " +
+                       std::to_string(total),
+                   "write at most " + std::to_string(total));
+  }
+  const auto& kinds = scenario.agents().kind();
+  if (std::ranges::any_of(kinds, [](const auto& kind) { return kind.station_size() > 0; })) {
+    checks.problem("world.objects.end_when_found",
+                   "the agents would have no time to go to their stations",
+                   "remove it, or the stations of the kinds");
+  }
+}
+
 }  // namespace
 
 void validate_objects(const proto::Scenario& scenario, Checks& checks) {
@@ -51,6 +71,7 @@ void validate_objects(const proto::Scenario& scenario, Checks& checks) {
                    "add count: 1 to 32, or places { x_m: … y_m: … }");
   }
   validate_places(scenario, checks);
+  validate_end(scenario, checks);
 }
 
 }  // namespace ergocast

@@ -6,6 +6,7 @@
 
 #include "core/law/coverage_table.h"
 #include "core/law/target_shift.h"
+#include "core/mission/end_by_finding.h"
 #include "core/mission/end_schedule.h"
 #include "core/mission/law_change.h"
 #include "core/motion/end_rules.h"
@@ -21,6 +22,7 @@ WRAPPED(EndProblem, end_problem, "_ZN8ergocast8EndRules7problemERKNS_7MissionERK
 WRAPPED(void, set_rest, "_ZN8ergocast7WayHome8set_restEl", WayHome*, Tick)
 WRAPPED(const LawChange*, law_at, "_ZN8ergocast6law_atESt4spanIKNS_9LawChangeELm18446744073709551615EEl", std::span<const LawChange>, Tick)
 WRAPPED(LawNumbers, law_numbers, "_ZN8ergocast11law_numbersERKNS_7MissionEiPKNS_9LawChangeE", const Mission&, int, const LawChange*)
+WRAPPED(bool, lacks_end_by_finding, "_ZN8ergocast20lacks_end_by_findingERKNS_7MissionERKNS_10AmendmentsEil", const Mission&, const Amendments&, int, Tick)
 // clang-format on
 
 namespace {
@@ -78,6 +80,13 @@ const LawChange* bug_law_at(std::span<const LawChange> laws, Tick tick) {
   if (bug("a law holds a tick late")) --tick;
   if (bug("agents keep to a law that is undone")) laws = without_newest(laws);
   return real_law_at(laws, tick);
+}
+
+bool bug_lacks_end_by_finding(const Mission& mission, const Amendments& list, int found,
+                              Tick tick) {
+  if (bug("finds end nothing")) return false;
+  if (bug("the first find ends the mission") && found > 0) found = mission.objects.end_when_found;
+  return real_lacks_end_by_finding(mission, list, found, tick);
 }
 
 LawNumbers bug_law_numbers(const Mission& mission, int kind, const LawChange* change) {

@@ -21,6 +21,7 @@ WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi"
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
+WRAPPED(bool, merge_looks, "_ZN8ergocast7Efforts5mergeERKNS_6AuthorEmNS_10EffortTileEl", Efforts*, const Author&, std::size_t, EffortTile, Tick)
 // clang-format on
 
 // ---- coverage ----
@@ -215,6 +216,25 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table,
     return real_look_ahead(self, table, without_recalls(roster), tick, coverage);
   if (!mistakes_it) return real_look_ahead(self, table, roster, tick, coverage);
   real_look_ahead(self, mistaken(table, tick), roster, tick, coverage);
+}
+
+// ---- looks ----
+
+bool bug_merge_looks(Efforts* self, const Author& author, std::size_t tile, EffortTile theirs,
+                     Tick sent) {
+  const std::vector<EffortTile>* const row = self->row_of(author);
+  const EffortTile held = row != nullptr ? (*row)[tile] : EffortTile();
+  if (bug("a tile is added to the one before") && theirs.newest_look > held.newest_look) {
+    for (std::size_t slot = 0; slot < kTileCells; ++slot)
+      theirs.looks[slot] = std::max(
+          theirs.looks[slot],
+          std::min<std::uint16_t>(theirs.looks[slot] + held.looks[slot], self->cells().most_looks));
+  }
+  if (bug("an old tile replaces a newer one") && theirs.newest_look < held.newest_look)
+    sent = std::max(sent, theirs.newest_look = held.newest_look + 1);
+  if (bug("a relayed row is the relayer's") && is_relayed)
+    return real_merge_looks(self, {author.agent, author.incarnation + 1}, tile, theirs, sent);
+  return real_merge_looks(self, author, tile, theirs, sent);
 }
 
 }  // namespace ergocast

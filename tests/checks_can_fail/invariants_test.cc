@@ -128,6 +128,10 @@ const char* const kStations =
 
 const char* const kObjects = "world { objects { count: 5 } }\nsensor { radius_m: 20 }";
 
+const char* const kSearch = "law { kind: SEARCH }\nsensor { radius_m: 5 }";
+const char* const kEndsWhenFound =
+    "world { objects { count: 5 end_when_found: 3 } }\nsensor { radius_m: 8 }";
+
 const char* const kShortRests =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 1 } "
     "kind { name: \"b\" count: 2 } }";
@@ -168,9 +172,16 @@ const Plant kPlants[] = {
     {Invariant::kDistanceKept, "a neighbour's loiter circle is a point", "", kMixedCrowd},
     {Invariant::kDistanceKept, "a neighbour is taken for another vehicle", "", kMixedCrowd},
     {Invariant::kDetectionsInReach, "sensors detect from everywhere", "", kObjects},
+    {Invariant::kLooksAreTrue, "a tile is added to the one before", "", kSearch},
+    {Invariant::kLooksAreTrue, "an old tile replaces a newer one", kLateBlocks, kSearch},
+    {Invariant::kLooksAreTrue, "a relayed row is the relayer's", "", kSearch, "", "--lockstep"},
     {Invariant::kFindsAreRecorded, "a find is recorded a tick late", "", kObjects, "",
      "--lockstep"},
     {Invariant::kFindsAreRecorded, "no find is recorded", "", kObjects, "", "--lockstep"},
+    {Invariant::kEndsOnceFound, "finds end nothing", "", kEndsWhenFound, "names no end at tick",
+     "--lockstep"},
+    {Invariant::kEndsOnceFound, "the first find ends the mission", "", kEndsWhenFound,
+     "names an end, and ", "--lockstep"},
     {Invariant::kWallsKept, "walls are air", "", kWalledCrowd},
     {Invariant::kWallsKept, "walls keep half of their clearance", "", kWalledCrowd},
     {Invariant::kWallsKept, "held commands know no walls", "loss = 0.3", kWalled},

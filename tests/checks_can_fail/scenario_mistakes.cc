@@ -246,6 +246,13 @@ std::vector<Mistake> mistakes_of_objects() {
               "speed_limit_mps: 1000 " + wall("60 10 80 10 80 30 60 30")),
       in_space(kLaw, "world { objects { count: 2 } } law {",
                "world.objects: objects belong to a plane"),
+      objects("count: 2 end_when_found: 3",
+              "world.objects.end_when_found: 3 is above the number of objects, 2"),
+      objects(place + "end_when_found: 2", "2 is above the number of objects, 1"),
+      {"agents {",
+       "world { objects { count: 2 end_when_found: 1 } } agents { kind { name: \"a\" count: 1 "
+       "station { x_m: 10 y_m: 20 } }",
+       "world.objects.end_when_found: the agents would have no time to go"},
   };
 }
 

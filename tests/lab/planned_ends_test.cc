@@ -3,6 +3,7 @@
 // it.
 #include <gtest/gtest.h>
 
+#include "core/mission/end_by_finding.h"
 #include "core/mission/end_schedule.h"
 #include "core/mission/station.h"
 #include "tests/support/simulated_team.h"
@@ -72,6 +73,61 @@ TEST(PlannedEnds, AnEndThatIsTakenBackChangesNothing) {
   name_end(list, 100, mission.timing.tick_count);
   const Ended ended(mission, list), planned(mission, {});
   EXPECT_EQ(ended.trajectory.str(), planned.trajectory.str());
+}
+
+/// Six objects are hidden.
+Mission finding(int end_when_found) {
+  Overrides overrides;
+  overrides.pace = Pace::kLockstep;
+  overrides.duration_s = 120;
+  Mission mission = shipped_mission("quadrimodal_corners", overrides);
+  mission.sensor.radius_m = 150;
+  mission.objects.count = 6;
+  mission.objects.end_when_found = end_when_found;
+  return mission;
+}
+
+// In lockstep the world stays at the tick of the last find, so the end is a function of the plan.
+TEST(EndByFinding, IsThreeTicksAfterTheFindAndRepeatsBitForBit) {
+  const Ended whole(finding(0), {}), ended(finding(2), {});
+  const std::vector<Find>& finds = whole.facts().finds.list();
+  ASSERT_GT(finds.size(), 2u);
+  const Tick last = finds[1].tick;
+  EXPECT_EQ(ended.facts().ticks, last + 3);
+  EXPECT_EQ(ended.facts().finds.list().size(), 2u);
+  EXPECT_EQ(ended.simulation.coordinator().reason(), "2 of 6 objects are found");
+  const Amendments& list = ended.simulation.coordinator().amendments();
+  ASSERT_EQ(list.ends.size(), 1u);
+  EXPECT_EQ(list.ends[0], (EndChange{0, last + 2, last + 3}));
+  EXPECT_EQ(list.recent[0].by, kByFinding);
+  const std::string rows = ended.trajectory.str(), until = std::to_string(last + 2) + ",";
+  EXPECT_EQ(whole.trajectory.str().substr(0, rows.find("\n" + until)),
+            rows.substr(0, rows.find("\n" + until)));
+  const Ended again(finding(2), list);  // as verify repeats it
+  EXPECT_EQ(again.trajectory.str(), rows);
+  EXPECT_EQ(again.simulation.coordinator().amendments(), list);
+}
+
+TEST(EndByFinding, IsTheSameIfMessagesAreLost) {
+  const Ended ended(finding(2), {});
+  std::ostringstream trajectory, metrics;
+  int messages = 0;
+  lab::Simulation lossy({.plan = encode_plan(finding(2)),
+                         .drop = [&](const Message&, lab::NodeId) { return ++messages % 4 == 0; }},
+                        trajectory, metrics);
+  lossy.run();
+  EXPECT_EQ(trajectory.str(), ended.trajectory.str());
+  EXPECT_EQ(lossy.coordinator().amendments().ends,
+            ended.simulation.coordinator().amendments().ends);
+}
+
+TEST(EndByFinding, IsNotNamedIfThePlansEndIsNear) {
+  Mission mission = finding(2);
+  const Ended ended(mission, {});
+  mission.timing.tick_count = ended.facts().ticks;
+  const Ended by_plan(mission, {});
+  EXPECT_TRUE(by_plan.simulation.coordinator().amendments().ends.empty());
+  EXPECT_EQ(by_plan.facts().ticks, ended.facts().ticks);
 }
 
 }  // namespace

@@ -241,6 +241,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(wire.skipped_ticks, 5);
   EXPECT_EQ(wire.clamped_commands, 6);
   EXPECT_EQ(wire.uncounted_ticks, 7);
+  EXPECT_EQ(static_cast<ObjectSet>(wire.found), 0x80000003);
   EXPECT_EQ(wire.state_part, 1);
   EXPECT_EQ(wire.state_parts, 8);
   ASSERT_EQ(wire.vehicle_count, 2);

@@ -165,6 +165,7 @@ inline WorldState world_state() {
   m.skipped_ticks = 5;
   m.clamped_commands = 6;
   m.uncounted_ticks = 7;
+  m.found = 0x80000003;
   m.part = 1;
   m.parts = 8;
   m.vehicle_count = 2;

@@ -104,9 +104,9 @@ inline Mission rich_mission_in_space() {
   return mission;
 }
 
-/// The mission with objects at known places; it must be in a plane.
+/// The mission with objects at known places; it must be in a plane, and without stations.
 inline Mission with_places(Mission mission) {
-  mission.objects = {0, {{20, 21, 0}, {22, 23, 0}}};
+  mission.objects = {0, {{20, 21, 0}, {22, 23, 0}}, 2};
   return mission;
 }
 

@@ -63,6 +63,27 @@ TEST_F(FindingObjects, AreFoundOnceInSpiteOfKills) {
   EXPECT_EQ(summary()["objects"], objects);
 }
 
+/// The end is named at the same tick as in one process, and the record repeats.
+TEST_F(FindingObjects, EndTheMissionIfThatIsWanted) {
+  const std::vector<std::string> set{"--set", kObjects, "--set", "world.objects.end_when_found=2",
+                                     "--set", kRadius};
+  const auto objects = simulated(set);
+  EXPECT_EQ(objects["found"], 2);
+  ASSERT_EQ(ergocast({"keygen", folder_ / "team"}), 0) << output();
+  std::vector<std::string> words{"run", scenario(), "--lockstep", "--out", out()};
+  words.insert(words.end(), set.begin(), set.end());
+  EXPECT_EQ(ergocast(words), 2) << "without a key";
+  EXPECT_NE(output().find("without a key any program"), std::string::npos) << output();
+  words.insert(words.end(), {"--key-file", folder_ / "team.coordinator.key"});
+  ASSERT_EQ(ergocast(words), 0) << output();
+  EXPECT_NE(output().find("2 of 6 objects are found"), std::string::npos) << output();
+  EXPECT_EQ(summary()["objects"], objects);
+  EXPECT_EQ(summary()["amendments"][0]["by"], "finding");
+  EXPECT_EQ(text_of(out() / "trajectory.csv"), text_of(folder_ / "simulated" / "trajectory.csv"));
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  EXPECT_EQ(ergocast({"verify", folder_ / "simulated"}), 0) << output();
+}
+
 TEST_F(FindingObjects, WithoutObjectsNothingIsSaid) {
   ASSERT_EQ(ergocast({"simulate", scenario(), "--duration", "20", "--out", out()}), 0) << output();
   EXPECT_FALSE(summary().contains("objects"));

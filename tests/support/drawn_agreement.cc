@@ -187,15 +187,22 @@ void agree_on_vehicles(proto::Scenario& scenario) {
   scenario.mutable_world()->clear_disturbance_intensity();
 }
 
-/// Objects are counted or placed, in a plane and beside the walls.
+/// Objects are counted or placed, in a plane and beside the walls. A team with stations does not
+/// end when they are found.
 void agree_on_objects(proto::Scenario& scenario) {
   proto::World& world = *scenario.mutable_world();
   if (!world.has_objects()) return;
   proto::Objects& objects = *world.mutable_objects();
   if (scenario.domain().has_size_z_m()) return world.clear_objects();
   for (proto::Start& place : *objects.mutable_places()) place.set_x_m(std::min(place.x_m(), 80.0));
-  if (objects.places_size() > 0) return objects.clear_count();
-  if (!objects.has_count()) objects.set_count(1);
+  if (objects.places_size() > 0) objects.clear_count();
+  if (objects.places_size() == 0 && !objects.has_count()) objects.set_count(1);
+  const auto& kinds = scenario.agents().kind();
+  if (std::ranges::any_of(kinds, [](const auto& kind) { return kind.station_size() > 0; }))
+    objects.clear_end_when_found();
+  if (objects.has_end_when_found())
+    objects.set_end_when_found(
+        std::min(objects.end_when_found(), std::max(objects.places_size(), objects.count())));
 }
 
 /// A plane, sensors that see points, and a table that is soon computed.

@@ -259,6 +259,7 @@ const std::map<std::string, Rule>& rules() {
       {"World.objects", may(draw_block)},
       {"Objects.count", may(number(1, 6))},  // or places: see drawn_agreement.h
       {"Objects.places", many(0, 3)},
+      {"Objects.end_when_found", may(number(1, 3))},  // see drawn_agreement.h
       {"World.wall_clearance_m", may(either(0, number(0.5, 1)))},
       {"World.disturbance_intensity", may(spread(0.01, 5))},
       {"World.radio_range_m", may(either(0, spread(5, 500)))},

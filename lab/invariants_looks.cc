@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks that what agents hold of each other's looks is what its author sent, and counts once.
+#include <optional>
+#include <string>
+
+#include "lab/invariants.h"
+
+namespace ergocast::lab {
+
+/// An author sends the same counts of a tile as long as it has not looked there again.
+void Invariants::note_looks(const Effort& own) {
+  const auto tiles = std::span(own.tiles).first(static_cast<std::size_t>(own.tile_count));
+  auto& sent = looks_sent_[own.author()];
+  for (const SentTile& tile : tiles)
+    sent[{tile.number, tile.content.newest_look}] = tile.content.looks;
+}
+
+/// Without a half-life: counts that are halved differ from those that were sent.
+void Invariants::check_looks(double t_s, const TableView& holder) {
+  if (holder.efforts == nullptr || mission_.law.memory_half_life_s > 0) return;
+  const Efforts& efforts = *holder.efforts;
+  std::string wrong;
+  std::vector<std::array<std::uint32_t, kTileCells>> sums(efforts.cells().tile_count());
+  for (std::size_t row = 0; row < efforts.row_count(); ++row) {
+    const Author& author = efforts.author(row);
+    const auto& sent = looks_sent_[author];
+    std::size_t number = 0;
+    for (const EffortTile& tile : *efforts.row_of(author)) {
+      for (std::size_t slot = 0; slot < kTileCells; ++slot) sums[number][slot] += tile.looks[slot];
+      const auto known = sent.find({static_cast<std::int32_t>(number++), tile.newest_look});
+      if (tile.newest_look < 0 || author == holder.self) continue;
+      if (known == sent.end() || known->second != tile.looks)
+        wrong = text("tile ", number - 1, " of ", name_of(author), " at tick ", tile.newest_look);
+    }
+  }
+  for (std::size_t tile = 0; tile < sums.size(); ++tile)
+    for (std::size_t slot = 0; slot < kTileCells; ++slot)
+      if (efforts.looks({tile, slot}) != sums[tile][slot])
+        wrong = text("the sum in tile ", tile, ", ", sums[tile][slot], " in its rows");
+  if (!wrong.empty()) violate(t_s, Invariant::kLooksAreTrue, name_of(holder.self), wrong);
+}
+
+}  // namespace ergocast::lab
