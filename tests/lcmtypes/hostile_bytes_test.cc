@@ -86,7 +86,7 @@ constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
 
 TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
   constexpr std::size_t kRosterCount = kSignatureEnd + 25, kPlanSize = kSignatureEnd + 29,
-                        kVehicleCount = kHeaderBytes + 49, kDigestCount = kHeaderBytes + 8,
+                        kVehicleCount = kHeaderBytes + 53, kDigestCount = kHeaderBytes + 8,
                         kEchoCount = kHeaderBytes + 58;
   // The offsets are right: writing the true counts there changes nothing.
   ASSERT_EQ(with_count(mission_part(), kRosterCount, 2), encoded(mission_part()));

@@ -230,7 +230,8 @@ TEST_F(Maps, ThatAreNoFilesAreNamed) {
   expect_said(folder_ / "folder.png", " is a folder, not a file");
   for (const char* name : {"a.png", "a.asc"}) expect_said(written(name, ""), " is empty");
   EXPECT_EQ(map_kind("a.Asc"), MapKind::kAsciiGrid);
-  EXPECT_FALSE(map_kind("a.tif"));
+  EXPECT_EQ(map_kind("a.TIFF"), MapKind::kGeoTiff);
+  EXPECT_FALSE(map_kind("a.bmp"));
   EXPECT_FALSE(map_kind("png"));
 }
 
