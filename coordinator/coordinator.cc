@@ -9,6 +9,7 @@
 
 #include "coordinator/recalling.h"
 #include "core/base/require.h"
+#include "core/mission/end_by_finding.h"
 #include "plan/plan.h"
 #include "team/median_metric.h"
 
@@ -131,20 +132,14 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   if (is_newest && state_ == MissionState::kRunning)
     amending_.note_found(std::popcount(world.found), std::popcount(found_), *mission_, ticks_,
                          signs, announcement_);
-  if (is_newest && tick() >= end_tick()) end(false, why_complete(), now);
+  if (is_newest && tick() >= end_tick())
+    end(false, why_complete(mission_->objects, std::popcount(found_)), now);
 }
 
 void Coordinator::on(const RecordAck& ack, const Arrival& arrival) {
   if (!arrival.fresh) return;
   ending_.note_logger(ack.last);
   for (const Find& find : ack.all_finds()) found_ |= ObjectSet{1} << find.object;
-}
-
-std::string Coordinator::why_complete() const {
-  const HiddenObjects& objects = mission_->objects;
-  const int found = std::popcount(found_);
-  if (objects.end_when_found == 0 || found < objects.end_when_found) return "mission complete";
-  return std::to_string(found) + " of " + std::to_string(objects.total()) + " objects are found";
 }
 
 void Coordinator::on(const TeamStatus& theirs, const Arrival& arrival) {

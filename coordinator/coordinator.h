@@ -130,7 +130,6 @@ class Coordinator {
   void admit(const Newcomer& newcomer, Instant now);
   void check_admission(Instant now);
   void check_tick(Instant now);
-  std::string why_complete() const;
   void start_with_quorum(Instant now);
   void publish_due(Instant now, Outbox& out);
   void publish_mission(Outbox& out);

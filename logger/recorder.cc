@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/mission/end_by_finding.h"
 #include "core/motion/filter_rules.h"
 
 namespace ergocast {
@@ -127,7 +128,8 @@ void Recorder::advance(Instant now, Outbox& out) {
     write_rows(now);
     if (all_rows_written() && !ending_.since) {
       ending_.since = now;
-      ending_.reason = "mission complete";
+      ending_.reason =
+          why_complete(mission().objects, static_cast<int>(tables_.facts().finds.list().size()));
     }
   }
   const bool patience_ends = ending_.since && now - std::max(*ending_.since, progress_) >= kLinger;

@@ -40,4 +40,9 @@ Amendments without_end_by_finding(Amendments list) {
   return list;
 }
 
+std::string why_complete(const HiddenObjects& objects, int found) {
+  if (objects.end_when_found == 0 || found < objects.end_when_found) return "mission complete";
+  return std::to_string(found) + " of " + std::to_string(objects.total()) + " objects are found";
+}
+
 }  // namespace ergocast

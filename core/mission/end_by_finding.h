@@ -6,6 +6,8 @@
 // mission end at the same tick.
 #pragma once
 
+#include <string>
+
 #include "core/base/ids.h"
 #include "core/mission/amendments.h"
 #include "core/mission/mission.h"
@@ -25,5 +27,8 @@ Tick soonest_tick_count(const Amendments& list, Tick from);
 
 /// The list as it was before such an end was named; the same list if its newest amendment is none.
 Amendments without_end_by_finding(Amendments list);
+
+/// Why a mission is complete, for people: its time is over, or enough objects are found.
+std::string why_complete(const HiddenObjects& objects, int found);
 
 }  // namespace ergocast

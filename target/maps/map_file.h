@@ -56,15 +56,14 @@ enum class MapKind { kPng, kPgm, kCsv, kAsciiGrid, kGeoTiff, kOccupancy };
 
 /// Whether files of a kind state their extent.
 inline bool states_extent(MapKind kind) {
-  return kind == MapKind::kAsciiGrid || kind == MapKind::kGeoTiff ||
-         kind == MapKind::kOccupancy;
+  return kind == MapKind::kAsciiGrid || kind == MapKind::kGeoTiff || kind == MapKind::kOccupancy;
 }
 
 /// Why `file` cannot be opened; nothing if it can.
 std::optional<MapProblem> why_unreadable(const std::filesystem::path& file);
 
-/// The kind by the extension .png, .pgm, .csv, .asc, .tif, .tiff, .yaml or .yml, in either case; nothing for any
-/// other.
+/// The kind by the extension .png, .pgm, .csv, .asc, .tif, .tiff, .yaml or .yml, in either case;
+/// nothing for any other.
 std::optional<MapKind> map_kind(const std::filesystem::path& file);
 
 /// Opens a map and reads its dimensions.

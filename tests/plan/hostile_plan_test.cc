@@ -357,7 +357,9 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m.objects.count = 33; },
       [](Mission& m) { m = rich_mission_in_space(), m.objects.count = 1; },
       [](Mission& m) { m = with_places(m), m.objects.count = 1; },
-      [](Mission& m) { m.objects = {0, {}, 1}; },  // of none
+      [](Mission& m) {
+        m.objects = {0, {}, 1};
+      },  // of none
       [](Mission& m) { m = with_places(m), m.objects.end_when_found = 3; },
       [](Mission& m) { m = with_places(m), m.objects.end_when_found = -1; },
       [](Mission& m) { m = with_places(with_stations(m)); },
