@@ -119,8 +119,8 @@ std::optional<Refusal> CoverageExchange::merge(const Contribution& theirs, int k
     case Merge::kRefusedRange:
       return Refusal::kRange;
     case Merge::kRefusedShift:
-      // Its author may know of a new target first: in real time, or because its team goes on without
-      // us and we do not know that yet. It sends the block again.
+      // Its author may know of a new target first: in real time, or because its team goes on
+      // without us and we do not know that yet. It sends the block again.
       return std::nullopt;
     case Merge::kRefusedLimit:
       return Refusal::kLimit;
