@@ -129,8 +129,7 @@ std::vector<Mistake> mistakes_of_maps() {
   const std::string file = "file: \"even.csv\" ";
   std::vector<Mistake> all = {
       {kUniform, "maps { " + extent + " }", at + "is missing"},
-      {kUniform, map_of("even.pgm"), at},
-      {kUniform, map_of("even.yaml"), at},
+      {kUniform, map_of("even.jpg"), "even.jpg does not end in"},
       {kUniform, map_of("even.nc"), at},
       {kUniform, map_of("even.tif", " "), at + "a GeoTIFF needs to know"},
       {kUniform, map_of("good.asc", extent), "target.maps[0].origin_x_m: this kind of map states"},
