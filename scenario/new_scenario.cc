@@ -151,12 +151,7 @@ class Writer {
   std::optional<Problem> look() {
     const auto walls = read_map_walls(map_, domain_, false, {clearance_m_, std::nullopt});
     if (!walls) return named(walls.error());
-    Rings rings;
-    for (const PlacedPolygon& wall : walls->polygons) {
-      rings.push_back(wall.polygon.outline);
-      rings.insert(rings.end(), wall.polygon.holes.begin(), wall.polygon.holes.end());
-    }
-    room_.emplace(rings, domain_, 1.001 * clearance_m_);
+    room_.emplace(rings_of(*walls), domain_, 1.001 * clearance_m_);
     if (room_->parts() > 0) return {};
     return refuse("has no room for robots with a radius of " + shortest(team_.radius_m) + " m",
                   "write a smaller --radius, or correct the map's resolution");

@@ -74,12 +74,6 @@ tl::unexpected<PolygonFileProblem> refuse(std::string what, std::string remedy) 
   return failure(PolygonFileProblem{"", std::move(what), std::move(remedy)});
 }
 
-Rings rings_of(const Polygon& polygon) {
-  Rings rings = {polygon.outline};
-  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
-  return rings;
-}
-
 /// From units of the drawing to metres.
 class Placement {
  public:

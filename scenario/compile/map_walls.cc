@@ -191,15 +191,6 @@ class MapWallReader {
     return any;
   }
 
-  static Rings rings_of(const MapWalls& walls) {
-    Rings rings;
-    for (const PlacedPolygon& wall : walls.polygons) {
-      rings.push_back(wall.polygon.outline);
-      rings.insert(rings.end(), wall.polygon.holes.begin(), wall.polygon.holes.end());
-    }
-    return rings;
-  }
-
   /// The part of the region that is nearest to each free cell, by steps over free cells; none for
   /// cells that no body comes near.
   std::vector<int> parts_of(const CellGrid& cells, const FreeRegion& region, double kept_m) const {
@@ -237,10 +228,7 @@ class MapWallReader {
 
   static std::size_t corners_of(const std::vector<Polygon>& polygons) {
     std::size_t count = 0;
-    for (const Polygon& polygon : polygons) {
-      count += polygon.outline.size();
-      for (const Ring& hole : polygon.holes) count += hole.size();
-    }
+    for (const Polygon& polygon : polygons) count += vertex_count(rings_of(polygon));
     return count;
   }
 
@@ -276,6 +264,13 @@ Result<MapWalls, MapProblem> read_map_walls(const fs::path& yaml, const Box& dom
   auto map = OccupancyMap::open(yaml);
   if (!map) return failure(map.error());
   return MapWallReader(yaml, domain, unknown_free, bodies, *std::move(map)).run();
+}
+
+Rings rings_of(const MapWalls& walls) {
+  Rings rings;
+  for (const PlacedPolygon& wall : walls.polygons)
+    for (Ring& ring : rings_of(wall.polygon)) rings.push_back(std::move(ring));
+  return rings;
 }
 
 }  // namespace ergocast

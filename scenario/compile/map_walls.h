@@ -34,4 +34,7 @@ struct MapBodies {
 Result<MapWalls, MapProblem> read_map_walls(const std::filesystem::path& yaml, const Box& domain,
                                             bool unknown_free, const MapBodies& bodies);
 
+/// Outlines and holes of all.
+Rings rings_of(const MapWalls& walls);
+
 }  // namespace ergocast

@@ -30,16 +30,9 @@ std::string text_of(const Box& domain) {
   return sides(domain.size_m) + " m from (" + sides(domain.origin_m) + ")";
 }
 
-Rings rings_of(const proto::Polygon& polygon) {
-  Polygon plain = polygon_of(polygon);
-  Rings rings = std::move(plain.holes);
-  rings.push_back(std::move(plain.outline));
-  return rings;
-}
-
 /// Whether each ring of the polygon is one of the walls, corner by corner.
 bool is_among(const proto::Polygon& polygon, const Rings& walls) {
-  return std::ranges::all_of(rings_of(polygon), [&walls](const Ring& ring) {
+  return std::ranges::all_of(rings_of(polygon_of(polygon)), [&walls](const Ring& ring) {
     return std::ranges::find(walls, ring) != walls.end();
   });
 }

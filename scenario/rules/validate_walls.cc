@@ -99,12 +99,7 @@ class WallRules {
     return true;
   }
 
-  static Rings rings_of(const Wall& wall) {
-    const Polygon polygon = polygon_of(*wall.polygon);
-    Rings rings = {polygon.outline};
-    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
-    return rings;
-  }
+  static Rings rings_of(const Wall& wall) { return ergocast::rings_of(polygon_of(*wall.polygon)); }
 
   /// Checks that no two walls touch, and that a wall lies in another one only in a room. False if
   /// that takes too long.

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/geometry.h"
@@ -20,6 +22,10 @@ namespace ergocast {
 /// Limit (Files of a scenario): columns and rows of a GeoTIFF in the domain. Beyond it: the
 /// scenario is refused.
 inline constexpr int kMaxGeoTiffSide = 4096;
+
+/// The name under which GDAL opens a file, and nothing else: it is absolute. Nothing for files in
+/// folders that GDAL takes for virtual ones.
+std::optional<std::string> gdal_name(const std::filesystem::path& file);
 
 /// Whether read_gdal_polygons() reads a file of this name: .gpkg and .shp.
 bool is_gdal_polygons(const std::filesystem::path& file);

@@ -26,7 +26,7 @@ void note_error(int level, int /*number*/, const char* message) {
 
 }  // namespace
 
-const std::string& GdalLibrary::error() { return first_error; }
+std::string GdalLibrary::reported() { return first_error.empty() ? "" : ": " + first_error; }
 
 bool GdalLibrary::load(const char* const* drivers, bool warnings) {
   setenv("OPENBLAS_NUM_THREADS", "1", 1);  // each thread of it would take memory

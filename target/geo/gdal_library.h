@@ -66,8 +66,8 @@ struct GdalLibrary {
   /// @param drivers    names of functions that register one, which end with a nullptr
   /// @param warnings   whether warnings count as errors
   bool load(const char* const* drivers, bool warnings);
-  /// What the library reported first; empty if nothing.
-  static const std::string& error();
+  /// What the library reported first, after ": "; empty if nothing.
+  static std::string reported();
 
   /// Longitude before latitude, east before north. Nothing (nullptr) if GDAL knows no way that is
   /// as exact as the two systems.

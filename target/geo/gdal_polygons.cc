@@ -38,19 +38,17 @@ class LayerReader {
     constexpr unsigned kVector = 4, kReportsErrors = 64;
     const Handle dataset =
         gdal_.GDALOpenEx(file_.c_str(), kVector | kReportsErrors, nullptr, nullptr, nullptr);
-    if (dataset == nullptr) reject_layer("", "cannot be opened" + reported(), "save it anew");
+    if (dataset == nullptr)
+      reject_layer("", "cannot be opened" + GdalLibrary::reported(), "save it anew");
     for (int i = 0; i < gdal_.GDALDatasetGetLayerCount(dataset); ++i)
       layer(gdal_.GDALDatasetGetLayer(dataset, i));
-    if (!GdalLibrary::error().empty()) reject_layer("", "GDAL" + reported(), "save it anew");
+    if (!GdalLibrary::reported().empty())
+      reject_layer("", "GDAL" + GdalLibrary::reported(), "save it anew");
     if (found_.empty()) reject_layer("", "has no polygon", "draw one, or name another file");
     return found_;
   }
 
  private:
-  static std::string reported() {
-    return GdalLibrary::error().empty() ? "" : ": " + GdalLibrary::error();
-  }
-
   void layer(Handle layer) {
     constexpr int kTable = 100;  // without places
     if (gdal_.OGR_L_GetGeomType(layer) == kTable) return;
@@ -74,7 +72,7 @@ class LayerReader {
                    "name its reference system: ogr2ogr -a_srs EPSG:25832 out.gpkg in.shp");
     to_earth_ = gdal_.transformation(reference, earth_);
     if (to_earth_ == nullptr)
-      reject_layer(name, "cannot be brought to WGS 84" + reported(),
+      reject_layer(name, "cannot be brought to WGS 84" + GdalLibrary::reported(),
                    "convert it: ogr2ogr -t_srs EPSG:4326 out.gpkg in.gpkg");
   }
 
@@ -116,7 +114,7 @@ class LayerReader {
     Json places = Json::array();
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (done[i] == 0 || !(std::abs(x[i]) <= 180) || !(std::abs(y[i]) <= 90))
-        reject_layer(member, "has a place that is nowhere on the earth" + reported(),
+        reject_layer(member, "has a place that is nowhere on the earth" + GdalLibrary::reported(),
                      "name its reference system: ogr2ogr -a_srs EPSG:25832 out.gpkg in.gpkg");
       if (i == 0 || x[i] != x[i - 1] || y[i] != y[i - 1]) {
         places.push_back(x[i]);
@@ -153,6 +151,12 @@ std::string polygons_answer(const fs::path& file) {
 
 }  // namespace
 
+std::optional<std::string> gdal_name(const fs::path& file) {
+  std::string name = fs::weakly_canonical(fs::absolute(file)).string();
+  if (name.starts_with("/vsi")) return std::nullopt;
+  return name;
+}
+
 bool is_gdal_polygons(const fs::path& file) {
   return file.extension() == ".gpkg" || file.extension() == ".shp";
 }
@@ -161,16 +165,16 @@ Result<std::vector<GeoPolygon>, PolygonFileProblem> read_gdal_polygons(const fs:
   const InputFile in(file);
   if (const auto& problem = in.problem())
     return failure(PolygonFileProblem{"", problem->what, problem->remedy});
-  // An absolute name is that of a file, whatever it begins with.
-  const fs::path whole = fs::weakly_canonical(fs::absolute(file));
-  if (whole.string().starts_with("/vsi"))
+  const auto whole = gdal_name(file);
+  if (!whole)
     return failure(PolygonFileProblem{"", "has the name of a virtual file", "move it elsewhere"});
-  const auto told = in_bounded_child(std::size_t{64} << 20, [&] { return polygons_answer(whole); });
+  const auto told =
+      in_bounded_child(std::size_t{64} << 20, [&] { return polygons_answer(*whole); });
   if (!told)
     return failure(
         PolygonFileProblem{"", "GDAL cannot read it within 20 s of processor time and 768 MiB",
                            "simplify it: ogr2ogr -simplify 1 out.gpkg in.gpkg"});
-  const Json result = Json::parse(*told);
+  const Json result = Json::parse(*told);  // the child has printed all of it
   if (result.contains("problem")) {
     const auto& problem = result["problem"];
     return failure(PolygonFileProblem{problem[0], problem[1], problem[2]});

@@ -28,7 +28,6 @@ struct BadTiff {
 [[noreturn]] void reject_tiff(std::string what, std::string remedy) {
   throw BadTiff{std::move(what), std::move(remedy)};
 }
-std::string reported() { return GdalLibrary::error().empty() ? "" : ": " + GdalLibrary::error(); }
 
 /// Cells of the plane along an axis: from `first` times `size` beyond `anchor`.
 struct Cells {
@@ -54,7 +53,8 @@ class TiffReader {
     choose_cells();
     find_pixels();
     std::string cells = values();
-    if (!GdalLibrary::error().empty()) reject_tiff(" is broken" + reported(), "save it anew");
+    if (!GdalLibrary::reported().empty())
+      reject_tiff(" is broken" + GdalLibrary::reported(), "save it anew");
     const Json head = {x_.count, y_.count,           x_.low(),
                        y_.low(), x_.count * x_.size, y_.count * y_.size};
     return head.dump() + '\n' + std::move(cells);
@@ -66,7 +66,7 @@ class TiffReader {
     if (!gdal_.load(drivers, false)) reject_tiff(' ' + gdal_is_missing(), gdal_remedy());
     constexpr unsigned kRaster = 2, kReportsErrors = 64;
     data_ = gdal_.GDALOpenEx(file_.c_str(), kRaster | kReportsErrors, nullptr, nullptr, nullptr);
-    if (data_ == nullptr) reject_tiff(" is no GeoTIFF" + reported(), "save it anew");
+    if (data_ == nullptr) reject_tiff(" is no GeoTIFF" + GdalLibrary::reported(), "save it anew");
     constexpr int kAlpha = 6;
     const int bands = gdal_.GDALGetRasterCount(data_);
     const bool masked = bands == 2 && gdal_.GDALGetRasterColorInterpretation(
@@ -99,7 +99,7 @@ class TiffReader {
     to_plane_ = gdal_.transformation(reference, plane);
     from_plane_ = gdal_.transformation(plane, reference);
     if (to_plane_ == nullptr || from_plane_ == nullptr)
-      reject_tiff(" cannot be brought to the scenario's plane" + reported(),
+      reject_tiff(" cannot be brought to the scenario's plane" + GdalLibrary::reported(),
                   "convert it: gdalwarp -t_srs EPSG:4326 in.tif out.tif");
   }
 
@@ -107,7 +107,7 @@ class TiffReader {
     int done = 0;
     gdal_.OCTTransformEx(transformation, 1, &at.x(), &at.y(), nullptr, &done);
     if (done == 0)
-      reject_tiff(" does not reach to the domain" + reported(),
+      reject_tiff(" does not reach to the domain" + GdalLibrary::reported(),
                   "move the origin or the domain there");
     return at;
   }
@@ -180,7 +180,7 @@ class TiffReader {
     };
     if (!read(band_, window.data(), kDouble) ||
         !read(gdal_.GDALGetMaskBand(band_), mask.data(), kByte))
-      reject_tiff(" is broken" + reported(), "save it anew");
+      reject_tiff(" is broken" + GdalLibrary::reported(), "save it anew");
     const double scale = factor(gdal_.GDALGetRasterScale, 1);
     const double offset = factor(gdal_.GDALGetRasterOffset, 0);
     std::string bytes;
@@ -231,12 +231,22 @@ std::string tiff_answer(const fs::path& file, const GeoPlace& origin, const Box&
   }
 }
 
+/// A problem, or the size and place of as many cells as follow; null if the child has failed.
+Json head_of(const std::string& answer) {
+  const std::size_t line = std::min(answer.find('\n'), answer.size());
+  Json head = Json::parse(answer.substr(0, line), nullptr, false);
+  if (head.is_object()) return head;
+  if (!head.is_array() || head.size() != 6) return {};
+  const std::size_t cells = head[0].get<std::size_t>() * head[1].get<std::size_t>();
+  return answer.size() == line + 1 + cells * sizeof(double) ? head : Json();
+}
+
 class GeoTiff : public MapFile {
  public:
   /// @param head    of the child's answer
-  /// @param answer  with the cells from `begin` on
-  GeoTiff(const Json& head, std::string answer, std::size_t begin)
-      : answer_(std::move(answer)), at_(begin) {
+  /// @param answer  which ends with the cells
+  GeoTiff(const Json& head, std::string answer)
+      : answer_(std::move(answer)), at_(answer_.find('\n') + 1) {
     columns_ = head[0];
     rows_ = head[1];
     extent_ = Rectangle{Vector2d(head[2].get<double>(), head[3].get<double>()),
@@ -258,21 +268,20 @@ class GeoTiff : public MapFile {
 
 OpenedMap open_geotiff(const fs::path& file, const GeoPlace& origin, const Box& domain) {
   if (auto problem = why_unreadable(file)) return failure(*problem);
-  const fs::path whole = fs::weakly_canonical(fs::absolute(file));
-  if (whole.string().starts_with("/vsi"))
+  const auto whole = gdal_name(file);
+  if (!whole)
     return failure(
         MapProblem{file.string() + " has the name of a virtual file", "move it elsewhere"});
   auto told =
-      in_bounded_child(std::size_t{192} << 20, [&] { return tiff_answer(whole, origin, domain); });
-  if (!told)
+      in_bounded_child(std::size_t{192} << 20, [&] { return tiff_answer(*whole, origin, domain); });
+  const Json head = told ? head_of(*told) : Json();
+  if (head.is_null())
     return failure(MapProblem{
         file.string() + ": GDAL cannot read it within 20 s of processor time and 768 MiB",
         "coarsen it: gdalwarp -r average -ts 2000 0 in.tif out.tif"});
-  const std::size_t line = std::min(told->find('\n'), told->size());
-  const Json head = Json::parse(told->begin(), told->begin() + static_cast<std::ptrdiff_t>(line));
   if (head.is_object())
     return failure(MapProblem{file.string() + head["what"].get<std::string>(), head["remedy"]});
-  return std::make_unique<GeoTiff>(head, *std::move(told), line + 1);
+  return std::make_unique<GeoTiff>(head, *std::move(told));
 }
 
 }  // namespace ergocast

@@ -161,7 +161,10 @@ Result<PaintedDrawing, PolygonFileProblem> paint_svg(const std::string& svg,
                     solid_white};
   PaintedDrawing painted{CellGrid(paint.columns, paint.rows), cell};
   const auto told = in_bounded_child(std::size_t{1} << 23, [&] { return Painter(paint).paint(); });
-  if (!told || told->empty())
+  const bool is_whole = told && !told->empty() &&
+                        (static_cast<Outcome>(told->front()) != Outcome::kPainted ||
+                         told->size() == 1 + painted.solid.size());
+  if (!is_whole)
     return refuse("librsvg cannot paint it within 20 s of processor time and 768 MiB",
                   "delete or hide all but the walls: in Inkscape, by layers");
   const std::string rest = told->substr(1);

@@ -36,10 +36,7 @@ class Geodata : public ::testing::Test {
   Coefficients mu(const std::string& target) const {
     return good(load(target)).mission().target_coefficients;
   }
-  std::string problems(const std::string& target) const {
-    const Loaded loaded = load(target);
-    return loaded ? "no problem" : joined(loaded.error());
-  }
+  std::string problems(const std::string& target) const { return problems_of(load(target)); }
   static std::string region(const std::string& file) {
     return "regions { polygon { file: \"" + file + "\" } }";
   }
@@ -212,6 +209,9 @@ TEST(BoundedChild, AnswersOrFails) {
   EXPECT_EQ(in_bounded_child(99, [] { return std::string(100, 'a'); }), std::nullopt);
   EXPECT_EQ(in_bounded_child(100, []() -> std::string { std::abort(); }), std::nullopt);
   EXPECT_EQ(in_bounded_child(100, []() -> std::string { throw std::bad_alloc(); }), std::nullopt);
+  // An exception must not go on in a second copy of the program.
+  EXPECT_EQ(in_bounded_child(100, []() -> std::string { throw std::runtime_error("a"); }),
+            std::nullopt);
 }
 
 }  // namespace

@@ -63,10 +63,7 @@ class OtherPeoplesFiles : public ::testing::Test {
   Coefficients mu(const std::string& target) const {
     return good(of_target(target)).mission().target_coefficients;
   }
-  std::string problems(const std::string& target) const {
-    const Loaded loaded = of_target(target);
-    return loaded ? "no problem" : joined(loaded.error());
-  }
+  std::string problems(const std::string& target) const { return problems_of(of_target(target)); }
 
   const TempFolder folder_;
 };

@@ -55,6 +55,10 @@ inline std::string joined(const std::vector<Problem>& problems) {
 
 using Loaded = Result<Scenario, std::vector<Problem>>;
 
+inline std::string problems_of(const Loaded& loaded) {
+  return loaded ? "no problem" : joined(loaded.error());
+}
+
 inline Scenario good(Loaded loaded) {
   if (!loaded) {
     throw std::runtime_error(joined(loaded.error()));  // fails the test, with the reason
