@@ -2,8 +2,10 @@
 // KML, GeoPackages, shapefiles and GeoTIFF in any reference system: the target and the walls that
 // the same shapes give in metres, or words that say why not.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <sstream>
 
 #include "core/motion/walls.h"
 #include "target/geo/bounded_child.h"
@@ -141,12 +143,16 @@ TEST_F(Geodata, LayersThatCouldLoseAShapeAreRefused) {
   EXPECT_TRUE(has(problems(region("a.shp")), "layer a: does not say where on the earth it lies"));
   write_shapefile(folder_.path() / "a.shp", box, 3);
   EXPECT_TRUE(has(problems(region("a.shp")), "layer a, feature 0: is a LINESTRING, not a polygon"));
+  write_shapefile(folder_.path() / "a.shp", {});
+  EXPECT_TRUE(has(problems(region("a.shp")), "layer a, feature 0: has no geometry"));
   write_shapefile(folder_.path() / "a.shp", {{1e9, 1e9}, {1e9, 2e9}, {2e9, 2e9}, {1e9, 1e9}});
   EXPECT_TRUE(has(problems(region("a.shp")), "a place that is nowhere on the earth"));
-  std::filesystem::resize_file(folder_.path() / "a.shp", 150);
-  EXPECT_TRUE(has(problems(region("a.shp")), "a.shp: "));
+  // The second one ends early.
+  write_shapefile(folder_.path() / "a.shp", box, 5, true, 2);
+  std::filesystem::resize_file(folder_.path() / "a.shp", 300);
+  EXPECT_TRUE(has(problems(region("a.shp")), "layer a, feature 1: has no geometry"));
   write("a.gpkg", "<OGRVRTDataSource><OGRVRTLayer name='a'/></OGRVRTDataSource>");
-  EXPECT_TRUE(has(problems(region("a.gpkg")), "a.gpkg: cannot be opened"));
+  EXPECT_TRUE(has(problems(region("a.gpkg")), "a.gpkg: cannot be opened: "));
   EXPECT_TRUE(has(problems(region("none.gpkg")), "none.gpkg: "));
 }
 
@@ -167,12 +173,40 @@ TEST_F(Geodata, GeoTiffInUtmIsTheSameAsAGridInMetres) {
   const Coefficients plain = mu(map("a.asc"));
   write("a.tif", tiff.bytes());
   expect_near(mu(map("a.tif")), plain);
+  TinyTiff packed = tiff;
+  packed.metadata =
+      "<GDALMetadata><Item name='SCALE' sample='0' role='scale'>0.25</Item>"
+      "<Item name='OFFSET' sample='0' role='offset'>-10</Item></GDALMetadata>";
+  for (float& value : packed.values)
+    if (value >= 0) value = 4 * (value + 10);
+  write("c.tif", packed.bytes());
+  expect_near(mu(map("c.tif")), plain);
   TinyTiff moved = tiff;  // half of it is outside the domain
   moved.upper_left_m.x() -= 20;
   write("b.tif", moved.bytes());
   write("b.asc", grid.replace(grid.find("xllcorner 0"), 11, "xllcorner -20"));
   expect_near(mu(map("b.tif")), mu(map("b.asc")));
   EXPECT_GE((mu(map("b.tif")) - plain).cwiseAbs().maxCoeff(), 0.05);
+}
+
+// EPSG:4326 names the latitude first, and files have the longitude first.
+TEST_F(Geodata, GeoTiffInDegreesIsWhereItIs) {
+  constexpr double kCell_deg = 1e-5, kWest_deg = 9.1679, kSouth_deg = 48.7864;
+  TinyTiff tiff;
+  tiff.columns = 20, tiff.rows = 10;
+  tiff.values.assign(200, 1);
+  tiff.cell_m = kCell_deg;
+  tiff.upper_left_m = {kWest_deg, kSouth_deg + 10 * kCell_deg};
+  tiff.system = 4326;
+  tiff.in_degrees = true;
+  write("a.tif", tiff.bytes());
+  std::ostringstream corners;
+  corners.precision(12);
+  for (const auto& [x, y] :
+       {std::pair(0, 0), std::pair(20, 0), std::pair(20, 10), std::pair(0, 10), std::pair(0, 0)})
+    corners << kWest_deg + x * kCell_deg << ',' << kSouth_deg + y * kCell_deg << ' ';
+  write("a.kml", kml(kml_polygon(corners.str())));
+  EXPECT_LE((mu(map("a.tif")) - mu(region("a.kml"))).cwiseAbs().maxCoeff(), 0.05);
 }
 
 TEST_F(Geodata, GeoTiffThatIsNoDensityHereIsRefused) {
@@ -195,9 +229,9 @@ TEST_F(Geodata, GeoTiffThatIsNoDensityHereIsRefused) {
   EXPECT_TRUE(has(said(with([](TinyTiff& t) { t.cell_m = 0.001; })),
                   "cells along a side of the domain, above the limit 4096"));
   write("a.tif", slope().bytes().substr(0, 3000));
-  EXPECT_TRUE(has(problems(map("a.tif")), "a.tif is broken"));
+  EXPECT_TRUE(has(problems(map("a.tif")), "a.tif is broken: "));
   write("a.tif", "<VRTDataset rasterXSize='1' rasterYSize='1'></VRTDataset>");
-  EXPECT_TRUE(has(problems(map("a.tif")), "a.tif is no GeoTIFF"));
+  EXPECT_TRUE(has(problems(map("a.tif")), "a.tif is no GeoTIFF: "));
   const Loaded nowhere = load(map("a.tif"), "");
   ASSERT_FALSE(nowhere);
   EXPECT_TRUE(has(joined(nowhere.error()), "needs to know where on the earth the scenario lies"));
@@ -209,9 +243,15 @@ TEST(BoundedChild, AnswersOrFails) {
   EXPECT_EQ(in_bounded_child(99, [] { return std::string(100, 'a'); }), std::nullopt);
   EXPECT_EQ(in_bounded_child(100, []() -> std::string { std::abort(); }), std::nullopt);
   EXPECT_EQ(in_bounded_child(100, []() -> std::string { throw std::bad_alloc(); }), std::nullopt);
-  // An exception must not go on in a second copy of the program.
-  EXPECT_EQ(in_bounded_child(100, []() -> std::string { throw std::runtime_error("a"); }),
-            std::nullopt);
+  // An exception must not go on in a second copy of the program, which here would end well.
+  const pid_t self = getpid();
+  try {
+    EXPECT_EQ(in_bounded_child(100, []() -> std::string { throw std::runtime_error("a"); }),
+              std::nullopt);
+  } catch (const std::runtime_error&) {
+    if (getpid() != self) _exit(0);
+    throw;
+  }
 }
 
 }  // namespace

@@ -214,6 +214,17 @@ TEST_F(OtherPeoplesFiles, ThinWallsAreClosed) {
                  solid, {{15, 11}});
   }
   expect_walls(with_wedge("crispEdges", ""), filled, {{20, 5}});
+  // These may lie between the rows in which a painting takes samples.
+  std::string hairs;
+  Places of_hairs;
+  for (const double at : {5.003, 8.011, 11.017, 14.007, 17.013, 20.005}) {
+    const std::string place = std::to_string(at);
+    hairs += "<ellipse cx='20' rx='9' ry='.0001' cy='" + place + "'/>";
+    of_hairs.emplace_back(20, at);
+  }
+  expect_walls(page_of(hairs), of_hairs, {{35, 15}});
+  expect_walls(page_of("<g transform='matrix(0 1 1 0 0 0)'>" + hairs + "</g>"), {{5.003, 20}},
+               {{5.5, 20}});
   expect_refused(page_of(circle + R"(<rect x="5" y="10" width="20" height="0.0001"/>)"),
                  "line 2: <rect>: is too thin to be painted");
   for (const char* thin : {

@@ -37,14 +37,17 @@ struct TinyTiff {
   Eigen::Vector2d upper_left_m{512330, 5403750};
   std::vector<float> values;  ///< from the north
   std::string no_data = "-9999";
+  std::string metadata;          ///< of GDAL, in XML
   std::uint16_t system = 32632;  ///< EPSG; 0 for none
   std::uint16_t bands = 1;
+  bool in_degrees = false;  ///< `system` has longitudes and latitudes, and lengths are in degrees
 
   std::string bytes() const {
     LittleEndian data, file, beside, tags;
     for (int band = 0; band < bands; ++band)
       for (const float value : values) data.add(value);
-    const std::uint32_t count = (system > 0 ? 13 : 10) + (no_data.empty() ? 0 : 1);
+    const std::uint32_t count =
+        (system > 0 ? 13 : 10) + (no_data.empty() ? 0 : 1) + (metadata.empty() ? 0 : 1);
     const std::uint32_t behind = 8 + 2 + 12 * count + 4;
     std::size_t offset_of_data = 0;
     const auto tag = [&](std::uint16_t number, std::uint16_t type, std::size_t values_in,
@@ -83,8 +86,10 @@ struct TinyTiff {
     if (system > 0) {
       doubles(33550, {cell_m, cell_m, 0});
       doubles(33922, {0, 0, 0, upper_left_m.x(), upper_left_m.y(), 0});
-      shorts(34735, {1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, system});
+      const std::uint16_t model = in_degrees ? 2 : 1, key = in_degrees ? 2048 : 3072;
+      shorts(34735, {1, 1, 0, 3, 1024, 0, 1, model, 1025, 0, 1, 1, key, 0, 1, system});
     }
+    if (!metadata.empty()) tag(42112, 2, metadata.size() + 1, metadata + '\0');
     if (!no_data.empty()) tag(42113, 2, no_data.size() + 1, no_data + '\0');
     const std::string at =
         LittleEndian().add(static_cast<std::uint32_t>(behind + beside.bytes.size())).bytes;
@@ -95,10 +100,13 @@ struct TinyTiff {
   }
 };
 
-/// A shapefile of one part: a ring (type 5) or a line (type 3) through these places [m].
+/// A shapefile of one part: a ring (type 5) or a line (type 3) through these places [m]. Without
+/// places it has no geometry.
+/// @param copies  the number of features, which are equal
 inline void write_shapefile(std::filesystem::path file, const std::vector<Eigen::Vector2d>& places,
-                            std::int32_t type = 5, bool with_system = true) {
-  Eigen::Vector2d low = places.front(), high = low;
+                            std::int32_t type = 5, bool with_system = true, int copies = 1) {
+  Eigen::Vector2d low(0, 0), high(0, 0);
+  if (!places.empty()) low = high = places.front();
   for (const auto& place : places) {
     low = low.cwiseMin(place);
     high = high.cwiseMax(place);
@@ -107,9 +115,11 @@ inline void write_shapefile(std::filesystem::path file, const std::vector<Eigen:
   const auto box = [&](LittleEndian& to) {
     to.add(low.x()).add(low.y()).add(high.x()).add(high.y());
   };
-  shape.add(type);
-  box(shape);
-  shape.add(std::int32_t{1}).add(static_cast<std::int32_t>(places.size())).add(std::int32_t{0});
+  shape.add(places.empty() ? std::int32_t{0} : type);
+  if (!places.empty()) {
+    box(shape);
+    shape.add(std::int32_t{1}).add(static_cast<std::int32_t>(places.size())).add(std::int32_t{0});
+  }
   for (const auto& place : places) shape.add(place.x()).add(place.y());
   const auto words = static_cast<std::int32_t>(shape.bytes.size() / 2);
   const auto head = [&](std::int32_t length) {
@@ -121,10 +131,14 @@ inline void write_shapefile(std::filesystem::path file, const std::vector<Eigen:
     for (int i = 0; i < 4; ++i) head.add(0.0);
     return head;
   };
-  std::ofstream(file, std::ios::binary)
-      << head(54 + words).add_turned(1).add_turned(words).bytes << shape.bytes;
+  LittleEndian shapes, index;
+  for (int copy = 0; copy < copies; ++copy) {
+    index.add_turned(50 + copy * (4 + words)).add_turned(words);
+    shapes.add_turned(copy + 1).add_turned(words).bytes += shape.bytes;
+  }
+  std::ofstream(file, std::ios::binary) << head(50 + copies * (4 + words)).bytes << shapes.bytes;
   std::ofstream(file.replace_extension(".shx"), std::ios::binary)
-      << head(54).add_turned(50).add_turned(words).bytes;
+      << head(50 + copies * 4).bytes << index.bytes;
   std::filesystem::remove(file.replace_extension(".prj"));
   if (with_system)
     std::ofstream(file) << R"(PROJCS["WGS_1984_UTM_Zone_32N",GEOGCS["GCS_WGS_1984",)"

@@ -87,6 +87,11 @@ class New : public OwnHost {
     more.insert(more.begin(), {"new", "--map", map, "--out", scenario()});
     return ergocast(more);
   }
+  /// Where the robots' centres can be, as the command has printed it.
+  double free_m2() {
+    const std::string said = output(), before = "their centres can be in ";
+    return std::stod(said.substr(said.find(before) + before.size()));
+  }
   std::filesystem::path scenario() const { return folder_ / "floor.textproto"; }
   /// The scenario, `check` of it and a short run have no warning.
   void expect_that_it_runs() {
@@ -103,6 +108,7 @@ class New : public OwnHost {
 
 TEST_F(New, WritesAScenarioThatRunsForRoomsACorridorAndATurnedMap) {
   ASSERT_EQ(make(map(kTwoRooms)), 0) << output();
+  const double straight_m2 = free_m2();
   expect_that_it_runs();
   EXPECT_NE(text_of(scenario()).find("file: \"maps/floor.yaml\""), std::string::npos);
   EXPECT_NE(text_of(scenario()).find("free_domain: true"), std::string::npos);
@@ -113,6 +119,7 @@ TEST_F(New, WritesAScenarioThatRunsForRoomsACorridorAndATurnedMap) {
   EXPECT_NE(text_of(scenario()).find("speed_limit_mps: 0.3"), std::string::npos);
 
   ASSERT_EQ(make(map(kTwoRooms, "[-3, 12.5, 0.4]")), 0) << output();
+  EXPECT_NEAR(free_m2(), straight_m2, 0.05 * straight_m2);
   expect_that_it_runs();
 }
 
