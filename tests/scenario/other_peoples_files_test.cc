@@ -351,6 +351,10 @@ TEST_F(OtherPeoplesFiles, GridsHaveTheNumbersThatTheirAttributesMean) {
     if (*attribute != '\0') column.at("chl").attributes.emplace_back(attribute, value);
     EXPECT_LE((of(column) - plain).cwiseAbs().maxCoeff(), 1e-14) << attribute;
   }
+  WaterColumn within;
+  land(within, 9999);
+  within.at("chl").attributes.emplace_back("valid_range", std::vector<double>{-0.05, 90});
+  EXPECT_LE((of(within) - plain).cwiseAbs().maxCoeff(), 1e-14);
   WaterColumn wrong;
   land(wrong, 9999);
   EXPECT_NE(of(wrong), plain);

@@ -20,7 +20,8 @@ struct NetcdfVariable {
   std::vector<std::string> dimensions;
   std::vector<double>
       values;  ///< the last dimension varies fastest; may be fewer than the dimensions ask for
-  std::vector<std::pair<std::string, std::variant<std::string, double>>> attributes;
+  std::vector<std::pair<std::string, std::variant<std::string, double, std::vector<double>>>>
+      attributes;
   NetcdfType type = NetcdfType::kDouble;
 };
 
@@ -72,8 +73,10 @@ class NetcdfWriter {
       if (const auto* text = std::get_if<std::string>(&what)) {
         all += word(static_cast<std::uint32_t>(NetcdfType::kText)) + name(*text);
       } else {
-        all += word(static_cast<std::uint32_t>(NetcdfType::kDouble)) + word(1) +
-               value(std::get<double>(what), NetcdfType::kDouble);
+        const auto* const one = std::get_if<double>(&what);
+        const auto numbers = one != nullptr ? std::vector{*one} : std::get<2>(what);
+        all += word(static_cast<std::uint32_t>(NetcdfType::kDouble)) + word(numbers.size());
+        for (const double number : numbers) all += value(number, NetcdfType::kDouble);
       }
     }
     return all;
