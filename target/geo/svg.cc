@@ -166,8 +166,8 @@ class SvgWalk {
     const auto refused = kRefused.find(name);
     if (refused == kRefused.end()) return true;
     const bool hidden = outer.hidden || (!sheets_ && properties_of(node)["display"] == "none");
-    if (hidden && name != "script") return false;
-    places_.fail(node, "is not read", refused->second);
+    if (!hidden || name == "script") places_.fail(node, "is not read", refused->second);
+    return false;
   }
 
   std::map<std::string, std::string> properties_of(const pugi::xml_node& node) const {

@@ -12,7 +12,7 @@ namespace ergocast {
 inline constexpr std::string_view kSvgSpace = "http://www.w3.org/2000/svg";
 inline constexpr std::string_view kLinkSpace = "http://www.w3.org/1999/xlink";
 
-/// Of "inkscape:label": "inkscape", and "label".
+/// "inkscape" from "inkscape:label"; local_of() has the "label".
 inline std::string_view prefix_of(std::string_view name) {
   const std::size_t colon = name.find(':');
   return colon == name.npos ? std::string_view() : name.substr(0, colon);

@@ -134,7 +134,8 @@ class Painter {
 
   /// A pixel, from the upper left corner.
   void mark(int x, int y) {
-    cells_[static_cast<std::size_t>((paint_.rows - 1 - y) * paint_.columns + x)] = 1;
+    const auto row = static_cast<std::size_t>(paint_.rows - 1 - y);
+    cells_[row * static_cast<std::size_t>(paint_.columns) + static_cast<std::size_t>(x)] = 1;
   }
 
   const Paint& paint_;
