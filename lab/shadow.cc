@@ -157,8 +157,14 @@ void Shadow::take(const Mission& mission, const TableView& agent, const Contribu
   Row& row = rows_[theirs.author()];
   row.blocks.resize(static_cast<std::size_t>(agent.table->block_count()));
   Block& block = row.blocks[static_cast<std::size_t>(theirs.block)];
-  if (theirs.steps <= block.held.steps) return;
-  if (agent.table->block(theirs.author(), theirs.block).steps != theirs.steps) return;
+  const Contribution taken = agent.table->block(theirs.author(), theirs.block);
+  if (theirs.steps < block.held.steps || taken.steps != theirs.steps) return;
+  if (theirs.steps == block.held.steps) {
+    // An author that rests from now on says that it broadcasts at the end.
+    if (theirs.next_broadcast_tick <= taken.next_broadcast_tick)
+      block.held.next_tick = std::max(block.held.next_tick, theirs.next_broadcast_tick);
+    return;
+  }
   block.before = block.held;
   block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick, theirs.elapsed_s,
                 theirs.sums,  theirs.gains,       theirs.gained_steps};
