@@ -27,7 +27,7 @@ int parse_and_do(int argc, char** argv) {
   app.set_version_flag("--version", version_text());
   Action action;
   for (const auto add : kCommands) add(app, action);
-  app.footer(kExitCodes);  // only now, or every command without its own would show it, too
+  app.footer(kExitCodes);  // last: commands added after it would show it as their own footer
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version_text());
   }

@@ -31,10 +31,10 @@ struct TeamInput {
   py::object mission;
 };
 
-/// How much faster than u_max a velocity may be: what rounding does to a vector of that length.
+/// By which share of u_max rounding may make a velocity faster than u_max.
 constexpr double kRounding = 1e-9;
 
-/// In Python ergocast.LawError.
+/// Python code sees it as ergocast.LawError.
 struct LawRefused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -43,7 +43,7 @@ void require(bool condition, const std::string& otherwise) {
   if (!condition) throw LawRefused(otherwise);
 }
 
-/// The object and what it knows of one mission.
+/// The person's object, and the state of the one mission that it steers.
 class TeamLaw {
  public:
   TeamLaw(py::object law, const Mission& mission)
@@ -131,7 +131,8 @@ class TeamLaw {
     }
   }
 
-  /// Other errors of an object that makes its numbers itself stay what they are.
+  /// A returned object may convert itself to numbers by code of its own. Errors of that code other
+  /// than TypeError and ValueError are passed on unchanged.
   Numbers numbers_in(const py::object& returned, const std::string& shape) const {
     try {
       return Numbers(returned);
@@ -162,12 +163,12 @@ class TeamLaw {
   Observer observer_;
   std::vector<double> u_max_mps_;  // of each kind
   Tick tick_ = -1;
-  bool failed_ = false;  // no velocities of tick_
+  bool failed_ = false;  // the object has returned no valid velocities for tick_
   std::vector<TeamPlace> places_;
   std::vector<Eigen::Vector3d> wanted_mps_;
 };
 
-/// One agent's law: its row of the team's.
+/// The law of one agent, which returns the agent's row of the team's velocities.
 class MemberLaw final : public Law {
  public:
   MemberLaw(std::shared_ptr<TeamLaw> team, int kind) : team_(std::move(team)), kind_(kind) {}
@@ -180,7 +181,7 @@ class MemberLaw final : public Law {
   int kind_;
 };
 
-/// The figures as the program's own bytes, for cli/study/python_law.h.
+/// Runs a mission and returns the bytes of its StudyFigures, which cli/study/python_law.h reads.
 py::bytes study_figures(const py::bytes& plan, const py::object& law) {
   const std::string_view bytes = plan;
   const std::span<const std::byte> span = std::as_bytes(std::span(bytes.data(), bytes.size()));

@@ -32,15 +32,15 @@ using Problems = std::vector<Problem>;
 constexpr std::string_view kBefore = "target{keep_outs{", kAfter = "\n}}";
 constexpr std::string_view kPath = "target.keep_outs[0]";
 const std::string kBlock = "target.keep_outs.";
-/// What a text has.
+/// What the text of a zone consists of.
 const std::string kCorners = "vertices { x_m: … y_m: … } for each corner";
 
-/// As is_zone() has it, in multiples of the domain's longer side.
+/// How far outside the domain is_zone() accepts a corner, in multiples of the domain's longer side.
 constexpr double kFarthest = 10;
 
 std::string field(const std::string& name) { return std::string(kPath) + "." + name; }
 
-/// Whether the text has any field of a scenario, which may have mistakes.
+/// Whether the text has any field of a scenario, even if it has mistakes, too.
 bool is_scenario(const std::string& text) {
   proto::Scenario scenario;
   Findings mistakes("");
@@ -211,7 +211,7 @@ Result<Zone, Problems> load_zone(const fs::path& file, const std::string& runnin
   place_in(mission, scenario, checks);
   if (is_geodata(file) && !scenario.has_origin()) {
     findings.add_to_file(
-        "needs the origin of the mission's scenario, which has none, or is not on this host",
+        "needs the origin of the mission's scenario, but that has none, or is not on this host",
         "write the corners in metres in a text: " + kCorners);
     return problems();
   }

@@ -31,7 +31,7 @@ struct FileProblem {
   }
 };
 
-/// Why `file` is not one that this module would open; nothing if it is, or if it is missing.
+/// Why this module would not open `file`; nothing if it would, or if the file is missing.
 std::optional<FileProblem> why_not_regular(const std::filesystem::path& file);
 
 using StdioFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -57,7 +57,7 @@ class InputFile : public std::istream {
 
 /// What follows the text that next_line() returns.
 enum class LineEnd {
-  kBreak,  ///< a line break, which was read, too
+  kBreak,  ///< a line break, which has been read as well
   kMore,   ///< more of the same line
   kFile,   ///< the end of the file: the line has no line break
   kNone,   ///< there is no text, because the file has ended before

@@ -27,9 +27,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kIdentityFile = "study.json";
 constexpr const char* kTableFile = "study.csv";
 
-/// The limit is far above any study: a row has some 400 bytes.
 /// Limit (Studies): length of `study.csv` [bytes]. Beyond it: `study` refuses the folder.
-constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
+constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;  // a row has some 400
 /// Limit (Studies): length of `study.json` [bytes]. Beyond it: `study` refuses the folder.
 constexpr std::size_t kMostIdentityBytes = std::size_t{64} << 20;
 /// Limit (Studies): values in `study.json`. Beyond it: `study` refuses the folder.
@@ -75,7 +74,7 @@ StudyShard shard_from(const Json& json) {
   return shard;
 }
 
-/// Throws like the function above.
+/// Throws like shard_from().
 StudyIdentity identity_from(const Json& json) {
   StudyIdentity identity;
   identity.version = json.at("version").get<std::string>();
@@ -255,7 +254,7 @@ std::optional<std::string> StudyDirectory::add(const studies::StudyRow& row) {
   }
   std::string problem = (folder_ / kTableFile).string() + ": " +
                         (errno == 0 ? "the disk is full" : std::strerror(errno));
-  if (ftruncate(file_, end) != 0) problem += ", and its last line is torn";
+  if (ftruncate(file_, end) != 0) problem += ", and its last line is incomplete";
   return problem;
 }
 

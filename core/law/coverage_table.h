@@ -28,13 +28,13 @@ enum class Merge {
   kRefusedRange,
   kRefusedLimit,
   kRefusedEncoding,
-  kRefusedShift,  ///< possible only if a target has changed, of which the table does not know
+  kRefusedShift,  ///< sums that need a change of the target, and the table knows of none
 };
 
 class CoverageTable {
  public:
-  /// @param joined  the tick from which its holder takes part. Earlier blocks depend on when the
-  ///                holder joined, so no block is compared with one that was sent before that tick.
+  /// @param joined  the tick from which its holder takes part. Only some holders have blocks from
+  ///                before, so no block is compared with one that was sent before that tick.
   CoverageTable(const Basis& basis, double dt_s, Tick joined = 0);
 
   /// From now on the table does not note what blocks gain, and gains() returns none. Holders that
@@ -51,9 +51,9 @@ class CoverageTable {
   void set_half_life(const HalfLife& half_life);
   const HalfLife& half_life() const { return gain_rule_.half_life; }
 
-  /// The counted tick has come: all that the table returns but block() is as it is remembered at
-  /// this tick. Call it before the tick's sample. An earlier tick has no effect. With a half-life
-  /// it may allocate at ticks at which sums are halved.
+  /// Sets the present tick, among those that count. What the table returns from now on, except by
+  /// block(), is as remembered at this tick. Call it before the tick's sample. An earlier tick has
+  /// no effect. With a half-life it may allocate at ticks at which sums are halved.
   void set_now(Tick counted);
 
   /// How often sums have been halved by the present tick.
@@ -86,10 +86,11 @@ class CoverageTable {
   /// From now on the row of `author`, if there is one, counts with this quality. The default is 1.
   void set_quality(const Author& author, double quality);
 
-  /// Merges one block. One with the steps of the block held only postpones its author's next
-  /// broadcast, if it announces a later one. These are refused without effect: another encoding;
+  /// Merges one block. A block with as many steps as the block held changes no sum: it only
+  /// postpones its author's next broadcast, if it announces a later one. These are refused without
+  /// effect: another encoding;
   /// another number of modes; a block that does not exist or has another length; numbers that are
-  /// not possible (core/law/coverage_row.h); more steps than `max_steps` (a forged future would win
+  /// not possible (core/law/coverage_row.h); more steps than `max_steps` (a forged number would win
   /// for ever); a new row for a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 

@@ -13,8 +13,8 @@ class TeamSum {
  public:
   explicit TeamSum(const BlockLayout& layout);
 
-  /// Sets one block of `coverage` to Σ q (S + share · gains) · per_second. Steps that are due in
-  /// the block are added to their tracks.
+  /// Sets one block of `coverage` to Σ q (S + share · gains) · per_second over the terms. It also
+  /// adds to each row's track (core/law/row_track.h) the step that this block still lacks.
   /// @param coverage  a number for each slot
   void average(const TeamTerms& terms, const Sampling& sampling, int block, double per_second,
                double* coverage);

@@ -84,7 +84,7 @@ struct Timing {
 struct Separation {
   double distance_m = 0;        ///< D, between the places of two bodies; 0: none is kept
   double position_error_m = 0;  ///< how far a body may be from its reported place
-  double disturbance_m = 0;     ///< what the world may add to a body's step; it cuts the rest
+  double disturbance_m = 0;     ///< the world cuts its disturbance of a body's step to this
   double response_s = 0;        ///< how long a body takes to follow a command, T
   bool guard = false;           ///< real time: the world filters the commands again
   /// Real time: each body knows only its own place, and agents send each other theirs. An agent
@@ -130,17 +130,18 @@ struct AgentKind {
 /// Limit (Scenario): objects to find. Beyond it: the scenario is refused.
 inline constexpr int kMaxObjects = 32;
 
-/// The objects that the simulated world hides, in a plane: either so many, or those at given
-/// places; core/measure/objects.h. They do not steer.
+/// The objects that the simulated world hides in a plane: `count` of them, or those at `places_m`;
+/// core/measure/objects.h. They do not steer.
 struct HiddenObjects {
   int count = 0;  ///< drawn from the target
   std::vector<Eigen::Vector3d> places_m{};
-  int end_when_found = 0;  ///< so many are found: the mission ends; 0: it goes on
+  int end_when_found = 0;  ///< the mission ends once so many are found; 0: it does not
 
   int total() const { return places_m.empty() ? count : static_cast<int>(places_m.size()); }
 };
 
-/// What finds objects, for the measures of core/measure/. It does not steer.
+/// The sensor with which agents find objects. core/measure/ measures by it; only the law kSearch
+/// (core/search/) steers by it.
 struct SearchSensor {
   double radius_m = 0;            ///< 0: core/measure/detection.h has a default
   double detections_per_s = 0.5;  ///< of an object within the radius
@@ -164,7 +165,7 @@ struct Mission {
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;          ///< range within which agents receive each other; 0: unlimited
   double speed_limit_mps = 0;        ///< of vehicles whose kind has none of its own; 0: none
-  IndexedRings walls;                ///< solid: where an odd number of rings is around
+  IndexedRings walls;                ///< a point is solid if an odd number of rings enclose it
   double wall_clearance_m = 0;       ///< how far bodies keep from them
   HiddenObjects objects;
   VehicleLimits vehicle;  ///< of those whose kind has none of its own
@@ -175,8 +176,8 @@ struct Mission {
       true;  ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
 
-/// The same mission with the cosines (2) as its basis. It judges by cosines a team that steers by
-/// other modes.
+/// The same mission with the cosines (2) as its basis. A team that steers by other modes is judged
+/// by cosines with it.
 Mission in_cosines(Mission mission);
 
 /// The longest time between two broadcasts of a block.
@@ -185,12 +186,11 @@ inline Tick longest_period_ticks(const Timing& timing) {
 }
 
 /// The first tick after `tick` at which agent `id` broadcasts a block. The planned agents take
-/// turns within the period, and with blocks of high modes within its multiple. An agent that will
-/// rest (core/mission/station.h) sends all blocks once more at its last tick before, and then
-/// nothing till the end.
+/// turns within the period of that block. An agent that will rest (core/mission/station.h) sends
+/// all blocks once more at its last tick before the rest, and nothing after it.
 Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block = 0);
 class EndSchedule;
-/// The same by the end that holds at `tick`.
+/// The same if the end was amended: by the end that holds at `tick`.
 Tick next_broadcast(const Mission& mission, const EndSchedule& ends, AgentId id, Tick tick,
                     int block);
 

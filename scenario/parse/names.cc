@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Accepts ASCII letters, digits and a few signs, and replaces all other characters when it makes a
-// name.
+// Makes a name of any text: each character that a name may not have becomes an underscore.
 #include "scenario/parse/names.h"
 
 #include "plan/mission_limits.h"

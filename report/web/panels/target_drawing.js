@@ -26,7 +26,7 @@ function describe() {
       drawing.open.length
         ? 'Click for each corner, and on the first one to close the polygon.'
         : unsound()
-          ? 'A peak needs a height, and a polygon a lower height below the upper one.'
+          ? 'A peak needs a height. The lower height of a polygon must be below its upper one.'
           : drawing.parts.length
             ? 'No part of this target is where agents can be.'
             : polygon
@@ -38,8 +38,8 @@ function describe() {
   const { against, present, moved } = comparison(run, run.rowAt(S.t), drawing.mu);
   put(
     $('drawnText'),
-    `φ² of what is covered by now: ${readable(against)} against this target, ${readable(present)} against ` +
-      `the present one. ${share(Math.round(moved * 100) / 100)} of its mass is elsewhere than now.`,
+    `φ² of the coverage so far: ${readable(against)} against this target, ${readable(present)} against ` +
+      `the present one. ${share(Math.round(moved * 100) / 100)} of the mass is elsewhere than in the present target.`,
   );
 }
 

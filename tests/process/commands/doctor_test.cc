@@ -31,7 +31,7 @@ class Squatter {
   Squatter& operator=(const Squatter&) = delete;
   ~Squatter() { close(fd_); }
 
-  int datagrams_heard() const {
+  int datagrams_received() const {
     int count = 0;
     for (char byte; recv(fd_, &byte, 1, 0) >= 0;) ++count;
     return count;
@@ -47,12 +47,12 @@ class Doctor : public OwnHost {
     std::vector<std::string> arguments = {"doctor", "--json", "--lcm-url", url};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const int code = ergocast(arguments);
-    told_ = json::parse(output(), nullptr, false);
-    EXPECT_FALSE(told_.is_discarded()) << output();
+    report_ = json::parse(output(), nullptr, false);
+    EXPECT_FALSE(report_.is_discarded()) << output();
     return code;
   }
   json finding(const std::string& check) const {
-    for (const json& one : told_["findings"]) {
+    for (const json& one : report_["findings"]) {
       if (one["check"] == check) return one;
     }
     return {};
@@ -60,7 +60,7 @@ class Doctor : public OwnHost {
   bool prints(const std::string& check, const std::string& part) const {
     return finding(check).dump().find(part) != std::string::npos;
   }
-  json told_;
+  json report_;
 };
 
 TEST_F(Doctor, AHostThatIsAllRightGetsNothingWorseThanNotes) {
@@ -121,9 +121,9 @@ TEST_F(Doctor, NothingIsSentToARunsPorts) {
   doctor({});
   doctor({"--peer", "1"});  // the port is in use
   EXPECT_TRUE(prints("peers", "not tried")) << output();
-  EXPECT_EQ(swarm.datagrams_heard(), 0);
-  EXPECT_EQ(world.datagrams_heard(), 0);
-  EXPECT_EQ(command.datagrams_heard(), 0);
+  EXPECT_EQ(swarm.datagrams_received(), 0);
+  EXPECT_EQ(world.datagrams_received(), 0);
+  EXPECT_EQ(command.datagrams_received(), 0);
 }
 
 TEST_F(Doctor, ARunIsFoundAndNotDisturbed) {
@@ -145,10 +145,10 @@ TEST_F(Doctor, TwoOnOneHostReceiveEachOther) {
   ASSERT_TRUE(eventually([] {
     return text_of("/proc/net/udp").find(":5DC0 ") != std::string::npos;
   })) << "no program listens to port 24000";
-  // The other one listens to the bus before it tests; on a busy machine that takes a while.
+  // The other one first listens to the bus, which takes long on a busy machine.
   ASSERT_TRUE(eventually([&] {
     doctor({"--peer", "3"});
-    return told_["peers"].size() == 1 && told_["peers"][0]["hears_this_host"] == true;
+    return report_["peers"].size() == 1 && report_["peers"][0]["hears_this_host"] == true;
   })) << output();
   EXPECT_EQ(finding("TTL")["level"], "problem");  // no other host would receive messages
   other.send(SIGKILL);

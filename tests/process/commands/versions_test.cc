@@ -11,7 +11,8 @@ namespace {
 
 constexpr RunId kTheirRun = 0xabc;
 
-/// The message of a coordinator of version 9.9.9, whose plan only begins as ours do.
+/// The message of a coordinator of version 9.9.9, whose plan begins like ours and goes on
+/// differently.
 MissionPart their_mission() {
   MissionPart part;
   part.header = {kTheirRun, kCoordinator, 71, 0, 0};
@@ -53,7 +54,7 @@ TEST_F(OtherVersion, OfACoordinatorEndsAllProcessesWithBothVersionsNamed) {
               std::string::npos)
         << program->printed();
   }
-  EXPECT_FALSE(std::filesystem::exists(out() / "trajectory.csv")) << "as if no logger had been";
+  EXPECT_FALSE(std::filesystem::exists(out() / "trajectory.csv")) << "no record is begun";
 }
 
 TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
