@@ -32,8 +32,9 @@ class World {
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
-  /// Ends at once, as when its process gets a signal. A STOP with `now` does not end it at once. It
-  /// sends a state in which all vehicles stand still, until that is recorded or 2 s have passed.
+  /// Ends at once, as when its process gets a signal. After a STOP with `now` the world does not
+  /// end at once: it sends a state in which all vehicles stand still, until this state is recorded
+  /// or 2 s have passed.
   void stop(std::string reason) { finish(std::move(reason)); }
   /// Ends at once and counts as failed(): it cannot take part, for a reason outside of it.
   void fail(std::string reason) {
@@ -118,7 +119,7 @@ class World {
   std::string reason_;
   Tick tick_ = 0;
   Fleet fleet_;
-  ObjectSet found_ = 0;  // that count, up to the newest tick
+  ObjectSet found_ = 0;  // by the newest tick, without finds in pauses
   Question question_;
   std::optional<Tick> begun_at_;
   TickSchedule schedule_;

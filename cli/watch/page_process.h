@@ -41,7 +41,7 @@ class PageProcess {
     std::filesystem::path run_dir;  ///< empty: there is none on this host
     LcmUrl url;
     RunId run = 0;
-    std::optional<SealedFile> key;  ///< a key that cannot sign; nothing: no key
+    std::optional<SealedFile> key;  ///< checks messages and cannot sign; nothing: no key
     PageOptions page;
     std::optional<SealedFile> certificate, tls_key;  ///< of page.tls, if there is one
     const ControlLink* control = nullptr;            ///< the page's end; null: the page only shows

@@ -59,7 +59,7 @@ Eigen::Matrix3d integrated_covariance_m2(const TargetDensity& target, const Box&
   return square_m2 / mass - mean_m * mean_m.transpose();
 }
 
-// ---- s ----
+// ---- s, the target's spread ----
 
 struct Case {
   const char* name;
@@ -119,7 +119,8 @@ TEST(TargetSpread, InSpaceCountsEachAxis) {
               std::hypot(300 * deviation(0.3), 200 * deviation(0.6), 80 * deviation(0.9)), 1e-10);
 }
 
-// A place so small that all modes see it as a point: all of the result is what the modes leave out.
+// A Gaussian of 1 m is a point for these modes. Its spread is 1 m, so the rest of the result is the
+// error of the modes.
 TEST(TargetSpread, IsOffByWhatTheModesLeaveOutAndNoMore) {
   const Box square{{0, 0, 0}, {2000, 2000, 0}};
   for (const int modes : {2, 4, 16, 64}) {
@@ -141,7 +142,7 @@ TEST(TargetSpread, OfOneModeIsTheUniformTargets) {
   EXPECT_NEAR(spread_m(mission), 2000 / std::sqrt(6), 1e-9);
 }
 
-// ---- d ----
+// ---- d, the dimensions that a team shares out ----
 
 double dimensions(const Mission& mission) { return shared_dimensions(covariance_m2(mission)); }
 
@@ -181,7 +182,7 @@ TEST(SharedDimensions, OfACubeOrAPointAreTwo) {
   EXPECT_NEAR(shared_dimensions(Eigen::Vector3d(1e-200, 1e-200, 0).asDiagonal()), 2, 1e-12);
 }
 
-// ---- h ----
+// ---- h, the horizon ----
 
 const Box kSquare{{0, 0, 0}, {2000, 2000, 0}};
 /// s / u_max of a uniform target on kSquare at 20 m/s.
@@ -244,27 +245,27 @@ TEST(Horizon, IsAtMostWhatAWayAcrossTheTargetLeavesOfTheMission) {
   EXPECT_EQ(lasting(kCrossing_s - 1), full_s);
 }
 
-// ---- w ----
+// ---- w, the weight of a gain ----
 
 /// The longest period that the plan allows; eight of them are 4 s.
 constexpr Tick kPeriod = 5;
 
-LookAhead telling_each(Tick period) {
+LookAhead broadcasting_every(Tick period) {
   Mission mission = uniform();
   mission.timing.broadcast_period_ticks = static_cast<int>(period);
   return LookAhead(mission);
 }
 
 TEST(Weight, IsTheHorizonAndTheSpanAndTheAge) {
-  const LookAhead look_ahead = telling_each(kPeriod);
+  const LookAhead look_ahead = broadcasting_every(kPeriod);
   EXPECT_EQ(look_ahead.longest_period(), kPeriod);
   EXPECT_NEAR(look_ahead.weight_s(30, 5, 0, kPeriod), 30.5, 1e-12);
   EXPECT_NEAR(look_ahead.weight_s(30, 5, 7, kPeriod), 31.2, 1e-12);
   EXPECT_NEAR(look_ahead.weight_s(30, 1, 0, 1), 30.1, 1e-12);
 }
 
-TEST(Weight, CountsOfTheSpanNoMoreThanEightPeriods) {
-  const LookAhead look_ahead = telling_each(kPeriod);
+TEST(Weight, CountsAtMostEightPeriodsOfTheSpan) {
+  const LookAhead look_ahead = broadcasting_every(kPeriod);
   EXPECT_NEAR(look_ahead.weight_s(30, 40, 0, kPeriod), 34, 1e-12);
   EXPECT_NEAR(look_ahead.weight_s(30, 41, 0, kPeriod), 34, 1e-12);
   EXPECT_NEAR(look_ahead.weight_s(30, 5000, 0, kPeriod), 34, 1e-12) << "a first block";
@@ -284,18 +285,18 @@ TEST(Weight, BelievesARarerPeriodOfHighModesIfThePlanHasIt) {
 }
 
 TEST(Weight, OfAnAgentThatHasBeenSilentForLongIsNone) {
-  const LookAhead look_ahead = telling_each(kPeriod);
-  // The horizon is the longer: 30 s.
+  const LookAhead look_ahead = broadcasting_every(kPeriod);
+  // The horizon, 30 s, is longer than eight periods.
   EXPECT_NEAR(look_ahead.weight_s(30, 5, 300, kPeriod), 60.5, 1e-12);
   EXPECT_EQ(look_ahead.weight_s(30, 5, 301, kPeriod), 0);
-  // Eight periods are: 4 s.
+  // Eight periods, 4 s, are longer than the horizon.
   EXPECT_NEAR(look_ahead.weight_s(1, 5, 40, kPeriod), 5.5, 1e-12);
   EXPECT_EQ(look_ahead.weight_s(1, 5, 41, kPeriod), 0);
   EXPECT_EQ(look_ahead.weight_s(1, 5, 41, 2), 0);
 }
 
 TEST(Weight, APeriodThatThePlanDoesNotAllowBuysNothing) {
-  const LookAhead look_ahead = telling_each(kPeriod);
+  const LookAhead look_ahead = broadcasting_every(kPeriod);
   for (const Tick age : {0, 39, 41, 299, 301}) {
     for (const Tick span : {1, 39, 41, 100000}) {
       const double honest_s = look_ahead.weight_s(1, span, age, kPeriod);
@@ -305,9 +306,9 @@ TEST(Weight, APeriodThatThePlanDoesNotAllowBuysNothing) {
   }
 }
 
-// A block states its own tick and that of its author's next one, with arbitrary values.
+// A sender may write any two ticks into a block: that of the block, and that of its next one.
 TEST(Weight, AnAnnouncementOfThePastIsNone) {
-  const LookAhead look_ahead = telling_each(kPeriod);
+  const LookAhead look_ahead = broadcasting_every(kPeriod);
   for (const Tick period : {Tick{0}, Tick{-1}, -(Tick{1} << 48)}) {
     EXPECT_NEAR(look_ahead.weight_s(30, 5, 0, period), 30, 1e-12) << period;
     EXPECT_NEAR(look_ahead.weight_s(30, 5, 300, period), 60, 1e-12) << period;

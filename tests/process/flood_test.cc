@@ -78,7 +78,7 @@ TEST_F(Flood, NamesOfForeignChannelsCostNoMemory) {
   EXPECT_EQ(summary()["restarts"], 0);
 }
 
-/// Repeats agent 3's messages without end, or sends new ones in its name at that rate.
+/// Repeats agent 3's messages far too often, or sends new ones in its name as often.
 class RateOffender {
  public:
   RateOffender(const std::string& url, bool in_its_place)
@@ -92,12 +92,12 @@ class RateOffender {
       bus_.publish("ERGOCAST_AGENT_STATUS_3", bytes_.data(), static_cast<unsigned>(bytes_.size()));
     }
   }
-  bool has_heard() const { return !bytes_.empty(); }
+  bool has_received() const { return !bytes_.empty(); }
 
  private:
-  void receive(const lcm::ReceiveBuffer* heard, const std::string& /*channel*/) {
-    const auto* data = static_cast<const std::byte*>(heard->data);
-    if (bytes_.empty()) bytes_.assign(data, data + heard->data_size);
+  void receive(const lcm::ReceiveBuffer* received, const std::string& /*channel*/) {
+    const auto* data = static_cast<const std::byte*>(received->data);
+    if (bytes_.empty()) bytes_.assign(data, data + received->data_size);
   }
   /// The same message under the next sequence.
   void renew() {
@@ -129,7 +129,8 @@ TEST_F(Babble, AnAgentThatSendsAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamGoe
   Child mission = launch_endless(scenario(), {"--realtime=1", "--lcm-url", kUrl});
   for (const auto& agent : agents()) EXPECT_EQ(agent["refused"]["rate"], 0) << agent;
   RateOffender rate_offender(kUrl, true);
-  ASSERT_TRUE(eventually([&] { return rate_offender.exceed_rate(), rate_offender.has_heard(); }));
+  ASSERT_TRUE(
+      eventually([&] { return rate_offender.exceed_rate(), rate_offender.has_received(); }));
   signal_to(agent(3), SIGSTOP);
   ASSERT_TRUE(eventually([&] {
     rate_offender.exceed_rate();
@@ -171,8 +172,7 @@ class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const 
     const MissionKey key = make_mission_key();
     EXPECT_EQ(write_key_file(key_file_, key_text(key, true)), std::nullopt);
   }
-  /// Messages that the receivers of the flood refused as `rate`: for agents, as in their own
-  /// reports.
+  /// Messages that agents refused as `rate`, as they report themselves.
   std::int64_t refused_by_agents() {
     ergocast({"status", "--json", "--lcm-url", kUrl, "--key-file", key_file_});
     std::int64_t refused = 0;
@@ -185,8 +185,8 @@ class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const 
   const std::filesystem::path key_file_ = folder_ / "c.key";
 };
 
-/// Without detection every repeat would be accepted: neither the world nor the coordinator has a
-/// budget. The speed of the machine only affects the duration.
+/// Without the detection of repeats all would be accepted: neither the world nor the coordinator
+/// has a limit of rate. The speed of the machine only affects the duration.
 TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamGoesOn) {
   constexpr std::int64_t kEnough = 50000;
   constexpr std::size_t kAtOnce = 200;  // every 5 ms at the most: 40 000 a second
@@ -224,7 +224,7 @@ INSTANTIATE_TEST_SUITE_P(Of, FloodOfRepeats, ::testing::Values("MISSION", "WORLD
                          [](const auto& of) { return std::string(of.param); });
 
 /// Resident memory after a while and much later. ERGOCAST_LONG_TICKS makes the mission longer.
-TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
+TEST_F(Flood, MemoryIsFlatHoweverLongTheMissionIs) {
   constexpr long kGrowth_kb = 1024;
   constexpr Tick kWarmUp = 3000;
   const char* longer = std::getenv("ERGOCAST_LONG_TICKS");
