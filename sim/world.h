@@ -32,9 +32,8 @@ class World {
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
-  /// Ends at once, as when its process gets a signal. After a STOP with `now` the world does not
-  /// end at once: it sends a state in which all vehicles stand still, until this state is recorded
-  /// or 2 s have passed.
+  /// Ends at once, as when its process gets a signal. After a STOP with `now` the world first sends
+  /// a state in which all vehicles stand still, until this is recorded or 2 s have passed.
   void stop(std::string reason) { finish(std::move(reason)); }
   /// Ends at once and counts as failed(): it cannot take part, for a reason outside of it.
   void fail(std::string reason) {

@@ -86,9 +86,8 @@ class CoverageTable {
   /// From now on the row of `author`, if there is one, counts with this quality. The default is 1.
   void set_quality(const Author& author, double quality);
 
-  /// Merges one block. A block with as many steps as the block held changes no sum: it only
-  /// postpones its author's next broadcast, if it announces a later one. These are refused without
-  /// effect: another encoding;
+  /// Merges one block. A block with as many steps as the held one changes no sum, but may postpone
+  /// its author's next broadcast. These are refused without effect: another encoding;
   /// another number of modes; a block that does not exist or has another length; numbers that are
   /// not possible (core/law/coverage_row.h); more steps than `max_steps` (a forged number would win
   /// for ever); a new row for a full table.
