@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "logger/received_amendments.h"
-#include "report/page.h"
+#include "report/page_mission.h"
 
 namespace ergocast {
 namespace {

@@ -28,7 +28,7 @@ class AmendmentHistory {
     std::uint64_t changes = 0, targets = 0;
   };
   /// Adds "amendments" and "zones", all of them, and "targets", those that this browser lacks, if
-  /// anything has changed since; report/page.h has them.
+  /// anything has changed since; report/page_mission.h has them.
   void add_new(Cursor& cursor, const Mission& mission, nlohmann::ordered_json& frame) const;
 
  private:

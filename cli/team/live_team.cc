@@ -9,7 +9,7 @@
 
 #include "cli/team/team_text.h"
 #include "core/motion/vehicle.h"
-#include "report/page.h"
+#include "report/page_mission.h"
 
 namespace ergocast {
 namespace {

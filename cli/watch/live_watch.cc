@@ -14,7 +14,6 @@
 #include "cli/team/recorded_team.h"
 #include "cli/team/team_monitor.h"
 #include "plan/plan.h"
-#include "report/page.h"
 #include "report/report.h"
 #include "report/web_page.h"
 #include "runtime/bus/clock.h"

@@ -5,7 +5,7 @@ import { TAILS } from './map/map.js';
 import { lineBetween, signAt } from './map/blocks.js';
 import { commandOf, courseOf } from './map/course.js';
 import { markersOf } from './map/markers.js';
-import { recordedRun } from './data/run.js';
+import { recordedRun } from './data/record.js';
 import { advance, seek } from './panels/timeline.js';
 import { hover, pin } from './panels/team.js';
 import { drawPictures, layout, readPixels, view } from './panels/screen.js';

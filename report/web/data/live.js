@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes rows, statuses, incidents and log lines of the frames that the server sends about a running team.
-import { Run, findsIn, indexAt, recordHistory, recordedRun, withMore } from './run.js';
+import { withMore } from './incidents.js';
+import { findsIn, recordHistory, recordedRun } from './record.js';
+import { Run, indexAt } from './run.js';
 import { $, element } from '../text.js';
 
 const MOST_LINES = 400,

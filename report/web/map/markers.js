@@ -2,7 +2,7 @@
 // Paints the agents on the map: bodies to scale, courses, and pins with their numbers.
 // It draws on a canvas, or on anything with the same methods (svg.js).
 import { inkOn } from '../colours.js';
-import { stateOf } from '../data/run.js';
+import { stateOf } from '../data/agent_state.js';
 import { paintBlockLines, paintBlockSigns } from './blocks.js';
 import { commandOf, courseOf, paintCommand, paintCourse, paintNose } from './course.js';
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shows the command that gives an order, for a page that may not give it, and copies it.
 // Its box has a sentence (span), a button and the command (pre).
-import { mayTakeControl } from './control.js';
+import { mayTakeControl } from './requests.js';
 import { put } from '../text.js';
 
 const partOf = (box, tag) => box.querySelector(tag);

@@ -17,8 +17,8 @@ function list(pairs, css) {
   return dl;
 }
 
-// A value of the summary as text; a summary may say anything.
-function said(object, path) {
+// A value of the summary as text; a summary may have anything.
+function valueAt(object, path) {
   for (const key of path.split('.')) object = object && typeof object === 'object' ? object[key] : undefined;
   if (typeof object === 'number') return Number.isInteger(object) ? grouped(object) : readable(object);
   if (typeof object === 'boolean') return object ? 'yes' : 'no';
@@ -50,7 +50,7 @@ export function showFacts(live) {
         ['run', (live.replay ? 'replay of ' : '') + live.run.slice(0, 8)],
       ]
     : [
-        ['result', said(summary, 'result') ?? 'no summary'],
+        ['result', valueAt(summary, 'result') ?? 'no summary'],
         ...present([['φ² in modes of', mission.free_domain ? 'the free domain' : '']]),
         ['φ² first', readable(phi[0])],
         ['φ² last', readable(phi[phi.length - 1])],
@@ -58,11 +58,11 @@ export function showFacts(live) {
         ...present([
           ['hidden objects found', findsText(run)],
           ['chance to have found an object', foundBy(summary)],
-          ['50 % chance after [s]', said(summary, 'detection.time_to_half_s')],
-          ['80 % chance after [s]', said(summary, 'detection.time_to_four_fifths_s')],
-          ['left alone at most [s]', said(summary, 'greatest_age_s')],
-          ['distance to the target [m]', said(summary, 'sliced_wasserstein_m')],
-          ['way of all agents [m]', said(summary, 'path_m')],
+          ['50 % chance after [s]', valueAt(summary, 'detection.time_to_half_s')],
+          ['80 % chance after [s]', valueAt(summary, 'detection.time_to_four_fifths_s')],
+          ['left alone at most [s]', valueAt(summary, 'greatest_age_s')],
+          ['distance to the target [m]', valueAt(summary, 'sliced_wasserstein_m')],
+          ['way of all agents [m]', valueAt(summary, 'path_m')],
         ]),
         [
           'ticks',
@@ -72,16 +72,16 @@ export function showFacts(live) {
         ],
         ['modes', mission.modes.join(' × ')],
         ['seed', mission.seed],
-        ['mode', said(summary, 'mode') ?? '–'],
+        ['mode', valueAt(summary, 'mode') ?? '–'],
         ...present([
-          ['blocked share', said(summary, 'separation.blocked_share')],
-          ['longest block [s]', said(summary, 'separation.longest_block_s')],
+          ['blocked share', valueAt(summary, 'separation.blocked_share')],
+          ['longest block [s]', valueAt(summary, 'separation.longest_block_s')],
         ]),
-        ['messages', said(summary, 'messages.sent') ?? '–'],
-        ['lost', said(summary, 'messages.lost') ?? '–'],
+        ['messages', valueAt(summary, 'messages.sent') ?? '–'],
+        ['lost', valueAt(summary, 'messages.lost') ?? '–'],
         ...present([['late commands', late.missed > 0 ? lateText(late) : '']]),
-        ['ticks missing', said(summary, 'gaps') ?? '–'],
-        ['run', (said(summary, 'run_id') ?? '–').slice(0, 8)],
+        ['ticks missing', valueAt(summary, 'gaps') ?? '–'],
+        ['run', (valueAt(summary, 'run_id') ?? '–').slice(0, 8)],
       ];
   const boxes = [...list(pairs).children];
   boxes.forEach((box, i) => {
@@ -123,7 +123,7 @@ function table(columns, objects) {
     made = element('table'),
     head = element('tr'),
     body = element('tbody');
-  const used = columns.filter(([, key]) => objects.some(object => said(object, key) !== undefined));
+  const used = columns.filter(([, key]) => objects.some(object => valueAt(object, key) !== undefined));
   head.append(
     ...used.map(([title, key, means = '']) => {
       const th = element('th', '', key === 'ergodic_metric' ? title + ofModes(S.run.mission) : title);
@@ -133,7 +133,7 @@ function table(columns, objects) {
   );
   for (const object of objects) {
     const tr = element('tr');
-    tr.append(...used.map(([, key]) => element('td', '', said(object, key) ?? '–')));
+    tr.append(...used.map(([, key]) => element('td', '', valueAt(object, key) ?? '–')));
     body.append(tr);
   }
   const top = element('thead');
@@ -198,30 +198,30 @@ export function showDetails() {
     parts = [];
   if (summary) {
     const pace =
-      said(summary, 'mode') === 'realtime'
-        ? `real time × ${said(summary, 'realtime_factor') ?? 1}`
-        : said(summary, 'mode');
+      valueAt(summary, 'mode') === 'realtime'
+        ? `real time × ${valueAt(summary, 'realtime_factor') ?? 1}`
+        : valueAt(summary, 'mode');
     parts.push(
       heading('Run'),
       list(
         present([
-          ['result', [said(summary, 'result'), said(summary, 'reason')].filter(Boolean).join(': ')],
+          ['result', [valueAt(summary, 'result'), valueAt(summary, 'reason')].filter(Boolean).join(': ')],
           ['mode', pace],
-          ['started', said(summary, 'started')],
+          ['started', valueAt(summary, 'started')],
           ['mission time', duration(run.end)],
-          ['wall time [s]', said(summary, 'wall_time_s')],
-          ['ticks per second', said(summary, 'ticks_per_s')],
-          ['restarts', said(summary, 'restarts')],
-          ['late commands', said(summary, 'missed_deadlines')],
-          ['skipped ticks', said(summary, 'skipped_ticks')],
-          ['commands cut to the speed limit', said(summary, 'speed_limit.clamped_commands')],
-          ['dropped by the kernel', said(summary, 'messages.kernel_drops')],
+          ['wall time [s]', valueAt(summary, 'wall_time_s')],
+          ['ticks per second', valueAt(summary, 'ticks_per_s')],
+          ['restarts', valueAt(summary, 'restarts')],
+          ['late commands', valueAt(summary, 'missed_deadlines')],
+          ['skipped ticks', valueAt(summary, 'skipped_ticks')],
+          ['commands cut to the speed limit', valueAt(summary, 'speed_limit.clamped_commands')],
+          ['dropped by the kernel', valueAt(summary, 'messages.kernel_drops')],
           ['refused messages', refusals(summary)],
-          ['run', said(summary, 'run_id')],
-          ['scenario hash', said(summary, 'scenario_hash')],
-          ['version', said(summary, 'version')],
-          ['build', said(summary, 'build')],
-          ['processor has FMA', said(summary, 'cpu_fma')],
+          ['run', valueAt(summary, 'run_id')],
+          ['scenario hash', valueAt(summary, 'scenario_hash')],
+          ['version', valueAt(summary, 'version')],
+          ['build', valueAt(summary, 'build')],
+          ['processor has FMA', valueAt(summary, 'cpu_fma')],
         ]),
         'list',
       ),
@@ -273,7 +273,7 @@ export function showDetails() {
     parts.push(
       heading('How to reproduce'),
       element('p', 'muted', 'In the run’s directory:'),
-      element('pre', '', commands(said(summary, 'mode'))),
+      element('pre', '', commands(valueAt(summary, 'mode'))),
     );
   $('detailsText').replaceChildren(...parts);
   openDialog($('details'));

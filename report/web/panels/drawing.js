@@ -2,7 +2,10 @@
 // Opens the layer on which a new target or a new zone is drawn, and sends or copies what is drawn there.
 import { S, ask } from './state.js';
 import { layout } from './screen.js';
-import { complain, give, hasControl, isObeyed, press } from './control.js';
+import { isObeyed } from './control.js';
+import { complain } from './control_text.js';
+import { press } from './presses.js';
+import { give, hasControl } from './requests.js';
 import { copyCommand, offerCommand } from './command.js';
 import { connectDrawnPointer, removeChosen } from './drawn_pointer.js';
 import { showView } from './space_controls.js';

@@ -3,7 +3,7 @@
 import { S, inSpace, mapState, shown } from './state.js';
 import { markersOf } from '../map/markers.js';
 import { coordinate, nameOf } from '../data/places.js';
-import { stateOf } from '../data/run.js';
+import { stateOf } from '../data/agent_state.js';
 import { hover, pin } from './team.js';
 import { redraw, view } from './screen.js';
 import { missedText } from './found.js';

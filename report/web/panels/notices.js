@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the sentences above the map: what a person should know or do now.
 import { S } from './state.js';
-import { hasControl, mayTakeControl } from './control.js';
+import { hasControl, mayTakeControl } from './requests.js';
 import { $, grouped, put } from '../text.js';
 
 export const NOTABLE = 0.01; // of the commands

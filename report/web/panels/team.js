@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shows the agents: a table for eyes and screen readers, and a chip each for a large team.
 import { S, ask } from './state.js';
-import { stateOf } from '../data/run.js';
+import { stateOf } from '../data/agent_state.js';
 import { $, element, ofModes, put, readable, grouped } from '../text.js';
 import { meaningOf } from './words.js';
 
 const MOST_WITHOUT_CHIPS = 12;
 
-const own = (said, key, text = readable) => (typeof said?.[key] === 'number' ? text(said[key]) : '–');
+const own = (status, key, text = readable) => (typeof status?.[key] === 'number' ? text(status[key]) : '–');
 
 // A live team reports its state; a record has the last report of each agent.
 const COLUMNS = [
@@ -20,13 +20,13 @@ const COLUMNS = [
   {
     head: 'Oldest update',
     live: true,
-    text: ({ said }) => own(said, 'max_staleness_s', v => `${v.toFixed(1)} s`),
+    text: ({ status }) => own(status, 'max_staleness_s', v => `${v.toFixed(1)} s`),
   },
   {
     head: 'φ² vs team',
     live: true,
-    text: ({ said, median }) => {
-      const mine = said?.ergodic_metric;
+    text: ({ status, median }) => {
+      const mine = status?.ergodic_metric;
       return typeof mine === 'number' && median > 0
         ? `${mine < median ? '−' : '+'}${Math.abs((100 * (mine - median)) / median).toFixed(1)} %`
         : '–';
@@ -36,11 +36,11 @@ const COLUMNS = [
     head: 'Lag',
     live: true,
     long: true,
-    text: ({ said }) => own(said, 'loop_lag_s', v => `${(1000 * v).toFixed(0)} ms`),
+    text: ({ status }) => own(status, 'loop_lag_s', v => `${(1000 * v).toFixed(0)} ms`),
   },
   { head: 'Own φ²', metric: true, record: true, text: ({ last }) => own(last, 'ergodic_metric') },
-  { head: 'Lost', text: ({ said, last }) => own(said ?? last, 'contributions_lost', grouped) },
-  { head: 'Dropped', long: true, text: ({ said, last }) => own(said ?? last, 'kernel_drops', grouped) },
+  { head: 'Lost', text: ({ status, last }) => own(status ?? last, 'contributions_lost', grouped) },
+  { head: 'Dropped', long: true, text: ({ status, last }) => own(status ?? last, 'kernel_drops', grouped) },
 ];
 
 let rows = new Map(),
@@ -142,7 +142,7 @@ export function showTeam() {
     return {
       track,
       state,
-      said: state.said,
+      status: state.status,
       last: lasts.get(track.id),
       median: team?.ergodic_metric,
       speed: away ? null : run.speedAt(track, at),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lists the closed zones, reads aloud when one of them closes, is free, or ends, and cancels them.
 import { S } from './state.js';
-import { disarm, give, hasControl, press } from './control.js';
+import { disarm, press } from './presses.js';
+import { give, hasControl } from './requests.js';
 import { copyCommand, offerCommand } from './command.js';
 import { stateOfZone } from '../data/zones.js';
 import { $, capital, element, put } from '../text.js';
