@@ -144,8 +144,12 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     page/map_test.cc
     page/control_test.cc
     page/motion_test.cc
-    page/page_test.cc
+    page/presses_test.cc
+    page/report_test.cc
+    page/requests_test.cc
+    page/served_test.cc
     page/space_test.cc
+    page/study_test.cc
     page/words_test.cc
     page/zone_test.cc
     support/browser.cc
