@@ -15,6 +15,7 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/basis_test.cc
     core/block_layout_test.cc
     core/block_sums_test.cc
+    core/command_terms_test.cc
     core/control_in_space_test.cc
     core/control_test.cc
     core/coverage_table_test.cc
@@ -36,6 +37,7 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/potential_test.cc
     core/search_test.cc
     core/separation_test.cc
+    core/smooth_input_test.cc
     core/speed_limit_test.cc
     core/step_constraints_test.cc
     core/target_shift_test.cc
@@ -150,7 +152,8 @@ ergocast_test(NAME cli_tests LABELS unit
   SOURCES
     cli/amend_order_test.cc
     cli/amendment_lines_test.cc
-    cli/control_desk_test.cc
+    cli/desk_orders_test.cc
+    cli/desk_requests_test.cc
     cli/new_law_test.cc
     cli/pause_order_test.cc
     cli/rate_test.cc
@@ -271,6 +274,8 @@ ergocast_test(NAME layering_tests LABELS unit
 ergocast_test(NAME lab_tests LABELS lab OPTIMISED
   SOURCES
     lab/foresight_test.cc
+    lab/invariants_home_test.cc
+    lab/invariants_known_test.cc
     lab/invariants_test.cc
     lab/judgement_test.cc
     lab/laboratory_test.cc
