@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which requests from a page become orders: by whom, how often, how late and how old.
+// Which requests from a page become orders: from which operator, how often, how late.
 #include "tests/cli/desk.h"
 
 namespace ergocast::cli {

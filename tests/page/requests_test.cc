@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What becomes of the page's requests: who has control, answers that are late or lost, refusals.
+// What becomes of the page's requests: which operator has control, answers that are late or lost.
 #include "tests/page/controlled_page.h"
 #include "tests/support/http.h"
 
