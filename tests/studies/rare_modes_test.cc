@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // High modes that are sent every few periods: with dead reckoning, a lockstep mission is the same
-// bit for bit; else they cost little. docs/network.md has the command that runs many more seeds.
+// bit for bit; else they cost little. docs/network.md has the figures of many more
+// seeds, from
+//
+//   ergocast study scenarios/quadrimodal_corners.textproto --set basis.modes_x=20
+//     --set basis.modes_y=20 --set agents.dead_reckoning=false --vary agents.random_count=0,12
+//     --vary time.broadcast_period_ticks=5,20 --vary time.high_mode_period_factor=1,4,10
+//     --seeds 1:200 --out runs/rare
 #include <gtest/gtest.h>
 
 #include <cmath>
