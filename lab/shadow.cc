@@ -82,7 +82,7 @@ void Shadow::take(const Mission& mission, const TableView& agent, const Contribu
   const Contribution taken = agent.table->block(theirs.author(), theirs.block);
   if (theirs.steps < block.held.steps || taken.steps != theirs.steps) return;
   if (theirs.steps == block.held.steps) {
-    // An author that rests from now on says that it broadcasts at the end.
+    // An author that rests from now on announces a broadcast at the end.
     if (theirs.next_broadcast_tick <= taken.next_broadcast_tick)
       block.held.next_tick = std::max(block.held.next_tick, theirs.next_broadcast_tick);
     return;
