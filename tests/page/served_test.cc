@@ -8,8 +8,6 @@
 namespace ergocast::test {
 namespace {
 
-constexpr const char* kHome = "\uE011";
-
 TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
   Child mission =
       launch_endless(scenario("pace: REALTIME realtime_factor: 10"), {"--watch", "--port", "8810"});
@@ -27,7 +25,7 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
   EXPECT_TRUE(browser_->becomes(
       "return /killed by SIGKILL/.test(document.getElementById('log').textContent)"));
   // Seeks back in time while the team runs, and returns to the present.
-  browser_->press(kHome);
+  browser_->press("\uE011");  // Home
   EXPECT_EQ(js("return [ergocast.S.t, ergocast.S.following]"), nlohmann::json::array({0, false}));
   const double end = js("return ergocast.S.run.end");
   EXPECT_TRUE(browser_->becomes("return ergocast.S.run.end > " + std::to_string(end)));
