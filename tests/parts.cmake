@@ -41,7 +41,6 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/speed_limit_test.cc
     core/step_constraints_test.cc
     core/target_shift_test.cc
-    core/vehicle_teams_test.cc core/vehicle_test.cc core/wall_following_test.cc core/walls_attack_test.cc
     core/station_test.cc
     core/end_schedule_test.cc
     core/walls_test.cc
@@ -245,6 +244,12 @@ ergocast_test(NAME studies_tests LABELS unit
 ergocast_test(NAME example_tests LABELS unit
   SOURCES examples/driver_test.cc
   LIBS ergocast_example_driver)
+
+ergocast_test(NAME mavlink_tests LABELS unit
+  SOURCES
+    bridges/mavlink/codec_test.cc
+    bridges/mavlink/places_test.cc
+  LIBS ergocast_mavlink ergocast::geo)
 
 if(TARGET ergocast_example_mujoco)
   ergocast_test(NAME mujoco_tests LABELS unit

@@ -216,6 +216,11 @@ add_dependencies(all_process reference-facts)
 add_test(NAME mcap_reference_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/report/export/mcap_test.sh
   $<TARGET_FILE:ergocast> ${CMAKE_BINARY_DIR}/mcap_reader)
 set_tests_properties(mcap_reference_reader PROPERTIES LABELS process TIMEOUT 300)
+add_executable(mavlink-lines EXCLUDE_FROM_ALL bridges/mavlink/lines.cc)
+target_link_libraries(mavlink-lines PRIVATE ergocast_mavlink nlohmann_json::nlohmann_json ergocast::warnings)
+add_dependencies(all_process mavlink-lines)
+ergocast_script_test(mavlink_reference process bridges/mavlink/reference_test.sh
+  $<TARGET_FILE:mavlink-lines> ${CMAKE_BINARY_DIR}/node_mavlink)
 ergocast_script_test(example_law process examples/law_test.sh ${CMAKE_BINARY_DIR})
 ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 # Installing Slurm starts services, so ./test does not install it.
