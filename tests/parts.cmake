@@ -248,7 +248,9 @@ ergocast_test(NAME example_tests LABELS unit
 ergocast_test(NAME mavlink_tests LABELS unit
   SOURCES
     bridges/mavlink/codec_test.cc
+    bridges/mavlink/driver_test.cc
     bridges/mavlink/places_test.cc
+    bridges/mavlink/vehicle_test.cc
   LIBS ergocast_mavlink ergocast::geo)
 
 if(TARGET ergocast_example_mujoco)

@@ -221,6 +221,12 @@ target_link_libraries(mavlink-lines PRIVATE ergocast_mavlink nlohmann_json::nloh
 add_dependencies(all_process mavlink-lines)
 ergocast_script_test(mavlink_reference process bridges/mavlink/reference_test.sh
   $<TARGET_FILE:mavlink-lines> ${CMAKE_BINARY_DIR}/node_mavlink)
+# It fetches node-mavlink, which the tests with mock autopilots need.
+set_tests_properties(mavlink_reference PROPERTIES FIXTURES_SETUP node_mavlink)
+ergocast_test(NAME mavlink_flight_tests LABELS process RUNS_PROGRAMS
+  SOURCES bridges/mavlink/flight_test.cc
+  PROPERTIES FIXTURES_REQUIRED node_mavlink)
+target_compile_definitions(mavlink_flight_tests PRIVATE ERGOCAST_NODE_MAVLINK="${CMAKE_BINARY_DIR}/node_mavlink")
 ergocast_script_test(example_law process examples/law_test.sh ${CMAKE_BINARY_DIR})
 ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 # Installing Slurm starts services, so ./test does not install it.

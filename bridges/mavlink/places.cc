@@ -63,7 +63,7 @@ std::optional<Eigen::Vector2d> in_plane_m(const EarthPlace& from, const EarthPla
   return std::nullopt;  // nearly opposite places
 }
 
-/// Two or three finite numbers with commas between them.
+/// Two or three finite numbers with commas between them, as they are.
 std::optional<std::vector<double>> numbers_in(std::string_view text) {
   std::vector<double> all;
   for (;;) {
@@ -77,7 +77,6 @@ std::optional<std::vector<double>> numbers_in(std::string_view text) {
     text.remove_prefix(word.size() + 1);
   }
   if (all.size() < 2 || all.size() > 3) return std::nullopt;
-  all.resize(3, 0);
   return all;
 }
 
@@ -95,7 +94,8 @@ Result<EarthPlace> read_place(std::string_view text) {
     return failure("'" + std::string(text) +
                    "' is no place: LATITUDE,LONGITUDE in degrees, and in a box the altitude above "
                    "sea level, such as 47.6535,9.175,402.5");
-  return EarthPlace{(*all)[0], (*all)[1], (*all)[2]};
+  const bool has_altitude = all->size() == 3;
+  return EarthPlace{(*all)[0], (*all)[1], has_altitude ? (*all)[2] : 0, has_altitude};
 }
 
 Result<Eigen::Vector3d> read_point(std::string_view text) {
@@ -103,7 +103,7 @@ Result<Eigen::Vector3d> read_point(std::string_view text) {
   if (!all)
     return failure("'" + std::string(text) +
                    "' is no point: X,Y or X,Y,Z in metres, such as 20,35");
-  return Eigen::Vector3d((*all)[0], (*all)[1], (*all)[2]);
+  return Eigen::Vector3d((*all)[0], (*all)[1], all->size() == 3 ? (*all)[2] : 0);
 }
 
 EarthPlace place_of(const GlobalPositionInt& at) {

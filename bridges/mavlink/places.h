@@ -23,6 +23,7 @@ namespace ergocast::mavlink {
 /// A place on the earth. The altitude [m] is above mean sea level.
 struct EarthPlace {
   double latitude_deg = 0, longitude_deg = 0, altitude_m = 0;
+  bool has_altitude = true;
 };
 
 /// Beyond it a vehicle is taken to be lost, or the origin to be wrong [m].

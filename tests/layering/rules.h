@@ -189,7 +189,15 @@ inline const std::vector<Rule> kRules = {
     {"docs/reference",
      {"text", "core", "plan", "team", "lcmtypes", "scenario", "scenario/parse"},
      {kProtobuf, kFiles}},
-    // Somebody else's program: it sees the installed headers alone.
+    // Somebody else's programs: they see the installed headers alone.
+    {"bridges/mavlink", {}, {kInstalled}},
+    {"bridges/mavlink/frame_writer.cc", {"bridges/mavlink"}, {kCrypto}},
+    {"bridges/mavlink/options.cc",
+     {"bridges/mavlink"},
+     {kInstalled, kCommandLine, kCrypto, kFiles, kSystem}},
+    {"bridges/mavlink/buses.cc", {"bridges/mavlink"}, {kInstalled, kSystem}},
+    {"bridges/mavlink/link.cc", {"bridges/mavlink"}, {kInstalled, kSystem}},
+    {"bridges/mavlink/main.cc", {"bridges/mavlink"}, {kInstalled, kSystem}},
     {"examples/embed", {}, {kInstalled, kSystem}},
     {"examples/law", {}, {kInstalled}},
     // The example to copy: a participant with its main.
@@ -243,7 +251,8 @@ inline const std::vector<Kind> kKinds = {
                "sys/*",      "netinet/*", "arpa/*",       "net/*",
                "linux/*",    "dirent.h",  "fcntl.h",      "ifaddrs.h",
                "netdb.h",    "poll.h",    "pthread.h",    "signal.h",
-               "spawn.h",    "time.h",    "unistd.h",     "pwd.h"}},
+               "spawn.h",    "termios.h", "time.h",       "unistd.h",
+               "pwd.h"}},
 };
 
 // The time or a random device needs no special #include: <chrono> is allowed everywhere.

@@ -3,7 +3,7 @@
 const { execFileSync } = require("node:child_process");
 const { createRequire } = require("node:module");
 const assert = require("node:assert");
-const mavlink = createRequire(process.argv[2] + "/")("node-mavlink");
+const mavlink = createRequire(require("node:path").resolve(process.argv[2]) + "/")("node-mavlink");
 
 const lines = process.argv[3];
 const KEY = Buffer.alloc(32, 0x5a);

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers of types, modes and commands are those of mavlink.io, PX4 and ArduPilot.
+#include "bridges/mavlink/vehicle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ergocast::mavlink {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kSetpointPeriod = 100ms;
+/// Limit (MAVLink): time without a heartbeat of the autopilot [s]. Beyond it: the vehicle is told
+/// to stand, and its position is not sent.
+constexpr double kLinkLost_s = 3;
+/// For how many of the autopilot's heartbeats it listens for another driver.
+constexpr std::int64_t kListenedHeartbeats = 3;
+/// How many setpoints of 0 it sends at the end, and at most where the vehicle does not stand yet.
+constexpr int kLastSetpoints = 10, kMostLastSetpoints = 100;
+/// In planes: the vehicle moves only this near to its height [m].
+constexpr double kHeightError_m = 2;
+constexpr double kFastestClimb_mps = 1, kClimbGain_per_s = 0.5;
+/// How often it asks an autopilot that refuses.
+constexpr int kMostRequests = 5;
+/// PX4 enters OFFBOARD only after setpoints have arrived for a while.
+constexpr std::int64_t kSetpointsBeforeOffboard = 20;
+
+constexpr std::uint8_t kCompanion = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
+constexpr std::uint8_t kOnboardController = 18, kNoAutopilot = 8, kStandby = 3, kActive = 4;
+constexpr std::uint8_t kArmed = 128;
+constexpr std::uint8_t kInAir = 2;
+
+constexpr std::uint16_t kTakeOff = 22, kSetMode = 176, kArm = 400, kSetInterval = 511,
+                        kRequestMessage = 512;
+
+struct ModeName {
+  std::uint32_t mode;
+  const char* name;
+};
+constexpr ModeName kPx4Modes[] = {{1, "MANUAL"}, {2, "ALTCTL"},   {3, "POSCTL"},    {4, "AUTO"},
+                                  {5, "ACRO"},   {6, "OFFBOARD"}, {7, "STABILIZED"}};
+constexpr ModeName kCopterModes[] = {{0, "STABILIZE"}, {2, "ALT_HOLD"}, {3, "AUTO"},
+                                     {4, "GUIDED"},    {5, "LOITER"},   {6, "RTL"},
+                                     {9, "LAND"},      {16, "POSHOLD"}, {17, "BRAKE"}};
+constexpr ModeName kRoverModes[] = {{0, "MANUAL"}, {3, "STEERING"}, {4, "HOLD"},   {5, "LOITER"},
+                                    {10, "AUTO"},  {11, "RTL"},     {15, "GUIDED"}};
+constexpr std::uint32_t kPx4Offboard = 6, kCopterGuided = 4, kRoverGuided = 15;
+
+constexpr const char* kResults[] = {"ACCEPTED", "TEMPORARILY_REJECTED", "DENIED",   "UNSUPPORTED",
+                                    "FAILED",   "IN_PROGRESS",          "CANCELLED"};
+
+/// MAV_TYPE: nothing for a vehicle that is refused.
+std::optional<Body> body_of(std::uint8_t type) {
+  constexpr std::uint8_t kCopters[] = {2, 3, 4, 13, 14, 15, 29, 35}, kRovers[] = {10, 11};
+  if (std::ranges::find(kCopters, type) != std::end(kCopters)) return Body::kCopter;
+  if (std::ranges::find(kRovers, type) != std::end(kRovers)) return Body::kRover;
+  return std::nullopt;
+}
+
+std::string why_refused(std::uint8_t type) {
+  if (type == 1) return "is a fixed wing, which cannot be stopped in the air";
+  if (type >= 19 && type <= 25)
+    return "is a VTOL, which cannot be stopped while it flies as a wing";
+  return "is of type " + std::to_string(type) + " (MAV_TYPE), and no multicopter or rover";
+}
+
+}  // namespace
+
+Vehicle::Vehicle(const VehicleOptions& options, std::uint32_t identity)
+    : options_(options), identity_(identity), fixes_(options.origin, options.local_origin_m) {}
+
+Source Vehicle::source() const {
+  const std::uint8_t system = known() ? autopilot_.system : options_.system;
+  return {system != 0 ? system : std::uint8_t{1}, kCompanion};
+}
+
+// ---- what the vehicle reports ----
+
+void Vehicle::receive(const Received& received, Instant now) {
+  if (const auto* heartbeat = std::get_if<Heartbeat>(&received.packet))
+    return take_heartbeat(received, *heartbeat, now);
+  if (!known() || received.from != autopilot_) return;
+  std::visit([&](const auto& m) { on(m, now); }, received.packet);
+}
+
+void Vehicle::take_heartbeat(const Received& received, const Heartbeat& heartbeat, Instant now) {
+  const Source& from = received.from;
+  if (heartbeat.type == kOnboardController && from.component == kCompanion &&
+      from.system == source().system && heartbeat.custom_mode != identity_)
+    return meet_driver(heartbeat);
+  if (heartbeat.autopilot == kNoAutopilot) return;  // a ground station, a camera, this driver
+  const bool right_system = options_.system == 0 || from.system == options_.system;
+  if (!known() && right_system) adopt(from, heartbeat);
+  if (from != autopilot_) {
+    if (strangers_.size() < 8 && strangers_.insert(from.system).second)
+      note(true, "system " + std::to_string(from.system) + " is on this link, too, and not driven" +
+                     (known() ? ": --system chooses"
+                              : "; waits for --system " + std::to_string(options_.system)));
+    return;
+  }
+  heard_at_ = now;
+  ++heartbeats_;
+  mode_ = heartbeat.custom_mode;
+  if (make_ == Make::kPx4) mode_ = mode_ >> 16 & 0xFF;
+  armed_ = (heartbeat.base_mode & kArmed) != 0;
+}
+
+void Vehicle::adopt(const Source& from, const Heartbeat& heartbeat) {
+  const std::string name = "system " + std::to_string(from.system);
+  const auto body = body_of(heartbeat.type);
+  if (!body) {
+    fatal_ = name + " " + why_refused(heartbeat.type) + ": this driver refuses it";
+    return;
+  }
+  if (heartbeat.autopilot != 3 && heartbeat.autopilot != 12) {
+    fatal_ = name + " has the autopilot " + std::to_string(heartbeat.autopilot) +
+             " (MAV_AUTOPILOT): this driver knows PX4 (12) and ArduPilot (3)";
+    return;
+  }
+  autopilot_ = from;
+  make_ = heartbeat.autopilot == 12 ? Make::kPx4 : Make::kArduPilot;
+  body_ = *body;
+  note(false, name + ": " + (make_ == Make::kPx4 ? "PX4" : "ArduPilot") + ", " +
+                  (body_ == Body::kCopter ? "a multicopter" : "a rover"));
+}
+
+/// The driver that already sends setpoints goes on. If two begin together, the one with the greater
+/// identity stops.
+void Vehicle::meet_driver(const Heartbeat& other) {
+  const bool we_began = listened();
+  if (!we_began && (other.system_status == kActive || other.custom_mode < identity_)) {
+    fatal_ = "another driver is on this vehicle: end that one first";
+  } else if (!std::exchange(warned_of_driver_, true)) {
+    note(true, "another driver has come to this vehicle, and has to end");
+  }
+}
+
+void Vehicle::on(const Statustext& text, Instant) {
+  constexpr std::uint8_t kWarning = 4;
+  const std::string line = text_of(text.text);
+  if (text.severity > kWarning || line == last_text_) return;
+  last_text_ = line;
+  note(true, "the autopilot: " + line);
+}
+
+void Vehicle::on(const CommandAck& ack, Instant) {
+  if (ack.command != requested_ || requests_ == 0) return;
+  constexpr std::uint8_t kAccepted = 0, kInProgress = 5;
+  if (ack.result == kAccepted || ack.result == kInProgress) return;
+  const std::string what = ack.command == kSetMode ? external_mode()
+                           : ack.command == kArm   ? "to arm"
+                                                   : "to take off";
+  const std::string result =
+      ack.result < std::size(kResults) ? kResults[ack.result] : std::to_string(ack.result);
+  note(true, "the autopilot refuses " + what + ": " + result);
+}
+
+// ---- whether it follows ----
+
+bool Vehicle::listened() const { return heartbeats_ >= kListenedHeartbeats; }
+
+bool Vehicle::in_external_mode() const {
+  if (make_ == Make::kPx4) return mode_ == kPx4Offboard;
+  return mode_ == (body_ == Body::kCopter ? kCopterGuided : kRoverGuided);
+}
+
+bool Vehicle::in_the_air() const { return body_ == Body::kRover || landed_state_ == kInAir; }
+
+std::string Vehicle::mode_name() const {
+  const auto named = [&](const auto& modes) {
+    const auto found = std::ranges::find(modes, mode_, &ModeName::mode);
+    return found == std::end(modes) ? "mode " + std::to_string(mode_) : std::string(found->name);
+  };
+  if (make_ == Make::kPx4) return named(kPx4Modes);
+  return body_ == Body::kCopter ? named(kCopterModes) : named(kRoverModes);
+}
+
+std::string Vehicle::why_it_waits_for_the_pilot() const {
+  if (!in_external_mode() || !armed_) {
+    const std::string state = armed_ ? mode_name() : "disarmed";
+    if (taken_over_)
+      return "the pilot or a failsafe has taken over (" + state +
+             "): the agent rests until the vehicle is armed in " + external_mode();
+    if (!in_external_mode())
+      return "waits until the pilot chooses " + external_mode() + " (now " + mode_name() + ")";
+    return "waits until the pilot arms";
+  }
+  if (body_ == Body::kCopter && !landed_state_)
+    return "the autopilot does not send EXTENDED_SYS_STATE: whether it flies is not known";
+  if (!in_the_air()) return "waits until the pilot has taken off";
+  return "";
+}
+
+/// In a plane.
+std::string Vehicle::why_wrong_height(Instant now) const {
+  const auto fix = fixes_.at(now);
+  if (!planar_ || body_ == Body::kRover || !fix) return "";
+  if (std::abs(fix->height_m - *options_.altitude_m) <= kHeightError_m) return "";
+  return "goes to its height first";
+}
+
+bool Vehicle::stands(Instant now) const {
+  const auto fix = fixes_.at(now);
+  return fix && fix->velocity_mps.norm() < kStanding_mps;
+}
+
+std::string Vehicle::why_not(Instant now) const {
+  if (!known()) return "no autopilot is heard on the link";
+  if (now - heard_at_ > seconds(kLinkLost_s)) return "the link is lost: no heartbeat for 3 s";
+  if (!listened()) return "listens whether another driver is there";
+  if (const std::string problem = fixes_.problem(now); !problem.empty()) return problem;
+  if (!running_) return finishing_ ? "the mission is over" : "waits for the mission";
+  if (const std::string waits = why_it_waits_for_the_pilot(); !waits.empty()) return waits;
+  return why_wrong_height(now);
+}
+
+/// Notes each change, and whether the pilot has taken the vehicle: it has left the mode, or is
+/// disarmed.
+void Vehicle::watch_pilot(Instant now) {
+  const bool external = known() && in_external_mode(), engaged = external && armed_;
+  if (running_ && ((was_external_ && !external) || (was_engaged_ && !engaged))) taken_over_ = true;
+  was_external_ = external;
+  was_engaged_ = engaged;
+  const std::string why = why_not(now);
+  if (why == last_why_) return;
+  note(last_why_.empty() && running_, why.empty() ? "follows its agent" : why);
+  last_why_ = why;
+}
+
+// ---- what it is told ----
+
+void Vehicle::begin(bool planar, double speed_limit_mps) {
+  running_ = true;
+  planar_ = planar;
+  fixes_.set_speed_limit(speed_limit_mps);
+}
+
+std::string Vehicle::why_not_its_mission() const {
+  if (body_ == Body::kCopter && planar_ && !options_.altitude_m)
+    return "the mission is in a plane: give its height above home by --altitude";
+  if (body_ == Body::kRover && !planar_) return "the mission is in a box, and a rover cannot climb";
+  if (!planar_ && options_.origin && !options_.origin->has_altitude)
+    return "the mission is in a box: --origin needs the altitude of z = 0, too";
+  return "";
+}
+
+void Vehicle::fly(const Eigen::Vector3d& velocity_mps) {
+  if (velocity_mps != wanted_mps_) next_setpoint_ = {};
+  wanted_mps_ = velocity_mps;
+}
+
+void Vehicle::finish() {
+  running_ = false;
+  finishing_ = true;
+  done_ = !fatal_.empty() || !obeys_setpoints();
+  fly({0, 0, 0});
+}
+
+bool Vehicle::obeys_setpoints() const {
+  if (!known() || !listened()) return false;
+  return make_ == Make::kPx4 || (in_external_mode() && armed_ && in_the_air());
+}
+
+/// In a plane a multicopter holds its height, also while it stands. PX4 takes off by climbing.
+double Vehicle::climb_mps(Instant now) const {
+  const auto fix = fixes_.at(now);
+  if (!fix || !running_ || body_ == Body::kRover || !in_external_mode() || !armed_) return 0;
+  if (!in_the_air())
+    return options_.take_command && landed_state_ && make_ == Make::kPx4 ? kFastestClimb_mps : 0;
+  return std::clamp(kClimbGain_per_s * (*options_.altitude_m - fix->height_m), -kFastestClimb_mps,
+                    kFastestClimb_mps);
+}
+
+Eigen::Vector3d Vehicle::setpoint_mps(Instant now) const {
+  Eigen::Vector3d velocity_mps(0, 0, 0);
+  if (why_not(now).empty()) velocity_mps = wanted_mps_;
+  if (planar_ || !in_the_air()) velocity_mps.z() = climb_mps(now);
+  return velocity_mps;
+}
+
+void Vehicle::advance(Instant now, std::vector<Packet>& out) {
+  if (known() && running_ && fatal_.empty()) fatal_ = why_not_its_mission();
+  if (!fatal_.empty()) return;
+  watch_pilot(now);
+  if (now >= next_second_) {
+    next_second_ = now + 1s;
+    each_second(now, out);
+  }
+  if (now < next_setpoint_) return;
+  next_setpoint_ = now + kSetpointPeriod;
+  if (!obeys_setpoints()) return done_ = finishing_, void();
+  SetPositionTargetLocalNed setpoint = setpoint_of(setpoint_mps(now));
+  setpoint.target_system = autopilot_.system;
+  setpoint.target_component = autopilot_.component;
+  out.emplace_back(setpoint);
+  ++setpoints_;
+  if (!finishing_) return;
+  ++last_setpoints_;
+  const bool waits = fixes_.at(now) && !stands(now) && last_setpoints_ < kMostLastSetpoints;
+  done_ = last_setpoints_ >= kLastSetpoints && !waits;
+}
+
+void Vehicle::each_second(Instant now, std::vector<Packet>& out) {
+  Heartbeat heartbeat;
+  heartbeat.custom_mode = identity_;
+  heartbeat.type = kOnboardController;
+  heartbeat.autopilot = kNoAutopilot;
+  heartbeat.system_status = listened() ? kActive : kStandby;
+  out.emplace_back(heartbeat);
+  if (!known()) return;
+  Timesync question = fixes_.clock().ask(now);
+  question.target_system = autopilot_.system;
+  question.target_component = autopilot_.component;
+  out.emplace_back(question);
+  if (!fixes_.at(now) || (body_ == Body::kCopter && !landed_state_)) ask_for_messages(out);
+  if (options_.take_command && running_ && !taken_over_ && listened() && fixes_.at(now))
+    take_command(out);
+}
+
+CommandLong Vehicle::command(std::uint16_t number, float one, float two, float seven) const {
+  CommandLong command;
+  command.command = number;
+  command.param1 = one;
+  command.param2 = two;
+  command.param7 = seven;
+  command.target_system = autopilot_.system;
+  command.target_component = autopilot_.component;
+  return command;
+}
+
+/// Positions 20 times a second, and whether it flies.
+void Vehicle::ask_for_messages(std::vector<Packet>& out) const {
+  const bool local = options_.local_origin_m.has_value();
+  out.emplace_back(
+      command(kSetInterval,
+              static_cast<float>(local ? LocalPositionNed::kId : GlobalPositionInt::kId), 50'000));
+  out.emplace_back(command(kSetInterval, static_cast<float>(ExtendedSysState::kId), 500'000));
+  if (!local) out.emplace_back(command(kRequestMessage, static_cast<float>(GpsGlobalOrigin::kId)));
+}
+
+/// The next step of mode, arming and take-off, once a second.
+void Vehicle::take_command(std::vector<Packet>& out) {
+  if (make_ == Make::kPx4 && setpoints_ < kSetpointsBeforeOffboard) return;
+  std::optional<CommandLong> next;
+  if (!in_external_mode()) {
+    constexpr float kCustomMode = 1;
+    const std::uint32_t mode = make_ == Make::kPx4      ? kPx4Offboard
+                               : body_ == Body::kCopter ? kCopterGuided
+                                                        : kRoverGuided;
+    next = command(kSetMode, kCustomMode, static_cast<float>(mode));
+  } else if (!armed_) {
+    next = command(kArm, 1);
+  } else if (!in_the_air() && landed_state_ && make_ == Make::kArduPilot) {
+    next = command(kTakeOff, 0, 0, static_cast<float>(options_.altitude_m.value_or(5)));
+  }
+  if (!next) return requests_ = 0, void();
+  if (next->command != requested_) requests_ = 0;
+  requested_ = next->command;
+  if (++requests_ > kMostRequests) {
+    if (requests_ == kMostRequests + 1)
+      note(true, "has asked " + std::to_string(kMostRequests) +
+                     " times in vain, and leaves it to the pilot");
+    return;
+  }
+  out.emplace_back(*next);
+}
+
+}  // namespace ergocast::mavlink
