@@ -50,7 +50,7 @@ class ClockBond {
   void forget() { count_ = 0; }
 
  private:
-  /// Of two clocks in the time between ten answers.
+  /// The drift of two clocks in the time between ten answers.
   static constexpr auto kDrift = std::chrono::milliseconds(2);
   std::array<Instant, 8> asked_{};
   std::array<Instant::duration, 10> offsets_{};

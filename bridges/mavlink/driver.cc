@@ -60,7 +60,7 @@ void Driver::begin(Tick tick, Instant now) {
   begun_ = now;
   next_tick_ = now + kOtherDriver;
   const double limit_mps = motion_of(mission, id_).speed_limit_mps;
-  vehicle_.begin(mission.domain.planar(), limit_mps > 0 ? limit_mps : mission.law.u_max_mps);
+  vehicle_.begin(mission.domain, limit_mps > 0 ? limit_mps : mission.law.u_max_mps);
 }
 
 /// The reason why it cannot take part.
@@ -153,6 +153,7 @@ void Driver::advance(Instant now, Outbox& out, std::vector<Packet>& to_vehicle) 
   if (running_ && now >= next_tick_ && (!stopped_ || tells_until_it_stands_)) {
     if (stopped_) {
       ++tick_;
+      if (vehicle_.done()) --last_states_;
     } else if (published_ && !me_.is_over(tick_)) {
       pass_tick(now);
     }

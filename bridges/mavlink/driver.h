@@ -42,7 +42,9 @@ class Driver {
   /// The vehicle stands; after a last second the driver has finished.
   void stop(std::string reason);
 
-  bool finished() const { return stopped_ && vehicle_.done(); }
+  bool finished() const {
+    return stopped_ && vehicle_.done() && (!tells_until_it_stands_ || last_states_ <= 0);
+  }
   bool failed() const { return failed_; }
   const std::string& reason() const { return reason_; }
   RunId run() const { return me_.run(); }
@@ -83,6 +85,7 @@ class Driver {
   Eigen::Vector3d commanded_mps_{0, 0, 0};
   bool running_ = false, published_ = false, stopped_ = false, failed_ = false;
   bool tells_until_it_stands_ = false;  // after a STOP at once
+  int last_states_ = 5;                 // to send once it stands, because some may be lost
   std::string reason_;
   Tick tick_ = 0;
   Instant next_tick_{}, begun_{};

@@ -37,10 +37,11 @@ inline constexpr std::uint32_t kSteady_ms = 3000;
 
 class Fixes {
  public:
-  Fixes(std::optional<EarthPlace> origin, std::optional<Eigen::Vector3d> local_origin_m)
+  Fixes(const std::optional<EarthPlace>& origin,
+        const std::optional<Eigen::Vector3d>& local_origin_m)
       : origin_(origin), local_origin_m_(local_origin_m) {}
 
-  /// The greatest speed of the vehicle by the mission; it tells jumps from ways.
+  /// The greatest speed of the vehicle by the mission; a much longer way is a jump.
   void set_speed_limit(double mps) { speed_limit_mps_ = mps; }
 
   void take(const GlobalPositionInt& at);

@@ -12,7 +12,7 @@
 
 namespace ergocast::mavlink {
 
-/// Who sends a frame.
+/// The sender of a frame.
 struct Source {
   std::uint8_t system = 0, component = 0;
   bool operator==(const Source&) const = default;

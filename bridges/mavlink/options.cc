@@ -155,6 +155,13 @@ int read_command_line(int argc, char** argv, Options& options) {
                "ergocast-driver-mavlink");
   add_team_options(app, options);
   add_vehicle_options(app, options);
+  app.get_option("--connect")->check([](const std::string& text) {
+    for (const char* kind : {"udp:", "udpin:", "tcp:", "serial:"}) {
+      if (text.starts_with(kind)) return std::string();
+    }
+    return "'" + text +
+           "' is no link: udp:HOST:PORT, udpin:PORT, tcp:HOST:PORT or serial:DEVICE:BAUD";
+  });
   app.set_version_flag("--version", "ergocast-driver-mavlink " ERGOCAST_VERSION);
   app.footer(
       "Exit codes: 0 done; 2 bad arguments; 3 LCM or the link cannot be used on this machine; 4 "
@@ -165,6 +172,10 @@ int read_command_line(int argc, char** argv, Options& options) {
     if (!options.vehicle.origin && !options.vehicle.local_origin_m)
       throw CLI::ValidationError(
           "--origin", "give the place of the scenario's (0, 0), or --local-origin without GPS");
+    const char* key_file = std::getenv("ERGOCAST_KEY_FILE");
+    if (key_file != nullptr && *key_file == '\0' && app.get_option("--key-file")->count() == 0)
+      throw CLI::ValidationError("ERGOCAST_KEY_FILE",
+                                 "is set, and empty; name the key file in it, or unset it");
     if (options.vehicle.take_command && !options.vehicle.altitude_m)
       throw CLI::ValidationError("--take-command", "needs the height of the take-off: --altitude");
   } catch (const CLI::ParseError& problem) {

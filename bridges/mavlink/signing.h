@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signatures of MAVLink 2: who has the link's key, and in which order it has sent.
+// Signatures of MAVLink 2: a sender that has the link's key, and frames that are no repeats.
 //
 // A signed frame ends with the number of the link, a time and the first 48 bits of SHA-256 over
 // key, frame, number and time. Times count 10 µs since 1 January 2015, and grow with each frame.

@@ -62,7 +62,7 @@ std::optional<Body> body_of(std::uint8_t type) {
 std::string why_refused(std::uint8_t type) {
   if (type == 1) return "is a fixed wing, which cannot be stopped in the air";
   if (type >= 19 && type <= 25)
-    return "is a VTOL, which cannot be stopped while it flies as a wing";
+    return "is a VTOL, which cannot be stopped while its wing carries it";
   return "is of type " + std::to_string(type) + " (MAV_TYPE), and no multicopter or rover";
 }
 
@@ -88,7 +88,8 @@ void Vehicle::receive(const Received& received, Instant now) {
 void Vehicle::take_heartbeat(const Received& received, const Heartbeat& heartbeat, Instant now) {
   const Source& from = received.from;
   if (heartbeat.type == kOnboardController && from.component == kCompanion &&
-      from.system == source().system && heartbeat.custom_mode != identity_)
+      from.system == source().system && heartbeat.custom_mode != 0 &&
+      heartbeat.custom_mode != identity_)
     return meet_driver(heartbeat);
   if (heartbeat.autopilot == kNoAutopilot) return;  // a ground station, a camera, this driver
   const bool right_system = options_.system == 0 || from.system == options_.system;
@@ -135,6 +136,16 @@ void Vehicle::meet_driver(const Heartbeat& other) {
   } else if (!std::exchange(warned_of_driver_, true)) {
     note(true, "another driver has come to this vehicle, and has to end");
   }
+}
+
+/// Each tenth is told once, from 50 % on.
+void Vehicle::on(const SysStatus& status, Instant) {
+  constexpr int kFirstTold_percent = 50, kLow_percent = 20;
+  if (status.battery_remaining < 0) return;  // not known
+  const int left = static_cast<unsigned char>(status.battery_remaining);
+  if (left > kFirstTold_percent || left > battery_told_percent_ - 10) return;
+  battery_told_percent_ = left - left % 10 + (left % 10 > 0 ? 10 : 0);
+  note(left <= kLow_percent, "the battery has " + std::to_string(left) + " %");
 }
 
 void Vehicle::on(const Statustext& text, Instant) {
@@ -188,9 +199,19 @@ std::string Vehicle::why_it_waits_for_the_pilot() const {
     return "waits until the pilot arms";
   }
   if (body_ == Body::kCopter && !landed_state_)
-    return "the autopilot does not send EXTENDED_SYS_STATE: whether it flies is not known";
+    return "the autopilot does not send EXTENDED_SYS_STATE: whether it is in the air is not known";
   if (!in_the_air()) return "waits until the pilot has taken off";
   return "";
+}
+
+/// A vehicle that is farther outside of the domain than its longer side has probably another
+/// origin.
+std::string Vehicle::why_wrong_place(Instant now) const {
+  const auto fix = fixes_.at(now);
+  if (!fix) return "";
+  const Eigen::Vector2d outside_m = (fix->position_m - domain_.nearest(fix->position_m)).head<2>();
+  if (outside_m.norm() <= domain_.size_m.head<2>().maxCoeff()) return "";
+  return "is far outside of the domain: is --origin that of the scenario?";
 }
 
 /// In a plane.
@@ -213,6 +234,7 @@ std::string Vehicle::why_not(Instant now) const {
   if (const std::string problem = fixes_.problem(now); !problem.empty()) return problem;
   if (!running_) return finishing_ ? "the mission is over" : "waits for the mission";
   if (const std::string waits = why_it_waits_for_the_pilot(); !waits.empty()) return waits;
+  if (const std::string place = why_wrong_place(now); !place.empty()) return place;
   return why_wrong_height(now);
 }
 
@@ -229,11 +251,12 @@ void Vehicle::watch_pilot(Instant now) {
   last_why_ = why;
 }
 
-// ---- what it is told ----
+// ---- what it is ordered ----
 
-void Vehicle::begin(bool planar, double speed_limit_mps) {
+void Vehicle::begin(const Box& domain, double speed_limit_mps) {
   running_ = true;
-  planar_ = planar;
+  domain_ = domain;
+  planar_ = domain.planar();
   fixes_.set_speed_limit(speed_limit_mps);
 }
 
@@ -285,7 +308,7 @@ void Vehicle::advance(Instant now, std::vector<Packet>& out) {
   if (!fatal_.empty()) return;
   watch_pilot(now);
   if (now >= next_second_) {
-    next_second_ = now + 1s;
+    next_second_ = now + std::chrono::seconds(1);
     each_second(now, out);
   }
   if (now < next_setpoint_) return;
@@ -330,7 +353,7 @@ CommandLong Vehicle::command(std::uint16_t number, float one, float two, float s
   return command;
 }
 
-/// Positions 20 times a second, and whether it flies.
+/// Positions 20 times a second, and whether it is in the air.
 void Vehicle::ask_for_messages(std::vector<Packet>& out) const {
   const bool local = options_.local_origin_m.has_value();
   out.emplace_back(

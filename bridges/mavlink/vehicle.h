@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One vehicle with a PX4 or ArduPilot autopilot: what it reports, and what it is told.
+// One vehicle with a PX4 or ArduPilot autopilot: what it reports, and what it is ordered to do.
 //
 // The pilot decides. Unless the options say so, the driver never arms, takes off or changes modes;
 // it only sends velocities, which the autopilot obeys in OFFBOARD (PX4) or GUIDED (ArduPilot). The
@@ -13,6 +13,7 @@
 // No socket, thread or clock.
 #pragma once
 
+#include <ergocast/core/base/geometry.h>
 #include <ergocast/core/base/ids.h>
 
 #include <Eigen/Core>
@@ -51,7 +52,7 @@ enum class Body { kCopter, kRover };
 
 class Vehicle {
  public:
-  /// @param identity  tells this driver from others of the same vehicle
+  /// @param identity  not 0; tells this driver from others of the same vehicle
   Vehicle(const VehicleOptions& options, std::uint32_t identity);
 
   void receive(const Received& received, Instant now);
@@ -61,7 +62,7 @@ class Vehicle {
   Source source() const;
 
   /// The mission runs: from now on the vehicle may follow.
-  void begin(bool planar, double speed_limit_mps);
+  void begin(const Box& domain, double speed_limit_mps);
   /// The velocity that the agent wants; 0: stand.
   void fly(const Eigen::Vector3d& velocity_mps);
   /// The mission is over: zero velocity until it stands, for 1 s to 10 s, then done().
@@ -86,6 +87,7 @@ class Vehicle {
   void on(const GpsGlobalOrigin& at, Instant) { fixes_.take(at); }
   void on(const Timesync& answer, Instant) { fixes_.clock().take(answer); }
   void on(const ExtendedSysState& state, Instant) { landed_state_ = state.landed_state; }
+  void on(const SysStatus& status, Instant now);
   void on(const Statustext& text, Instant now);
   void on(const CommandAck& ack, Instant now);
   void take_heartbeat(const Received& received, const Heartbeat& heartbeat, Instant now);
@@ -101,6 +103,7 @@ class Vehicle {
   std::string external_mode() const { return make_ == Make::kPx4 ? "OFFBOARD" : "GUIDED"; }
   std::string mode_name() const;
   std::string why_it_waits_for_the_pilot() const;
+  std::string why_wrong_place(Instant now) const;
   std::string why_wrong_height(Instant now) const;
   std::string why_not_its_mission() const;
   Eigen::Vector3d setpoint_mps(Instant now) const;
@@ -118,14 +121,16 @@ class Vehicle {
   Make make_ = Make::kPx4;
   Body body_ = Body::kCopter;
   std::uint32_t mode_ = 0;
-  bool armed_ = false, lost_ = false;
+  bool armed_ = false;
   std::int64_t heartbeats_ = 0;
   Instant heard_at_{};
   std::optional<std::uint8_t> landed_state_;
   std::set<std::uint8_t> strangers_;
   bool warned_of_driver_ = false;
+  int battery_told_percent_ = 100;
   std::string last_text_;
 
+  Box domain_;
   bool running_ = false, planar_ = true, finishing_ = false, done_ = false;
   Eigen::Vector3d wanted_mps_{0, 0, 0};
   int last_setpoints_ = 0;  // since the mission was over

@@ -43,6 +43,16 @@ END
   cmp "$work/simulated/trajectory.csv" "$work/flown/trajectory.csv" || fail 'the embedded agent runs another law'
 }
 
+# The driver of vehicles with MAVLink needs the installed libraries alone.
+check_bridge() {
+  apt_install libcli11-dev
+  mkdir -p "$work/tree/bridges"
+  cp -r "$source/bridges/mavlink" "$work/tree/bridges/"
+  in_root cmake -S /tmp/test/tree/bridges/mavlink -B /tmp/test/bridge >"$work/said" 2>&1 &&
+    in_root cmake --build /tmp/test/bridge >>"$work/said" 2>&1 || { cat "$work/said"; fail 'the bridge'; }
+  in_root /tmp/test/bridge/ergocast-driver-mavlink --version || fail 'the bridge does not run'
+}
+
 check_python() {
   cat >"$work/program.py" <<'END'
 import ergocast
@@ -81,6 +91,7 @@ apt_install g++ cmake make /tmp/ergocast.deb /tmp/libergocast-dev.deb /tmp/pytho
 check_headers
 check_versions
 check_example
+check_bridge
 check_python
 check_figures
 in_root dpkg --purge ergocast libergocast-dev python3-ergocast >/dev/null

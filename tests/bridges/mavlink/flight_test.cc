@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vehicles with the mock autopilot of reference/autopilot.cjs in a real team. Its clock counts
+// Vehicles with the mock autopilot of reference/autopilot.cjs in a real team. Its time-outs count
 // steps of its own, so a slow machine makes no gap between setpoints.
 #include <arpa/inet.h>
 #include <poll.h>
+#include <pty.h>
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "tests/process/support/mission.h"
 #include "tests/process/support/record.h"
@@ -18,6 +22,13 @@ namespace {
 using nlohmann::json;
 
 const std::string kFolder = ERGOCAST_SOURCE_DIR "/tests/bridges/mavlink/";
+
+sockaddr_in loopback(int port) {
+  return {AF_INET, htons(static_cast<in_port_t>(port)), {htonl(INADDR_LOOPBACK)}, {}};
+}
+
+/// Whether the newest setpoint says so.
+bool stands(const json& state) { return state["setpoint"][0] == 0 && state["setpoint"][1] == 0; }
 
 /// The pilot of one mock: sends orders, and reads the vehicle's state.
 class Pilot {
@@ -61,6 +72,14 @@ class MavlinkVehicles : public ByHand {
   static constexpr const char* kOrigin = "47.6535,9.175";
   static constexpr double kDistance_m = 8;
 
+  std::filesystem::path scenario_of_one() const {
+    std::string text = text_of(kFolder + "two.textproto");
+    const std::string other = " starts { x_m: 80 y_m: 20 }";
+    text.erase(text.find(other), other.size());
+    const auto file = folder_ / "one.textproto";
+    std::ofstream(file) << text;
+    return file;
+  }
   void mock(int port, const std::vector<std::string>& more) {
     std::vector<std::string> command{"/usr/bin/env", "node", kFolder + "reference/autopilot.cjs",
                                      ERGOCAST_NODE_MAVLINK, std::to_string(port)};
@@ -96,10 +115,14 @@ class MavlinkVehicles : public ByHand {
     }
     return least_m;
   }
-  static int times(const std::string& text, const std::string& part) {
-    int count = 0;
-    for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
-    return count;
+  /// Waits until a driver has printed `part` after its last `before`.
+  static bool prints_after(const Program& driver, const std::string& before,
+                           const std::string& part) {
+    return eventually([&] {
+      const std::string text = driver.printed();
+      const auto last = text.rfind(before);
+      return last != text.npos && text.find(part, last) != text.npos;
+    });
   }
 
   void TearDown() override {
@@ -142,9 +165,12 @@ TEST_F(MavlinkVehicles, FlyOnlyWhileTheirPilotsAllowIt) {
   take_off(second, "GUIDED");
   EXPECT_TRUE(one.prints("follows its agent")) << one.printed();
   EXPECT_TRUE(other.prints("follows its agent")) << other.printed();
-  const auto has_flown = [](const json& state) { return state["path"] > 10; };
+  const auto has_flown = [](const json& state) {
+    return state["path"] > 10 || state["timeouts"] > 0;
+  };
   EXPECT_TRUE(first.sees(has_flown)) << one.printed();
   EXPECT_TRUE(second.sees(has_flown)) << other.printed();
+  ASSERT_EQ(first.state()["timeouts"], 0) << "PX4 waits 0.5 s for a setpoint";
 
   // The first pilot takes over, and flies by hand; the record has what is really flown.
   first.orders("fly 0 -1");
@@ -160,15 +186,11 @@ TEST_F(MavlinkVehicles, FlyOnlyWhileTheirPilotsAllowIt) {
 
   // The pilot gives it back.
   EXPECT_TRUE(eventually([&] { return first.orders("mode OFFBOARD")["mode"] == "OFFBOARD"; }));
-  EXPECT_TRUE(eventually([&] { return times(one.printed(), "follows its agent") == 2; }))
-      << one.printed();
+  EXPECT_TRUE(prints_after(one, "has taken over", "follows its agent")) << one.printed();
   EXPECT_TRUE(first.sees([&](const json& state) { return state["path"] > path_m + 5; }));
 
   // A dead agent: its vehicle stands.
   signal_to(agent(1), SIGKILL);
-  const auto stands = [](const json& state) {
-    return state["setpoint"][0] == 0 && state["setpoint"][1] == 0;
-  };
   EXPECT_TRUE(second.sees(stands)) << other.printed();
   EXPECT_EQ(first.state()["timeouts"], 0) << "PX4 waits 0.5 s for a setpoint";
   ASSERT_EQ(ergocast({"stop", "--now", "--lcm-url", kUrl}), 0) << output();
@@ -182,6 +204,142 @@ TEST_F(MavlinkVehicles, FlyOnlyWhileTheirPilotsAllowIt) {
   }
   EXPECT_LE(second.state()["gap"], 150) << "ArduPilot waits 3 s";
   EXPECT_GE(least_distance_m(), kDistance_m);
+}
+
+TEST_F(MavlinkVehicles, TakeOffByThemselvesOnlyIfToldToAndStandAfterAJump) {
+  std::filesystem::create_directory(out());
+  mock(14551, {"--make", "ardupilot", "--at", "47.65368,9.17527"});
+  const Pilot pilot(14551);
+  pilot.state();
+  ASSERT_EQ(ergocast({"keygen", folder_ / "team"}), 0) << output();
+  const std::vector<std::string> key{"--key-file", folder_ / "team.key"};
+  hand("ergocast-logger", {"--out", out(), key[0], key[1]});
+  Program& one = driver(0, "udp:127.0.0.1:14551", {"--take-command", key[0], key[1]});
+  hand("ergocast-agent", {"--id", "0", key[0], key[1]});
+  hand("ergocast-coordinator", {scenario_of_one(), key[0], folder_ / "team.coordinator.key"});
+  EXPECT_TRUE(one.prints("follows its agent")) << one.printed();
+  EXPECT_EQ(pilot.state()["orders"], json({"mode", "arm", "takeoff"}));
+  EXPECT_TRUE(pilot.sees([](const json& state) { return state["path"] > 2; })) << one.printed();
+
+  pilot.orders("jump 50");
+  EXPECT_TRUE(one.prints("the position jumped by 50 m")) << one.printed();
+  EXPECT_TRUE(pilot.sees([](const json& state) { return state["stood"] > 5; })) << one.printed();
+  EXPECT_TRUE(prints_after(one, "jumped", "follows its agent")) << one.printed();
+  pilot.orders("silent");
+  EXPECT_TRUE(one.prints("the newest position is older than 0.5 s")) << one.printed();
+  EXPECT_TRUE(one.prints("the link is lost")) << one.printed();
+  EXPECT_TRUE(pilot.sees(stands)) << "setpoints still arrive at the silent vehicle";
+  one.child.send(SIGTERM);
+  EXPECT_EQ(wait_for(one.child), 0) << one.printed();
+}
+
+/// Passes bytes between a mock and a link of another kind, as radios do.
+class Radio {
+ public:
+  Radio(int port, int link) : mock_(::socket(AF_INET, SOCK_DGRAM, 0)), link_(link) {
+    const sockaddr_in to = loopback(port);
+    connect(mock_, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+    thread_ = std::thread([this] {
+      while (!ends_) pass();
+    });
+  }
+  Radio(const Radio&) = delete;
+  Radio& operator=(const Radio&) = delete;
+  ~Radio() {
+    ends_ = true;
+    thread_.join();
+    close(mock_);
+    close(link_);
+  }
+
+ private:
+  void pass() const {
+    pollfd all[] = {{mock_, POLLIN, 0}, {link_, POLLIN, 0}};
+    poll(all, 2, 100);
+    std::array<char, 4096> in;
+    for (int i = 0; i < 2; ++i) {
+      if ((all[i].revents & POLLIN) == 0) continue;
+      const auto size = read(all[i].fd, in.data(), in.size());
+      if (size > 0 && write(all[1 - i].fd, in.data(), static_cast<std::size_t>(size)) < 0) continue;
+    }
+  }
+  int mock_, link_;
+  std::atomic<bool> ends_ = false;
+  std::thread thread_;
+};
+
+TEST_F(MavlinkVehicles, AreReachedByEveryLinkAndRefusedIfTheyCannotStopOrHaveADriver) {
+  mock(14551, {"--to", "14561"});
+  mock(14552, {"--system", "2", "--body", "wing"});
+  Pilot(14551).state();
+  Pilot(14552).state();
+  int device = -1, end = -1;
+  std::array<char, 256> name;
+  ASSERT_EQ(openpty(&device, &end, name.data(), nullptr, nullptr), 0);
+  const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+  const sockaddr_in here = loopback(14571);
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
+  ASSERT_EQ(listen(listener, 1), 0);
+
+  // A question of TIMESYNC and its answer have passed before a driver waits for the mission.
+  Program& first = driver(0, "udpin:14561");
+  EXPECT_TRUE(first.prints("system 1: PX4, a multicopter")) << first.printed();
+  EXPECT_TRUE(first.prints("waits for the mission")) << first.printed();
+  Program& second = driver(0, "udp:127.0.0.1:14551");
+  EXPECT_EQ(wait_for(second.child), 4) << second.printed();
+  EXPECT_TRUE(second.prints("another driver is on this vehicle")) << second.printed();
+  first.child.send(SIGTERM);
+  EXPECT_EQ(wait_for(first.child), 0) << first.printed();
+
+  Program& wing = driver(1, "udp:127.0.0.1:14552");
+  EXPECT_EQ(wait_for(wing.child), 4) << wing.printed();
+  EXPECT_TRUE(wing.prints("system 2 is a fixed wing, which cannot be stopped in the air"));
+
+  {
+    const Radio radio(14551, device);
+    Program& serial = driver(0, std::string("serial:") + name.data() + ":57600");
+    EXPECT_TRUE(serial.prints("waits for the mission")) << serial.printed();
+    serial.child.send(SIGTERM);
+    EXPECT_EQ(wait_for(serial.child), 0) << serial.printed();
+  }
+  close(end);
+  Program& tcp = driver(0, "tcp:127.0.0.1:14571");
+  const Radio radio(14551, accept(listener, nullptr, nullptr));
+  EXPECT_TRUE(tcp.prints("waits for the mission")) << tcp.printed();
+  tcp.child.send(SIGTERM);
+  EXPECT_EQ(wait_for(tcp.child), 0) << tcp.printed();
+  close(listener);
+}
+
+TEST_F(MavlinkVehicles, HaveADriverThatRefusesWrongOptionsInASentence) {
+  const auto refused = [&](std::vector<std::string> options, int code = 2) {
+    EXPECT_EQ(run("ergocast-driver-mavlink", std::move(options)), code) << output();
+    return output();
+  };
+  const auto says = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  const std::vector<std::string> whole{"--id",     "0",    "--connect", "udp:127.0.0.1:14551",
+                                       "--origin", kOrigin};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), whole.begin(), whole.end());
+    return more;
+  };
+  says(refused({"--id", "0", "--connect", "udp:127.0.0.1:1"}), "give the place of the scenario");
+  says(refused({"--id", "0", "--connect", "carrier:1", "--origin", kOrigin}), "is no link");
+  says(refused({"--id", "0", "--connect", "udp:x", "--origin", "91,0"}), "is no place");
+  says(refused(with({"--take-command"})), "needs the height of the take-off");
+  says(refused(with({"--lcm-url", "udpm://1.2.3.4:5"})), "is not an LCM URL");
+  std::ofstream(folder_ / "key") << std::string(64, 'a');
+  std::filesystem::permissions(folder_ / "key", std::filesystem::perms(0644));
+  says(refused(with({"--signing-key", folder_ / "key"})), "others may use this key");
+  std::filesystem::permissions(folder_ / "key", std::filesystem::perms(0600));
+  says(refused(with({"--key-file", folder_ / "key"})), "is no key");
+  setenv("ERGOCAST_KEY_FILE", "", 1);
+  says(refused(whole), "is set, and empty");
+  unsetenv("ERGOCAST_KEY_FILE");
+  says(refused({"--id", "0", "--connect", "serial:/dev/null:57", "--origin", kOrigin}, 3),
+       "no usual rate");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the driver tells an autopilot, by a clock of the test's own.
+// What the driver sends to an autopilot, by a clock of the test's own.
 #include "bridges/mavlink/vehicle.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ class Flight {
   void pass(double seconds_passed) {
     for (int i = 0; i < std::lround(seconds_passed * 10); ++i) {
       now += 100ms;
-      const auto ms = (now - kPowerOn) / 1ms;
+      const auto ms = (now - kPowerOn) / std::chrono::milliseconds(1);
       at.time_boot_ms = near.time_boot_ms = static_cast<std::uint32_t>(ms);
       if (ms % 1000 == 0 && beats) hear(heartbeat);
       if (ms % 500 == 0 && knows_landed) hear(landed);
@@ -67,7 +67,9 @@ class Flight {
     for (const Note& note : vehicle.take_notes()) log += note.text + "\n";
   }
   void begin(bool planar = true) {
-    vehicle.begin(planar, 5);
+    Box domain;
+    domain.size_m = {100, 80, planar ? 0.0 : 100.0};
+    vehicle.begin(domain, 5);
     vehicle.fly({3, 4, 0});
   }
   template <class M>
@@ -230,6 +232,38 @@ TEST(MavlinkVehicle, StandsAfterAJumpUntilPositionsAreSteady) {
   EXPECT_TRUE(flight.follows()) << flight.log;
 }
 
+TEST(MavlinkVehicle, StandsFarOutsideOfTheDomain) {
+  Flight flight;
+  flight.at.lat -= 8000;  // 89 m south of the domain, which is 100 m long
+  flight.pass(4);
+  flight.begin();
+  flight.pass(1);
+  EXPECT_TRUE(flight.follows()) << flight.log;
+  Flight lost;
+  lost.at.lat -= 10000;
+  lost.pass(4);
+  lost.begin();
+  lost.pass(1);
+  EXPECT_TRUE(lost.stands());
+  EXPECT_TRUE(lost.said("is far outside of the domain: is --origin that of the scenario?"));
+  EXPECT_TRUE(lost.vehicle.fix(lost.now)) << "the others know where it is";
+}
+
+TEST(MavlinkVehicle, TellsOfItsBatteryEachTenth) {
+  Flight flight;
+  flight.pass(4);
+  SysStatus status;
+  for (const int left : {-1, 80, 51, 50, 49, 45, 40, 39, 12, 11, 10}) {
+    status.battery_remaining = static_cast<std::int8_t>(left);
+    flight.hear(status);
+  }
+  flight.log.clear();
+  flight.turn();
+  EXPECT_EQ(flight.log,
+            "the battery has 50 %\nthe battery has 40 %\nthe battery has 12 %\n"
+            "the battery has 10 %\n");
+}
+
 TEST(MavlinkVehicle, IgnoresPositionsThatWereOvertakenAndForgetsThoseBeforeARestart) {
   Flight flight;
   flight.pass(5);
@@ -345,6 +379,10 @@ TEST(MavlinkVehicle, HasOneDriver) {
   other.system_status = 3;
   Flight later;
   later.pass(1);
+  other.custom_mode = 0;
+  later.hear(other, {1, 191});
+  EXPECT_EQ(later.vehicle.fatal(), "") << "another computer, which is no driver";
+  other.custom_mode = 999;
   later.hear(other, {1, 191});
   EXPECT_EQ(later.vehicle.fatal(), "another driver is on this vehicle: end that one first");
   other.custom_mode = 1001;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares our codec with node-mavlink, both ways: codec.cjs FOLDER MAVLINK_LINES. FOLDER has node_modules.
-const { execFileSync } = require("node:child_process");
-const { createRequire } = require("node:module");
-const assert = require("node:assert");
-const mavlink = createRequire(require("node:path").resolve(process.argv[2]) + "/")("node-mavlink");
+const { execFileSync } = require('node:child_process');
+const { createRequire } = require('node:module');
+const assert = require('node:assert');
+const mavlink = createRequire(require('node:path').resolve(process.argv[2]) + '/')('node-mavlink');
 
 const lines = process.argv[3];
 const KEY = Buffer.alloc(32, 0x5a);
@@ -19,14 +19,14 @@ function fieldsOf(message) {
   const all = {};
   for (const field of message.constructor.FIELDS) {
     const value = message[field.name];
-    all[field.source] = typeof value === "bigint" ? String(value) : value;
+    all[field.source] = typeof value === 'bigint' ? String(value) : value;
   }
   return all;
 }
 
 function run(...words) {
-  const input = typeof words.at(-1) === "object" ? words.pop().input : "";
-  return execFileSync(lines, words, { input, encoding: "utf8" }).trim().split("\n").map(JSON.parse);
+  const input = typeof words.at(-1) === 'object' ? words.pop().input : '';
+  return execFileSync(lines, words, { input, encoding: 'utf8' }).trim().split('\n').map(JSON.parse);
 }
 
 // Only the fields that both know: either may know newer extensions.
@@ -46,14 +46,14 @@ function parsed(hex) {
   const splitter = new mavlink.MavLinkPacketSplitter();
   const found = [];
   splitter.pipe(parser);
-  parser.on("data", (packet) => found.push(packet));
-  splitter.write(Buffer.from(hex, "hex"));
-  return new Promise((done) => setImmediate(() => setImmediate(() => done(found))));
+  parser.on('data', packet => found.push(packet));
+  splitter.write(Buffer.from(hex, 'hex'));
+  return new Promise(done => setImmediate(() => setImmediate(() => done(found))));
 }
 
 async function readOurs(seed, key) {
   let compared = 0;
-  const sent = run("write", String(seed), ...(key ? [key.toString("hex")] : []));
+  const sent = run('write', String(seed), ...(key ? [key.toString('hex')] : []));
   for (const line of sent) {
     const [packet] = await parsed(line.frame);
     assert(packet, `${line.name} was not read`);
@@ -77,20 +77,27 @@ function readTheirs(sent, key, version) {
     for (const field of clazz.FIELDS) {
       if (!(field.source in line.fields)) continue;
       const value = line.fields[field.source];
-      message[field.name] = field.size === 8 && field.type !== "char" ? BigInt(value) : value;
+      message[field.name] = field.size === 8 && field.type !== 'char' ? BigInt(value) : value;
     }
-    if (!key) return protocol.serialize(message, i).toString("hex");
-    const open = new mavlink.MavLinkProtocolV2(7, 3, mavlink.MavLinkProtocolV2.IFLAG_SIGNED).serialize(message, i);
-    return protocol.sign(open, 1, key, 1420070400000 + TIME / 100 + 1 + i).toString("hex");
+    if (!key) return protocol.serialize(message, i).toString('hex');
+    const open = new mavlink.MavLinkProtocolV2(7, 3, mavlink.MavLinkProtocolV2.IFLAG_SIGNED).serialize(
+      message,
+      i,
+    );
+    return protocol.sign(open, 1, key, 1420070400000 + TIME / 100 + 1 + i).toString('hex');
   });
-  const words = ["read", ...(key ? [key.toString("hex")] : [])];
-  const read = run(...words, { input: frames.join("\n") + "\n" });
+  const words = ['read', ...(key ? [key.toString('hex')] : [])];
+  const read = run(...words, { input: frames.join('\n') + '\n' });
   assert.strictEqual(read.length, sent.length, `of ${sent.length} frames ${read.length} were read`);
   for (const [i, line] of read.entries()) {
     assert.strictEqual(line.name, sent[i].name);
     for (const field of classes.get(line.name).FIELDS) {
       if (!(field.source in line.fields)) continue;
-      assert.deepStrictEqual(line.fields[field.source], sent[i].fields[field.source], `${line.name}.${field.source}`);
+      assert.deepStrictEqual(
+        line.fields[field.source],
+        sent[i].fields[field.source],
+        `${line.name}.${field.source}`,
+      );
     }
   }
 }
@@ -108,7 +115,7 @@ async function main() {
   console.log(`${compared} fields are the same to node-mavlink, and back`);
 }
 
-main().catch((problem) => {
+main().catch(problem => {
   console.error(problem);
   process.exit(1);
 });
