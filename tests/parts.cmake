@@ -147,6 +147,13 @@ ergocast_test(NAME runtime_tests LABELS unit
     runtime/sealed_file_test.cc
   LIBS ergocast::runtime ergocast::event_log lcm::lcm)
 
+ergocast_test(NAME relay_tests LABELS unit
+  SOURCES
+    relay/flow_test.cc
+    relay/queue_test.cc
+  LIBS ergocast_relay ergocast::runtime ${XXHASH_LIBRARY})
+target_include_directories(relay_tests SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
+
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
     cli/amend_order_test.cc

@@ -121,6 +121,13 @@ inline const std::vector<Rule> kRules = {
      {"text", "modes", "plan", "team", "logger", "lcmtypes", "runtime/bus", "runtime/record",
       "runtime/process"},
      {kLog, kFiles, kSystem}},
+    // Sites beyond one network. Sites and hubs are values; the last three files have the sockets.
+    {"relay", {"core", "team", "lcmtypes", "runtime/bus"}, {kHash, kCrypto}},
+    {"relay/endpoint.h", {"core", "relay", "runtime/bus"}, {kSystem}},
+    {"relay/endpoint.cc", {"text", "relay", "runtime/bus"}, {kSystem}},
+    {"relay/local_group.h", {"core", "team", "relay", "runtime/bus"}, {kSystem}},
+    {"relay/local_group.cc", {"relay", "runtime/bus"}, {kSystem}},
+    {"relay/main.cc", {"relay", "runtime/bus", "runtime/process"}, {kLog, kSystem}},
     {"report", {"text", "core", "target", "target/maps", "team", "logger"}, {kFiles, kJson}},
     {"report/export",
      {"text", "core", "target", "target/geo", "team", "logger", "report"},

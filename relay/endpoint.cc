@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Converts between the system's addresses and ours.
+#include "relay/endpoint.h"
+
+#include <netdb.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "relay/packets.h"
+#include "text/read_number.h"
+
+namespace ergocast::relay {
+namespace {
+
+constexpr std::size_t kIpv4At = 12;
+
+Address from_system(const sockaddr_in6& system) {
+  Address address;
+  std::memcpy(address.ip.data(), &system.sin6_addr, address.ip.size());
+  address.port = ntohs(system.sin6_port);
+  address.interface = system.sin6_scope_id;
+  return address;
+}
+
+Address from_system(const sockaddr_in& system) {
+  Address address;
+  address.ip[10] = address.ip[11] = 0xff;
+  std::memcpy(&address.ip[kIpv4At], &system.sin_addr, sizeof system.sin_addr);
+  address.port = ntohs(system.sin_port);
+  return address;
+}
+
+/// The system's address of the kind that the socket has, and its length.
+struct SystemAddress {
+  sockaddr_storage storage{};
+  socklen_t length = 0;
+};
+
+SystemAddress to_system(const Address& address, bool ipv6) {
+  SystemAddress system;
+  if (ipv6) {
+    sockaddr_in6 to{};
+    to.sin6_family = AF_INET6;
+    to.sin6_port = htons(address.port);
+    to.sin6_scope_id = address.interface;
+    std::memcpy(&to.sin6_addr, address.ip.data(), address.ip.size());
+    system.length = sizeof to;
+    std::memcpy(&system.storage, &to, sizeof to);
+    return system;
+  }
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(address.port);
+  std::memcpy(&to.sin_addr, &address.ip[kIpv4At], sizeof to.sin_addr);
+  system.length = sizeof to;
+  std::memcpy(&system.storage, &to, sizeof to);
+  return system;
+}
+
+Address to_address(const sockaddr_storage& system) {
+  if (system.ss_family == AF_INET6) {
+    sockaddr_in6 from;
+    std::memcpy(&from, &system, sizeof from);
+    return from_system(from);
+  }
+  sockaddr_in from;
+  std::memcpy(&from, &system, sizeof from);
+  return from_system(from);
+}
+
+}  // namespace
+
+Result<HostAndPort> HostAndPort::parse(std::string_view text) {
+  const auto wrong = [&] {
+    return failure("'" + std::string(text) +
+                   "' is not HOST:PORT, such as hub.example.org:7700 or [2001:db8::1]:7700");
+  };
+  const std::size_t colon = text.rfind(':');
+  if (colon == text.npos) return wrong();
+  std::string_view host = text.substr(0, colon);
+  const auto port = read_number<int>(text.substr(colon + 1));
+  if (!port || *port < 1 || *port > 65535) return wrong();
+  if (host.starts_with('[') && host.ends_with(']')) {
+    host = host.substr(1, host.size() - 2);
+  } else if (host.find(':') != host.npos) {
+    return wrong();
+  }
+  return HostAndPort{std::string(host), static_cast<std::uint16_t>(*port)};
+}
+
+Result<std::vector<Address>> look_up(const HostAndPort& name) {
+  addrinfo hints{};
+  hints.ai_family = AF_UNSPEC;
+  hints.ai_socktype = SOCK_DGRAM;
+  hints.ai_flags = AI_NUMERICSERV | (name.host.empty() ? AI_PASSIVE : AI_ADDRCONFIG);
+  addrinfo* first = nullptr;
+  const int error = getaddrinfo(name.host.empty() ? "::" : name.host.c_str(),
+                                std::to_string(name.port).c_str(), &hints, &first);
+  if (error != 0) return failure(name.host + ": " + gai_strerror(error));
+  std::vector<Address> addresses;
+  for (const addrinfo* one = first; one != nullptr; one = one->ai_next) {
+    sockaddr_storage system{};
+    std::memcpy(&system, one->ai_addr, one->ai_addrlen);
+    addresses.push_back(to_address(system));
+  }
+  freeaddrinfo(first);
+  return addresses;
+}
+
+Result<Endpoint> Endpoint::open(const std::optional<Address>& at) {
+  const int no = 0, buffer_bytes = 4 << 20;
+  bool ipv6 = true;
+  Socket socket(AF_INET6, SOCK_DGRAM);
+  if (socket.fd() >= 0) setsockopt(socket.fd(), IPPROTO_IPV6, IPV6_V6ONLY, &no, sizeof no);
+  if (socket.fd() < 0) {
+    socket = Socket(AF_INET, SOCK_DGRAM);
+    ipv6 = false;
+  }
+  if (socket.fd() < 0) return failure(no_socket(errno));
+  setsockopt(socket.fd(), SOL_SOCKET, SO_RCVBUF, &buffer_bytes, sizeof buffer_bytes);
+  if (at) {
+    const SystemAddress system = to_system(*at, ipv6);
+    if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&system.storage), system.length) != 0) {
+      return failure(to_text(*at) + ": " + std::strerror(errno));
+    }
+  }
+  return Endpoint(std::move(socket), ipv6);
+}
+
+std::optional<Endpoint::Received> Endpoint::receive(std::vector<std::byte>& space) {
+  space.resize(kMaxGroupBytes);
+  sockaddr_storage system{};
+  socklen_t length = sizeof system;
+  const ssize_t size = recvfrom(fd(), space.data(), space.size(), MSG_DONTWAIT,
+                                reinterpret_cast<sockaddr*>(&system), &length);
+  if (size < 0) return std::nullopt;
+  return Received{std::span(space).first(static_cast<std::size_t>(size)), to_address(system)};
+}
+
+void Endpoint::send(const Packet& packet) {
+  const SystemAddress system = to_system(packet.to, ipv6_);
+  const ssize_t sent = sendto(fd(), packet.bytes.data(), packet.bytes.size(), MSG_DONTWAIT,
+                              reinterpret_cast<const sockaddr*>(&system.storage), system.length);
+  if (sent < 0) ++not_sent_;
+}
+
+// ---- names ----
+
+Resolver::Resolver() : shared_(std::make_shared<Shared>(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK))) {
+  std::thread([shared = shared_] { work(shared); }).detach();
+}
+
+Resolver::~Resolver() {
+  const std::lock_guard lock(shared_->mutex);
+  shared_->ends = true;
+  shared_->asked.notify_one();
+}
+
+void Resolver::ask(const HostAndPort& name) {
+  const std::lock_guard lock(shared_->mutex);
+  shared_->question = name;
+  shared_->asked.notify_one();
+}
+
+std::optional<Result<std::vector<Address>>> Resolver::take() {
+  std::uint64_t wakes = 0;
+  [[maybe_unused]] const ssize_t none = read(fd(), &wakes, sizeof wakes);
+  const std::lock_guard lock(shared_->mutex);
+  return std::exchange(shared_->answer, std::nullopt);
+}
+
+void Resolver::work(const std::shared_ptr<Shared>& shared) {
+  std::unique_lock lock(shared->mutex);
+  for (;;) {
+    shared->asked.wait(lock, [&] { return shared->question || shared->ends; });
+    if (shared->ends) return;
+    const HostAndPort name = *std::exchange(shared->question, std::nullopt);
+    lock.unlock();
+    auto found = look_up(name);
+    lock.lock();
+    shared->answer = std::move(found);
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t none = write(shared->wake.fd(), &one, sizeof one);
+  }
+}
+
+}  // namespace ergocast::relay
