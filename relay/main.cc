@@ -49,8 +49,8 @@ struct Options {
 class Process {
  public:
   /// @param group  null for a hub without a site of its own
-  Process(Endpoint endpoint, std::unique_ptr<LocalGroup> group)
-      : endpoint_(std::move(endpoint)), group_(std::move(group)) {}
+  Process(StopSignals& signals, Endpoint endpoint, std::unique_ptr<LocalGroup> group)
+      : signals_(signals), endpoint_(std::move(endpoint)), group_(std::move(group)) {}
 
   /// Runs until a signal arrives. A participant has hear(), receive(), advance(), next_wakeup() and
   /// counts().
@@ -58,17 +58,18 @@ class Process {
   void run(auto& participant, int more_fd, const std::function<void(Instant)>& each_turn);
 
  private:
-  void wait(Instant until, int more_fd, const StopSignals& signals) const;
+  void wait(Instant until, int more_fd) const;
   void send(Outbox& out);
   void read(auto& participant, Outbox& out);
 
+  StopSignals& signals_;
   Endpoint endpoint_;
   std::unique_ptr<LocalGroup> group_;
   std::vector<std::byte> space_;
 };
 
-void Process::wait(Instant until, int more_fd, const StopSignals& signals) const {
-  std::vector<pollfd> ready{{signals.fd(), POLLIN, 0}, {endpoint_.fd(), POLLIN, 0}};
+void Process::wait(Instant until, int more_fd) const {
+  std::vector<pollfd> ready{{signals_.fd(), POLLIN, 0}, {endpoint_.fd(), POLLIN, 0}};
   if (more_fd >= 0) ready.push_back({more_fd, POLLIN, 0});
   if (group_) {
     for (const int fd : group_->fds()) ready.push_back({fd, POLLIN, 0});
@@ -101,10 +102,9 @@ void Process::read(auto& participant, Outbox& out) {
 }
 
 void Process::run(auto& participant, int more_fd, const std::function<void(Instant)>& each_turn) {
-  StopSignals signals;
   Outbox out;
   Instant next_report = now() + kReportPeriod, next_look = now();
-  while (signals.take() == 0) {
+  while (signals_.take() == 0) {
     read(participant, out);
     each_turn(now());
     participant.advance(now(), out);
@@ -118,7 +118,11 @@ void Process::run(auto& participant, int more_fd, const std::function<void(Insta
       next_report = now() + kReportPeriod;
       spdlog::info("{}", to_text(participant.counts()));
     }
-    wait(std::min({participant.next_wakeup(), next_look, next_report}), more_fd, signals);
+    wait(std::min({participant.next_wakeup(), next_look, next_report}), more_fd);
+  }
+  if constexpr (requires { participant.leave(out); }) {
+    participant.leave(out);
+    send(out);
   }
   spdlog::info("{}", to_text(participant.counts()));
 }
@@ -169,10 +173,11 @@ int run_site(const Options& options, std::unique_ptr<LocalGroup> group) {
              .most_bytes_per_s = options.most_bytes_per_s(),
              .others = options.insecure},
             options.authenticator, random_identity());
+  StopSignals signals;  // before the resolver's thread
   Resolver resolver;
   JoinedLog log(options);
   bool asked = false;
-  Process process(*std::move(endpoint), std::move(group));
+  Process process(signals, *std::move(endpoint), std::move(group));
   process.run(site, resolver.fd(), [&](Instant at) {
     if (auto answer = resolver.take(); answer && asked) {
       asked = false;
@@ -201,7 +206,8 @@ int run_hub(const Options& options, std::unique_ptr<LocalGroup> group) {
   Hub hub(settings, options.authenticator);
   spdlog::info("sites may join at UDP {}", to_text(addresses->front()));
   std::size_t sites = 0;
-  Process process(*std::move(endpoint), std::move(group));
+  StopSignals signals;
+  Process process(signals, *std::move(endpoint), std::move(group));
   process.run(hub, -1, [&](Instant) {
     if (hub.sites() != sites) spdlog::info("{} sites have joined", hub.sites());
     sites = hub.sites();

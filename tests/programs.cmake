@@ -250,6 +250,7 @@ ergocast_test(NAME hosts_tests LABELS hosts RUNS_PROGRAMS
     hosts/lan_test.cc
     hosts/loss_test.cc
     hosts/partition_test.cc
+    hosts/relay_test.cc
     hosts/takeover_test.cc
     hosts/team_test.cc
     hosts/wrong_network_test.cc
