@@ -21,7 +21,7 @@ source=$(cd "$(dirname "$0")/../.." && pwd)
 
 the_image_runs_every_program_and_nothing_as_root() {
   local program size
-  for program in ergocast ergocast-agent ergocast-coordinator ergocast-logger ergocast-sim; do
+  for program in ergocast ergocast-agent ergocast-coordinator ergocast-logger ergocast-relay ergocast-sim; do
     expect docker run --rm ergocast $program --version
   done
   [ "$(docker run --rm --entrypoint id ergocast -u)" = 1000 ] || fail 'the image is root'

@@ -28,7 +28,8 @@ check_contents() {
 
 check_files() {
   local program name
-  for program in ergocast ergocast-agent ergocast-coordinator ergocast-driver-mavlink ergocast-logger ergocast-sim; do
+  for program in ergocast ergocast-agent ergocast-coordinator ergocast-driver-mavlink ergocast-logger ergocast-relay \
+    ergocast-sim; do
     expect_file "usr/bin/$program"
     expect_file "usr/share/man/man1/$program.1.gz"
   done

@@ -18,8 +18,8 @@ TEST_F(Relays, CarryADatagramUnchangedToAllOtherSites) {
   const Datagram sent = datagram_of(status(1), key(1));
   network.send(2, sent);
   EXPECT_TRUE(network.arrived(2).empty());
-  EXPECT_EQ(network.arrived(3), std::vector{sent});
-  EXPECT_EQ(network.arrived(4), std::vector{sent});
+  EXPECT_EQ(network.arrived(3), std::vector<Datagram>(1, sent));
+  EXPECT_EQ(network.arrived(4), std::vector<Datagram>(1, sent));
 }
 
 TEST_F(Relays, DoNotCarryWhatHasAnotherKey) {
@@ -74,9 +74,11 @@ TEST_F(Relays, AnEchoIsNotCarriedBackHoweverLateItComes) {
   ASSERT_EQ(network.arrived(-3).size(), 1U);
   network.pass(20s);
   late.hear(Bus::kSwarm, sent, network.now);
+  network.settle();
+  EXPECT_EQ(network.arrived(2).size(), 0U);
   late.hear(Bus::kSwarm, sent, network.now);
   network.settle();
-  EXPECT_LE(network.arrived(2).size(), 0U);
+  EXPECT_EQ(network.arrived(2).size(), 1U) << "a repeat by somebody else";
 }
 
 TEST_F(Relays, ACutOffSiteCarriesOnWithWhatIsNewOnceThePathIsBack) {
