@@ -59,7 +59,7 @@ bool is_answer(const Message& message) {
   return command != nullptr && command->asked_by != 0;
 }
 
-/// More steps replace fewer, whoever relays them. All other messages are ordered by their sequence.
+/// More steps replace fewer, from any relayer. All other messages are ordered by their sequence.
 std::int64_t newness_of(const Message& message) {
   const auto* contribution = std::get_if<Contribution>(&message);
   return contribution != nullptr ? contribution->steps : header_of(message).sequence;

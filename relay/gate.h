@@ -25,7 +25,7 @@ enum class Urgency {
 };
 inline constexpr std::size_t kUrgencies = 5;
 
-/// Of two messages with the same place only the newer one is needed. Parts have separate places.
+/// Only the newer one of two messages with the same place is needed. Parts have separate places.
 struct Place {
   RunId run = 0;
   Bus bus = Bus::kSwarm;

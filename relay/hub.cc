@@ -104,7 +104,7 @@ void Hub::on(const Join& join, const Address& from, Instant now, Outbox& out) {
     const auto rate = lower(settings_.most_bytes_per_s, join.most_bytes_per_s);
     members_.emplace(from, Member(join, rate, now));
   } else if (join.count > known->second.count) {
-    Member& member = known->second;  // whose site did not get our answers
+    Member& member = known->second;  // the site did not get our answers
     member.count = join.count;
     member.heard = now;
     member.ours = member.theirs = {};

@@ -37,7 +37,7 @@ class Hub {
 
   /// A datagram of the local group.
   void hear(Bus bus, std::span<const std::byte> datagram, Instant now);
-  /// A packet, whoever sent it.
+  /// A packet of any sender.
   void receive(std::span<const std::byte> packet, const Address& from, Instant now, Outbox& out);
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;

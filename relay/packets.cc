@@ -114,6 +114,10 @@ std::vector<std::byte> Seal::write(const Control& control) const {
   packet.push_back(static_cast<std::byte>(control.index()));
   packet.insert(packet.end(), fields.begin(),
                 fields.begin() + static_cast<std::ptrdiff_t>(writer.size()));
+  return close(std::move(packet));
+}
+
+std::vector<std::byte> Seal::close(std::vector<std::byte> packet) const {
   const CookieBytes tag = keyed_hash(packet, key_);
   packet.insert(packet.end(), tag.begin(), tag.end());
   return packet;

@@ -99,6 +99,8 @@ class Seal {
   explicit Seal(const MissionKey* key);
 
   std::vector<std::byte> write(const Control& control) const;
+  /// Appends the tag of a packet without one.
+  std::vector<std::byte> close(std::vector<std::byte> packet) const;
   /// Nothing if the bytes are anything else, or have another key. Never throws.
   std::optional<Control> read(std::span<const std::byte> packet) const noexcept;
 

@@ -38,7 +38,7 @@ class Site {
 
   /// A datagram of the local group.
   void hear(Bus bus, std::span<const std::byte> datagram, Instant now);
-  /// A packet, whoever sent it.
+  /// A packet of any sender.
   void receive(std::span<const std::byte> packet, const Address& from, Instant now, Outbox& out);
 
   /// The hub whose addresses are needed now. The answer is given to found().

@@ -12,6 +12,7 @@
 #include "cli/doctor/peer_ledger.h"
 #include "lcmtypes/channels.h"
 #include "plan/plan.h"
+#include "relay/packets.h"
 #include "scenario/scenario.h"
 #include "tests/fuzz/small_team.h"
 #include "tests/lcmtypes/sample_messages.h"
@@ -119,6 +120,32 @@ void probes(const Seeds& seeds) {
   seeds.add("probe", "six", heard);
 }
 
+/// Each kind of packet at the hub, at the site and in the group.
+void relays(const Seeds& seeds) {
+  const relay::Seal seal(nullptr);
+  const auto turn = [](char what, const std::string& packet) { return what + framed(packet); };
+  std::string all;
+  for (const relay::Control& control : std::vector<relay::Control>{
+           relay::Ask{5, 6}, relay::Cookie{6, {}}, relay::Join{5, 9, {}, 1000}, relay::Welcome{9},
+           relay::Ping{5, 10, {1, 2, 3}, 0.1}, relay::Pong{10, {1, 2, 3}}, relay::Unknown{10},
+           relay::Leave{5, 11}, relay::Question{}, relay::Report{5, "text"}}) {
+    std::string packet = text_of(seal.write(control));
+    packet.resize(packet.size() - sizeof(relay::CookieBytes));  // the target repairs the tag
+    for (const int what : {0x80, 0x81, 0x84, 0x88}) all += turn(static_cast<char>(what), packet);
+  }
+  seeds.add("relay", "controls", all);
+  std::string data;
+  for (const Message& message : test::every_message()) {
+    const std::string& channel = channel_of(message);
+    const std::string datagram =
+        "LC02" + std::string(4, '\1') + channel + '\0' + text_of(test::encoded(message));
+    std::vector<std::byte> packet;
+    relay::append_frame(packet, Bus::kSwarm, std::as_bytes(std::span(datagram)));
+    data += turn(4, text_of(packet)) + turn(1, text_of(packet)) + turn(2, datagram);
+  }
+  seeds.add("relay", "data", data);
+}
+
 void plans(const Seeds& seeds) {
   const std::string small =
       "domain { size_x_m: 2000 size_y_m: 1000 } target { uniform_weight: 1 } "
@@ -155,6 +182,7 @@ int main(int argc, char** argv) {
   ergocast::fuzz::datagrams(seeds);
   ergocast::fuzz::conversations(seeds);
   ergocast::fuzz::probes(seeds);
+  ergocast::fuzz::relays(seeds);
   ergocast::fuzz::plans(seeds);
   ergocast::fuzz::pictures(seeds);
 }

@@ -68,12 +68,13 @@ class RelaysOnHosts : public OnHosts {
   }
   /// Whether each agent reports more of every other one than it did.
   static bool all_learn(BusObserver& here, BusObserver& there) {
-    const auto held = [&](AgentId who, AgentId whose) {
-      return here.held(here.member(who), here.member(whose));
+    const auto held = [&](AgentId holder, AgentId author) {
+      return here.held(here.member(holder), here.member(author));
     };
     std::map<std::pair<AgentId, AgentId>, std::int64_t> before;
-    for (AgentId who = 0; who < 4; ++who) {
-      for (AgentId whose = 0; whose < 4; ++whose) before[{who, whose}] = held(who, whose);
+    for (AgentId holder = 0; holder < 4; ++holder) {
+      for (AgentId author = 0; author < 4; ++author)
+        before[{holder, author}] = held(holder, author);
     }
     return here.observes([&] {
       there.listen();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sites and hubs as values: who joins, what is carried, and what is not.
+// Sites and hubs as values: which sites join, what is carried, and what is not.
 #include <algorithm>
 
 #include "tests/relay/small_network.h"
