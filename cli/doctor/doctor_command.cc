@@ -13,6 +13,7 @@
 #include "cli/doctor/examination.h"
 #include "cli/doctor/peer_exchange.h"
 #include "cli/doctor/print.h"
+#include "relay/question.h"
 #include "runtime/process/program_options.h"
 
 namespace ergocast::cli {
@@ -26,6 +27,7 @@ struct DoctorOptions {
   LcmUrl url;
   MessageAuthenticator authenticator;
   std::optional<int> peer_seconds;
+  std::optional<relay::HostAndPort> relay;
   bool json = false;
 };
 
@@ -63,6 +65,15 @@ doctor::PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& authen
   return doctor::try_peers(url, authenticator, std::chrono::seconds(seconds));
 }
 
+Finding relay_finding(const relay::HostAndPort& hub, const MessageAuthenticator& authenticator) {
+  const auto report = relay::ask_hub(hub, authenticator);
+  const std::string name = hub.host + ":" + std::to_string(hub.port);
+  if (report) return {"relay", Level::kOk, name + ": " + *report, "", ""};
+  return {"relay", Level::kProblem, name + ": " + report.error(),
+          "Without its hub each site is alone. On the hub's host, which needs an open UDP port:",
+          "ergocast-relay --hub --listen :" + std::to_string(hub.port) + " --key-file FILE"};
+}
+
 int diagnose(const DoctorOptions& options) {
   const LcmUrl& url = options.url;
   doctor::Examination host =
@@ -76,6 +87,7 @@ int diagnose(const DoctorOptions& options) {
   } else if (options.peer_seconds) {
     host.findings.push_back(not_tried(host, *options.peer_seconds));
   }
+  if (options.relay) host.findings.push_back(relay_finding(*options.relay, options.authenticator));
   if (options.json) {
     std::fputs(doctor::json_of(url, host.findings, test.peers).c_str(), stdout);
   } else {
@@ -105,9 +117,20 @@ void add_doctor(CLI::App& app, Action& action) {
       ->default_str("10")
       ->check(CLI::Range(1, doctor::kMaxPeerSeconds))
       ->type_name("SECONDS");
+  command
+      ->add_option_function<std::string>(
+          "--relay",
+          [options](const std::string& text) {
+            auto hub = relay::HostAndPort::parse(text);
+            if (!hub) throw CLI::ValidationError("--relay", hub.error());
+            options->relay = *std::move(hub);
+          },
+          "Ask this hub of relays for its sites: round trips, loss both ways, dropped messages")
+      ->type_name("HOST:PORT");
   command->add_flag("--json", options->json, "Print JSON");
   command->footer(
-      "Changes nothing on this host, and sends nothing without --peer. With --peer it sends 20\n"
+      "Changes nothing on this host, and sends nothing without --peer or --relay. With --peer it "
+      "sends 20\n"
       "datagrams a second to the URL's first port, unless a team uses that port.\n"
       "Exit codes: 0 nothing worse than notes; 1 warnings or problems; 2 bad arguments;\n"
       "3 LCM cannot be used on this host.");

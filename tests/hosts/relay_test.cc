@@ -135,6 +135,9 @@ TEST_F(RelaysOnHosts, AMissionAtTwoSitesOutlivesItsHubAndAChangedAddress) {
   });
   ASSERT_TRUE(all_learn(here, there)) << field.printed();
 
+  at_site(1, [&] { ergocast({"doctor", "--relay", "10.0.0.1:7700"}); });
+  EXPECT_TRUE(answered("10.0.0.1:7700: 2 sites. ")) << output();
+
   coordinator.child.send(SIGINT);
   for (Program* program : {&coordinator, &world, &logger}) {
     EXPECT_EQ(wait_for(program->child), 0) << program->printed();

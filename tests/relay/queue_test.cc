@@ -83,11 +83,14 @@ TEST_F(Queue, BothCommandsThatAnswerANewWorldAreSent) {
   EXPECT_EQ(all().size(), 2U);
 }
 
-TEST_F(Queue, AnOrderComesFirst) {
+TEST_F(Queue, OrdersComeFirst) {
   for (int i = 0; i < 50; ++i) add(status(1, i));
   add(test::beacon());
-  add(test::stop());
-  EXPECT_TRUE(std::holds_alternative<Stop>(all().at(0)));
+  add(test::stop()), add(test::amend()), add(test::recall());
+  const auto sent = all();
+  EXPECT_TRUE(std::holds_alternative<Stop>(sent.at(0)));
+  EXPECT_TRUE(std::holds_alternative<Amend>(sent.at(1)));
+  EXPECT_TRUE(std::holds_alternative<Recall>(sent.at(2)));
 }
 
 TEST_F(Queue, NoKindStarvesWhereAnotherFillsTheLink) {
