@@ -149,7 +149,7 @@ class Writer {
 
   /// Finds what is free in the domain.
   std::optional<Problem> look() {
-    const auto walls = read_map_walls(map_, domain_, false, {clearance_m_, std::nullopt});
+    const auto walls = read_map_walls(map_, domain_, false, {clearance_m_, {}});
     if (!walls) return named(walls.error());
     room_.emplace(rings_of(*walls), domain_, 1.001 * clearance_m_);
     if (room_->parts() > 0) return {};

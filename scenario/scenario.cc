@@ -50,6 +50,7 @@ struct Scenario::State {
   Problems warnings;
 
   std::vector<std::filesystem::path> polygon_files, by_whole_path;
+  std::vector<MapRooms> map_rooms;
 
   State(proto::Scenario scenario, CompiledTarget target, int listed)
       : text(std::move(scenario)),
@@ -140,7 +141,8 @@ Result<Scenario, Problems> Scenario::compile(Written& written) {
     return failure(unreachable);
   omit_defaults(mission_of(scenario), scenario);
   auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
-  state->polygon_files = std::move(polygon_files);
+  state->polygon_files = std::move(polygon_files.files);
+  state->map_rooms = std::move(polygon_files.maps);
   state->by_whole_path = std::move(by_whole_path);
   if (auto problem = use_free_domain(state->target_density, state->mission)) {
     findings.add("basis.free_domain", "the free domain has no modes: " + *problem,
@@ -212,6 +214,7 @@ std::vector<std::filesystem::path> Scenario::map_files() const {
 const std::vector<std::filesystem::path>& Scenario::files_by_whole_path() const {
   return state_->by_whole_path;
 }
+const std::vector<MapRooms>& Scenario::map_rooms() const { return state_->map_rooms; }
 const DensityGrid& Scenario::target_density() const { return state_->target_density; }
 const Mission& Scenario::mission() const { return state_->mission; }
 

@@ -12,6 +12,7 @@
 
 #include "core/base/result.h"
 #include "core/mission/mission.h"
+#include "scenario/map_rooms.h"
 #include "scenario/parse/problem.h"
 #include "scenario/parse/source.h"
 #include "target/density_picture.h"
@@ -63,6 +64,9 @@ class Scenario {
   std::vector<std::filesystem::path> map_files() const;
   /// The files among these, and files of walls, that the scenario names by their whole path.
   const std::vector<std::filesystem::path>& files_by_whole_path() const;
+
+  /// What became of the occupancy maps among its walls. Only after load() and parse().
+  const std::vector<MapRooms>& map_rooms() const;
 
   /// The target density in multiples of the uniform density, for people: at most 256 cells along
   /// the longer side of the domain.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/geometry.h"
 #include "core/base/noise.h"
@@ -19,6 +20,7 @@ constexpr double kHeldUpShare = 0.2;
 /// The distance within which a wall is at hand, as a multiple of the longest step.
 constexpr double kAtHandSteps = 2;
 constexpr double kMemory_s = 30;
+constexpr std::ptrdiff_t kMostEdges = 64;
 
 }  // namespace
 
@@ -89,20 +91,36 @@ Eigen::Vector2d WallFollower::along_wall(const Eigen::Vector2d& x_m) {
   // A wall in the way makes one at hand count as farther by at_hand_m at most.
   const double nearest_m = std::sqrt(walls_.least_square_m2(x_m, 0));
   const double within_m = nearest_m < at_hand_m ? nearest_m + at_hand_m : nearest_m;
-  walls_.for_near({x_m, x_m}, within_m, near_, [&](const Segment& edge) {
-    const Eigen::Vector2d to_m = edge.nearest_m(x_m) - x_m;
+  for (const std::uint32_t number : nearest_edges(x_m, within_m)) {
+    const Eigen::Vector2d to_m = walls_.edges()[number].segment.nearest_m(x_m) - x_m;
     const double apart_m = std::sqrt(to_m.squaredNorm());
-    if (!(apart_m > 0) || apart_m >= best_m) return;
+    if (!(apart_m > 0) || apart_m >= best_m) continue;
     const Eigen::Vector2d n = to_m / apart_m, along = side_ * Eigen::Vector2d(n.y(), -n.x());
     // A wall in the way makes this one count as farther.
     const double far_m =
         apart_m + (apart_m < at_hand_m ? in_the_way(x_m, along, at_hand_m) * at_hand_m : 0);
-    if (far_m >= best_m) return;
+    if (far_m >= best_m) continue;
     best_m = far_m;
     const double off = std::clamp((apart_m - kept_m_) / (kAtHandSteps * reach_m_), 0.0, 1.0);
     best = (along + off * n) / std::sqrt(1 + off * off);
-  });
+  }
   return best;
+}
+
+/// The edges within a distance, in order, and at most the nearest kMostEdges: each is held against
+/// all others, and a plan may have thousands at hand.
+std::span<const std::uint32_t> WallFollower::nearest_edges(const Eigen::Vector2d& x_m,
+                                                           double within_m) {
+  walls_.for_near({x_m, x_m}, within_m, near_, [](const Segment&) {});
+  if (std::ssize(near_) <= kMostEdges) return near_;
+  const auto rank = [&](std::uint32_t number) {
+    const Segment& edge = walls_.edges()[number].segment;
+    return std::pair((edge.nearest_m(x_m) - x_m).squaredNorm(), number);
+  };
+  const auto end = near_.begin() + kMostEdges;
+  std::ranges::nth_element(near_, end, {}, rank);
+  std::sort(near_.begin(), end);
+  return {near_.begin(), end};
 }
 
 /// How directly a way leads into any wall at hand: 0 to 1.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A way out of dead ends: an agent that walls hold up keeps a hand on the wall for a while.
 //
-// The law pulls along straight lines, which walls can end. Every kWindow_s an agent looks back. It
+// The law pulls along straight lines, which walls can end. Modes of the free domain lead around
+// walls, but not around those that are smaller than a cell of their grid, such as two posts with a
+// gap that bodies do not pass. Every kWindow_s an agent looks back. It
 // is in a dead end if it has moved less than a fifth as far as it wanted, and a wall was in its way
 // for half of the time. Then it goes along the wall for 4 s, on a random side; the next time for 8
 // s, and so on up to 120 s. After 30 s and twice as long a time without a dead end it begins at 4 s
@@ -13,17 +15,15 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/mission/mission.h"
 
 namespace ergocast {
 
-/// Whether agents of a mission do so: there are walls, and the modes of the basis do not lead
-/// around them.
-inline bool follows_walls(const Mission& mission) {
-  return !mission.walls.empty() && !mission.basis.free_domain;
-}
+/// Whether agents of a mission do so: there are walls.
+inline bool follows_walls(const Mission& mission) { return !mission.walls.empty(); }
 
 class WallFollower {
  public:
@@ -45,6 +45,7 @@ class WallFollower {
   void begin_window(Tick tick, const Eigen::Vector3d& x_m);
   double seconds_since(Tick tick, Tick before) const;
   Eigen::Vector2d along_wall(const Eigen::Vector2d& x_m);
+  std::span<const std::uint32_t> nearest_edges(const Eigen::Vector2d& x_m, double within_m);
   double in_the_way(const Eigen::Vector2d& x_m, const Eigen::Vector2d& way, double at_hand_m) const;
   bool at_edge(const Eigen::Vector3d& x_m, const Eigen::Vector2d& way) const;
 

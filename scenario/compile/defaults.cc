@@ -139,6 +139,19 @@ void fill_foresight(proto::Scenario& scenario) {
   scenario.mutable_time()->set_broadcast_period_ticks(dead_reckons ? kReckonedPeriodTicks : 1);
 }
 
+/// The law has the speed of the fastest kind if each has its own. Where one of them is outside its
+/// limits, validate() reports that one alone.
+void fill_speed(const proto::Agents& agents, proto::Law& law) {
+  if (law.has_u_max_mps() || agents.kind_size() == 0) return;
+  double fastest_mps = 0;
+  for (const proto::Kind& kind : agents.kind()) {
+    if (!kind.has_u_max_mps()) return;
+    fastest_mps = std::max(fastest_mps, kind.u_max_mps());
+  }
+  constexpr Limits kSpeed_mps = limits::above(0, 1e6);
+  law.set_u_max_mps(kSpeed_mps.contain(fastest_mps) ? fastest_mps : 1);
+}
+
 /// Defaults that follow from speed and domain, so that a law scales with them. A value outside its
 /// limits gives no default: validate() reports it.
 void fill_law(const Box& domain, proto::Law& law) {
@@ -168,6 +181,28 @@ void fill_kinds(const proto::Law& law, proto::Agents& agents) {
     const double scale = std::sqrt(kind.u_max_mps() / law.u_max_mps());
     if (!kind.has_noise_intensity()) kind.set_noise_intensity(scale * law.noise_intensity());
     if (!kind.has_noise_ceiling()) kind.set_noise_ceiling(scale * law.noise_ceiling());
+  }
+}
+
+/// What kinds leave open of their sensors. A team without kinds becomes one. A value outside its
+/// limits is no default: validate() reports it.
+void fill_sensors(proto::Agents& agents) {
+  const auto valid = [&](const char* field, bool given, double value) {
+    return given && rule_of(find_field(agents, field).field)->range.contains(value);
+  };
+  const bool sigma =
+      valid("footprint_sigma_m", agents.has_footprint_sigma_m(), agents.footprint_sigma_m());
+  const bool quality = valid("quality", agents.has_quality(), agents.quality());
+  const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();
+  if ((sigma || quality) && agents.kind_size() == 0 && size > 0 && size <= kMaxAgents) {
+    proto::Kind& all = *agents.add_kind();
+    all.set_name("all");
+    all.set_count(static_cast<int>(size));
+  }
+  for (proto::Kind& kind : *agents.mutable_kind()) {
+    if (sigma && !kind.has_footprint_sigma_m())
+      kind.set_footprint_sigma_m(agents.footprint_sigma_m());
+    if (quality && !kind.has_quality()) kind.set_quality(agents.quality());
   }
 }
 
@@ -303,6 +338,8 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   if (scenario.has_separation() && !scenario.separation().has_guard())
     scenario.mutable_separation()->set_guard(scenario.separation().lease_s() == 0);
   fill_team(*scenario.mutable_agents());
+  fill_sensors(*scenario.mutable_agents());
+  fill_speed(scenario.agents(), *scenario.mutable_law());
   fill_constants(scenario, planar);
   fill_separation(scenario);
   make_absolute(file, scenario);

@@ -73,12 +73,17 @@ class MapWallReader {
     if (!unknown_free_) free_unknown_specks(cells, kLeastSpeck);
     if (count_free(cells) == cells.size())
       return refuse("has no wall in or near the domain", "remove it, or move the domain");
+    MapRooms rooms{file_, free_m2(cells), bodies_.clearance_m, {}, 0, {}};
     close_pockets(cells, (free + kFreePerPocket - 1) / kFreePerPocket);
     auto walls = walls_of(cells);
     for (int round = 0; walls && round < kMostRounds; ++round) {
-      if (!close_unreached(*walls, round > 0, cells)) break;
+      if (!close_unreached(*walls, round > 0, cells, rooms)) break;
       walls = walls_of(cells);
     }
+    if (!walls) return walls;
+    rooms.closed = closed_in(cells);
+    walls->rooms = std::move(rooms);
+    note_starts(cells, *walls);
     return walls;
   }
 
@@ -160,7 +165,7 @@ class MapWallReader {
       return refuse("has walls with " + std::to_string(count) + " corners, above the limit " +
                         std::to_string(kMaxWallVertices),
                     "choose a smaller domain, or paint over specks and furniture in the picture");
-    MapWalls placed{{}, map_.about().image};
+    MapWalls placed{{}, map_.about().image, {}, {}};
     for (Polygon& polygon : *walls) {
       place(polygon.outline);
       for (Ring& hole : polygon.holes) place(hole);
@@ -172,23 +177,81 @@ class MapWallReader {
     return placed;
   }
 
-  /// Makes free cells unknown that belong to another part of the domain than that of the first
-  /// start, and niches that no body reaches into. Returns whether there were any.
+  /// The area of the free cells whose middle is in the domain.
+  double free_m2(const CellGrid& cells) const {
+    std::size_t count = 0;
+    for (int row = 0; row < cells.rows(); ++row) {
+      for (int column = 0; column < cells.columns(); ++column) {
+        if (cells.at(column, row) != kFreeCell) continue;
+        const Eigen::Vector2d middle(column + 0.5 + window_.low_x, row + 0.5 + window_.low_y);
+        count += domain_.contains(on_ground(in_domain_m(middle))) ? 1 : 0;
+      }
+    }
+    return static_cast<double>(count) * along_m_.squaredNorm();
+  }
+
+  /// Polygons around the closed cells, for people.
+  std::vector<Polygon> closed_in(const CellGrid& cells) const {
+    CellGrid closed(cells.columns(), cells.rows());
+    for (std::size_t i = 0; i < cells.size(); ++i) closed[i] = cells[i] == kClosedCell ? 1 : 0;
+    auto polygons = polygons_around(closed, Straightening::kBothWays);
+    if (!polygons) return {};
+    for (Polygon& polygon : *polygons) {
+      place(polygon.outline);
+      for (Ring& hole : polygon.holes) place(hole);
+    }
+    return *std::move(polygons);
+  }
+
+  void note_starts(const CellGrid& cells, MapWalls& walls) const {
+    const IndexedRings rings(rings_of(walls));
+    for (const Eigen::Vector2d& start_m : bodies_.starts_m) {
+      const bool solid = domain_.contains(on_ground(start_m)) && rings.solid_at(start_m);
+      walls.starts.push_back(solid ? solid_place(cells, start_m) : SolidPlace::kNone);
+    }
+  }
+
+  SolidPlace solid_place(const CellGrid& cells, const Eigen::Vector2d& x_m) const {
+    const Eigen::Array2d at = in_map(x_m).array() - Eigen::Array2d(window_.low_x, window_.low_y);
+    if ((at < 0).any() || at.x() >= cells.columns() || at.y() >= cells.rows())
+      return SolidPlace::kUnknown;
+    switch (cells.at(static_cast<int>(at.x()), static_cast<int>(at.y()))) {
+      case kUnknownCell:
+        return SolidPlace::kUnknown;
+      case kClosedCell:
+        return SolidPlace::kClosed;
+      default:
+        return SolidPlace::kWall;
+    }
+  }
+
+  /// Closes free cells that belong to another part of the domain than that of the first start, and
+  /// niches that no body reaches into. Returns whether there were any.
   /// @param again  whether niches have been closed
-  bool close_unreached(const MapWalls& walls, bool again, CellGrid& cells) const {
+  /// @param rooms  takes in the parts, the first time
+  bool close_unreached(const MapWalls& walls, bool again, CellGrid& cells, MapRooms& rooms) const {
     const double kept_m = std::max(kRoundedUp * bodies_.clearance_m,
                                    kLeastKept * domain_.size_m.head<2>().maxCoeff());
     const FreeRegion region(rings_of(walls), domain_, kept_m);
     if (region.parts() == 0 || (again && region.parts() == 1)) return false;
-    const auto at_start = bodies_.start_m ? region.part_at(*bodies_.start_m) : std::nullopt;
+    const int used =
+        bodies_.starts_m.empty() ? 0 : region.part_at(bodies_.starts_m.front()).value_or(0);
+    if (!again) note_rooms(region, used, rooms);
     const std::vector<int> part = parts_of(cells, region, kept_m);
     bool any = false;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (cells[i] != kFreeCell || part[i] == at_start.value_or(0)) continue;
-      cells[i] = kUnknownCell;
+      if (cells[i] != kFreeCell || part[i] == used) continue;
+      cells[i] = kClosedCell;
       any = true;
     }
     return any;
+  }
+
+  void note_rooms(const FreeRegion& region, int used, MapRooms& rooms) const {
+    rooms.used = used;
+    const double all_m2 = region.free_share() * domain_.content();
+    for (int part = 0; part < region.parts(); ++part)
+      rooms.rooms.push_back({region.middle_m(part), region.share_of(part) * all_m2});
   }
 
   /// The part of the region that is nearest to each free cell, by steps over free cells; none for

@@ -2,25 +2,36 @@
 // The walls that an occupancy map has in a domain.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "core/base/geometry.h"
 #include "scenario/compile/drawn_polygons.h"
+#include "scenario/map_rooms.h"
 #include "target/maps/occupancy_map.h"
 
 namespace ergocast {
 
+/// What a map shows at a place that is solid in the end.
+enum class SolidPlace : std::uint8_t {
+  kNone,     ///< the place is free
+  kWall,     ///< an occupied cell, or an edge of one that was straightened
+  kUnknown,  ///< unknown space, also outside the map
+  kClosed,   ///< free space that bodies cannot reach from the first start, or that is too small
+};
+
 struct MapWalls {
   std::vector<PlacedPolygon> polygons;
   std::filesystem::path image;
+  MapRooms rooms;
+  std::vector<SolidPlace> starts;  ///< of each planned start
 };
 
 /// What map_walls need to know of the bodies.
 struct MapBodies {
-  double clearance_m = 0;                  ///< that they keep from walls
-  std::optional<Eigen::Vector2d> start_m;  ///< of the first of them, if it is planned
+  double clearance_m = 0;                 ///< that they keep from walls
+  std::vector<Eigen::Vector2d> starts_m;  ///< those that are planned
 };
 
 /// The solid space of a map in and near a domain, as polygons that do not touch. Occupied cells are

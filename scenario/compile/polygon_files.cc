@@ -63,13 +63,13 @@ class PolygonFileReader {
     if (scenario.has_origin() && is_place) plane_.emplace(place);
   }
 
-  /// Returns the pictures of occupancy maps.
-  std::vector<std::filesystem::path> run() {
+  /// Returns the occupancy maps and their pictures.
+  PolygonFiles run() {
     for (int i = 0, listed = target_.regions_size(); i < listed; ++i) region(i);
     polygons(*target_.mutable_keep_outs(), "target.keep_outs");
     if (scenario_.world().walls_size() > 0)
       polygons(*scenario_.mutable_world()->mutable_walls(), "world.walls");
-    return std::move(pictures_);
+    return std::move(found_);
   }
 
  private:
@@ -159,17 +159,34 @@ class PolygonFileReader {
       checks_.problem(field, walls.error().what, walls.error().remedy);
       return {};
     }
-    pictures_.push_back(std::move(walls->image));
+    found_.files.push_back(std::move(walls->image));
     for (const PlacedPolygon& one : walls->polygons)
       if (!sound(one, field, domain)) return {};
+    refuse_starts(walls->starts, path);
+    found_.maps.push_back(std::move(walls->rooms));
     return std::move(walls->polygons);
   }
 
+  /// Names what the map shows at starts that are solid. Those in occupied cells are in a wall like
+  /// any other.
+  void refuse_starts(const std::vector<SolidPlace>& starts, const std::string& path) {
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const std::string start = indexed("agents.starts", static_cast<int>(i));
+      if (starts[i] == SolidPlace::kUnknown)
+        checks_.problem(start, "is in unknown space of " + file_ + ", which is solid",
+                        "move it, or write unknown_free: true in " + path);
+      if (starts[i] == SolidPlace::kClosed)
+        checks_.problem(start,
+                        "is in free space of " + file_ +
+                            " that bodies cannot reach from the first start, or that is too small",
+                        "move it, or write a smaller world.wall_clearance_m");
+    }
+  }
+
   MapBodies bodies() const {
-    MapBodies bodies{std::max(0.0, scenario_.world().wall_clearance_m()), std::nullopt};
-    if (scenario_.agents().starts_size() > 0)
-      bodies.start_m.emplace(scenario_.agents().starts(0).x_m(),
-                             scenario_.agents().starts(0).y_m());
+    MapBodies bodies{std::max(0.0, scenario_.world().wall_clearance_m()), {}};
+    for (const proto::Start& start : scenario_.agents().starts())
+      bodies.starts_m.emplace_back(start.x_m(), start.y_m());
     return bodies;
   }
 
@@ -290,7 +307,7 @@ class PolygonFileReader {
   Findings& findings_;
   std::optional<LocalPlane> plane_;  // nothing while the origin is invalid
   std::string file_;                 // that is being read
-  std::vector<std::filesystem::path> pictures_;
+  PolygonFiles found_;
 };
 
 }  // namespace
@@ -304,8 +321,7 @@ bool is_polygon_file(const std::filesystem::path& file) {
   return is_geodata(file) || file.extension() == ".svg";
 }
 
-std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario, Checks& checks,
-                                                      Findings& findings) {
+PolygonFiles read_polygon_files(proto::Scenario& scenario, Checks& checks, Findings& findings) {
   std::vector<std::filesystem::path> files;
   const auto add = [&files](const proto::Polygon& polygon) {
     if (!polygon.has_file()) return;
@@ -319,9 +335,9 @@ std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario,
   for (const proto::Region& region : scenario.target().regions()) add(region.polygon());
   for (const proto::Polygon& keep_out : scenario.target().keep_outs()) add(keep_out);
   for (const proto::Polygon& wall : scenario.world().walls()) add(wall);
-  const auto pictures = PolygonFileReader(scenario, checks, findings).run();
-  files.insert(files.end(), pictures.begin(), pictures.end());
-  return files;
+  PolygonFiles found = PolygonFileReader(scenario, checks, findings).run();
+  found.files.insert(found.files.begin(), files.begin(), files.end());
+  return found;
 }
 
 }  // namespace ergocast

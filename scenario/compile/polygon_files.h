@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "scenario/map_rooms.h"
 #include "scenario/rules/checks.h"
 #include "scenario/scenario.pb.h"
 
@@ -15,13 +16,16 @@ bool is_geodata(const std::filesystem::path& file);
 /// Whether it is geodata or a drawing.
 bool is_polygon_file(const std::filesystem::path& file);
 
+struct PolygonFiles {
+  std::vector<std::filesystem::path> files;  ///< all, also the pictures of occupancy maps
+  std::vector<MapRooms> maps;                ///< of occupancy maps
+};
+
 /// Reads the file of each polygon that has one. The first polygon in it takes the place of the
 /// name, the others follow at the end of the list; those that lie apart from the domain are left
 /// out. The polygons of a region share its weight by their areas. Reports problems of a file with
-/// its member; the name of such a file stays. Returns the names of all files,
-/// also of the pictures of occupancy maps.
+/// its member; the name of such a file stays.
 /// @pre the defaults are filled in
-std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario, Checks& checks,
-                                                      Findings& findings);
+PolygonFiles read_polygon_files(proto::Scenario& scenario, Checks& checks, Findings& findings);
 
 }  // namespace ergocast

@@ -76,7 +76,7 @@ constexpr Row kRows[] = {
     {"Basis", "modes_y", kMissions, kLeft},
     {"Basis", "sobolev_exponent", kMissions, kLeft},
 
-    {"Law", "u_max_mps", kMissions, kRefused},
+    {"Law", "u_max_mps", kMissions, kLeft},
     {"Law", "epsilon", kMissions, kLeft},
     {"Law", "noise_intensity", kMissions, kLeft},
     {"Law", "contraction_gain_per_s", kMissions, kLeft},
@@ -94,6 +94,8 @@ constexpr Row kRows[] = {
 
     {"Agents", "random_count", between(0, kMaxAgents), kDefaulted, 0},
     {"Agents", "quorum", kMissions, kLeft},
+    {"Agents", "footprint_sigma_m", between(0, 1e7), kLeft},
+    {"Agents", "quality", above(0, 1e6), kLeft},
     {"Kind", "count", kMissions, kRefused},
     {"Kind", "u_max_mps", kMissions, kLeft},
     {"Kind", "noise_intensity", kMissions, kLeft},

@@ -180,6 +180,9 @@ class Validator {
 
   void law() {
     const proto::Law& law = scenario_.law();
+    if (!law.has_u_max_mps())
+      missing("law.u_max_mps", "is missing, and agents need a speed",
+              "add it, above 0, or write u_max_mps in every kind");
     contraction_point("law.contraction_x_m", law.has_contraction_x_m());
     contraction_point("law.contraction_y_m", law.has_contraction_y_m());
     if (is_box()) contraction_point("law.contraction_z_m", law.has_contraction_z_m());

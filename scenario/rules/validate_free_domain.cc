@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/ids.h"
+#include "scenario/rules/validate_kinds.h"
 
 namespace ergocast {
 
@@ -26,9 +27,9 @@ void validate_free_domain(const proto::Scenario& scenario, Checks& checks) {
   for (int i = 0; i < scenario.agents().kind_size(); ++i) {
     const proto::Kind& kind = scenario.agents().kind(i);
     const std::string path = indexed("agents.kind", i);
-    if (kind.footprint_sigma_m() > 0) {
-      checks.problem(path + ".footprint_sigma_m",
-                     "is a blur of cosines, and basis.free_domain uses none",
+    const std::string footprint = footprint_path(scenario.agents(), i);
+    if (kind.footprint_sigma_m() > 0 && checks.sound(footprint)) {
+      checks.problem(footprint, "is a blur of cosines, and basis.free_domain uses none",
                      "write footprint_sigma_m: 0, " + remedy);
     }
     if (kind.has_band()) {

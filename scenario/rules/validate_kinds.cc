@@ -124,7 +124,7 @@ class KindRules {
   }
 
   void footprint(int i) {
-    const std::string path = path_of(i) + ".footprint_sigma_m";
+    const std::string path = footprint_path(scenario_.agents(), i);
     if (!sound(path) || !sound("domain")) return;
     const double longest_m = domain_of(scenario_.domain()).size_m.maxCoeff();
     const double sigma_m = kinds_[i].footprint_sigma_m();
@@ -158,6 +158,12 @@ class KindRules {
 };
 
 }  // namespace
+
+std::string footprint_path(const proto::Agents& agents, int kind) {
+  const bool inherited = agents.has_footprint_sigma_m() &&
+                         agents.kind(kind).footprint_sigma_m() == agents.footprint_sigma_m();
+  return (inherited ? "agents" : indexed("agents.kind", kind)) + ".footprint_sigma_m";
+}
 
 void validate_kinds(const proto::Scenario& scenario, Checks& checks) {
   if (scenario.agents().kind_size() > 0) KindRules(scenario, checks).run();

@@ -92,7 +92,7 @@ void free_unknown_specks(CellGrid& cells, std::size_t least) {
 }
 
 void close_pockets(CellGrid& cells, std::size_t least) {
-  Flood(cells, true).replace(kUnknownCell, [&](const Patch& patch) { return patch.size < least; });
+  Flood(cells, true).replace(kClosedCell, [&](const Patch& patch) { return patch.size < least; });
 }
 
 }  // namespace ergocast

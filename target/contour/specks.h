@@ -8,8 +8,8 @@
 
 namespace ergocast {
 
-/// What a cell of a map is.
-enum : std::uint8_t { kFreeCell = 0, kOccupiedCell = 1, kUnknownCell = 2 };
+/// What a cell of a map is. A closed one was free, but no body can be there.
+enum : std::uint8_t { kFreeCell = 0, kOccupiedCell = 1, kUnknownCell = 2, kClosedCell = 3 };
 
 /// The number of free cells.
 std::size_t count_free(const CellGrid& cells);
@@ -18,7 +18,7 @@ std::size_t count_free(const CellGrid& cells);
 /// it, also at its corners, and the grid's edge nowhere.
 void free_unknown_specks(CellGrid& cells, std::size_t least);
 
-/// Makes patches of fewer than `least` free cells unknown. Cells of a patch have sides in common.
+/// Closes patches of fewer than `least` free cells. Cells of a patch have sides in common.
 void close_pockets(CellGrid& cells, std::size_t least);
 
 }  // namespace ergocast

@@ -7,7 +7,10 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
+
+#include "core/motion/wall_following.h"
 
 namespace ergocast::bench {
 namespace {
@@ -93,6 +96,62 @@ void NobodyNear(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(filter.safe(self, {30, 20, 0}, others));
 }
 BENCHMARK(NobodyNear);
+
+/// A field of square pillars with so many vertices in all, and a body that goes between them along
+/// a line from place to place.
+void AmongWalls(benchmark::State& state) {
+  const auto side = static_cast<int>(std::lround(std::sqrt(state.range(0) / 4.0)));
+  constexpr double kSpacing_m = 4, kPillar_m = 1;
+  Mission mission;
+  mission.domain.size_m = {kSpacing_m * side, kSpacing_m * side, 0};
+  mission.speed_limit_mps = 5;
+  mission.wall_clearance_m = 0.5;
+  Rings pillars;
+  for (int i = 0; i < side * side; ++i) {
+    const double x_m = kSpacing_m * (i % side) + 1, y_m = kSpacing_m * (i / side) + 1;
+    pillars.push_back({{x_m, y_m},
+                       {x_m + kPillar_m, y_m},
+                       {x_m + kPillar_m, y_m + kPillar_m},
+                       {x_m, y_m + kPillar_m}});
+  }
+  mission.walls = IndexedRings(std::move(pillars));
+  SeparationFilter filter(mission, 0);
+  Mover self{0, 0, {0, 0, 0}, 5};
+  for (auto _ : state) {
+    const auto angle = static_cast<double>(++self.tick);
+    const double at = 0.618 * angle;
+    self.position_m.x() = kSpacing_m * side * (at - std::floor(at));
+    self.position_m.y() = kSpacing_m * (static_cast<int>(self.tick) % side) + 0.45;
+    benchmark::DoNotOptimize(filter.safe(self, {5 * std::cos(angle), 5 * std::sin(angle), 0}, {}));
+  }
+}
+BENCHMARK(AmongWalls)->ArgName("vertices")->Arg(1024)->Arg(4096)->Arg(16384);
+
+/// The worst plan for an agent that follows walls: a round room with so many corners, all at hand.
+void FollowRoundWall(benchmark::State& state) {
+  const auto corners = static_cast<int>(state.range(0)) - 4;
+  Mission mission;
+  mission.domain.size_m = {100, 100, 0};
+  mission.speed_limit_mps = 10;
+  mission.wall_clearance_m = 10;
+  Ring room;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * M_PI * i / corners;
+    room.emplace_back(50 + 11 * std::cos(angle), 50 + 11 * std::sin(angle));
+  }
+  mission.walls = IndexedRings({{{30, 30}, {70, 30}, {70, 70}, {30, 70}}, std::move(room)});
+  SeparationFilter filter(mission, 0);
+  WallFollower follower(mission, 0);
+  Tick tick = 0;
+  const Eigen::Vector3d at_m(50.1, 50, 0);
+  for (auto _ : state) {
+    const auto aim_mps = follower.aim(++tick, at_m, {10, 0, 0});
+    const SafeVelocity safe = filter.safe({0, tick, at_m, 10}, aim_mps, {});
+    follower.note(true);
+    benchmark::DoNotOptimize(safe);
+  }
+}
+BENCHMARK(FollowRoundWall)->ArgName("vertices")->Arg(1024)->Arg(4096)->Arg(16384);
 
 }  // namespace
 }  // namespace ergocast::bench

@@ -87,7 +87,7 @@ time {
   dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 high_mode_period_factor: 4 contribution_encoding: FIXED16 pace: REALTIME
 }
 agents {
-  starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1
+  starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1 footprint_sigma_m: 2 quality: 3
   kind {
     name: "all" count: 2 u_max_mps: 5 noise_intensity: 0.1 noise_ceiling: 2 footprint_sigma_m: 1 quality: 1
     band { from: 0 to: 9 } vehicle { kind: ACCELERATION max_acceleration_mps2: 900 }

@@ -95,6 +95,12 @@ void write_rooms(const fs::path& folder) {
   picture("hall", "P2 20 10 255 " + side + repeated(8, hall) + side);
   const std::string halves = "0 " + repeated(9, "254 ") + "0 " + repeated(8, "254 ") + "0 ";
   picture("rooms", "P2 20 10 255 " + side + repeated(6, halves) + repeated(2, hall) + side);
+  const std::string dark = repeated(5, "205 ") + repeated(15, "254 ");
+  picture("dark", "P2 20 10 255 " + repeated(10, dark));
+  // The start is in a closed room of one cell, which is too small.
+  picture("nook", "P2 20 10 255 " + repeated(5, repeated(6, "0 ") + repeated(14, "254 ")) +
+                      "0 0 254 0 0 0 " + repeated(14, "254 ") +
+                      repeated(4, repeated(6, "0 ") + repeated(14, "254 ")));
   picture("solid", "P2 2 1 255 0 0");
   picture("white", "P2 20 10 255 " + repeated(200, "254 "));
   picture("cut", "P2 20 10 255 254");

@@ -264,6 +264,11 @@ std::vector<Mistake> mistakes_of_room_maps() {
       {kUniform, kUniform + " keep_outs { " + map("room") + "}",
        "target.keep_outs[0].file: names an occupancy map"},
       {kUniform, "maps { " + map("turned") + "weight: 1 }", "turned.yaml lies turned by its yaw"},
+      {kLaw, "world { speed_limit_mps: 1000 walls { " + map("dark") + "} } law {",
+       "agents.starts[0]: is in unknown space of ", false},
+      {kLaw,
+       "world { speed_limit_mps: 1000 wall_clearance_m: 3 walls { " + map("nook") + "} } law {",
+       "agents.starts[0]: is in free space of ", false},
   };
   for (const char* name :
        {"wrong",    "percent", "fancy", "other", "again",  "grey",    "bare",  "lacks", "indented",

@@ -65,6 +65,15 @@ TEST(WallFollower, FindsItsWayOutOfATrap) {
   }
 }
 
+// Posts that are smaller than a cell of the modes' grid hold agents up with either basis.
+TEST(WallFollower, IsUsedWithModesOfTheFreeDomainToo) {
+  Mission mission = with_walls(kTrap);
+  EXPECT_TRUE(follows_walls(mission));
+  mission.basis.free_domain = true;
+  EXPECT_TRUE(follows_walls(mission));
+  EXPECT_FALSE(follows_walls(with_walls({})));
+}
+
 TEST(WallFollower, FindsADoor) {
   const Mission mission = with_walls(
       {{{98, -5}, {102, -5}, {102, 90}, {98, 90}}, {{98, 110}, {102, 110}, {102, 205}, {98, 205}}});

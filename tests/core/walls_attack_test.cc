@@ -10,6 +10,7 @@
 #include "core/motion/push.h"
 #include "core/motion/separation.h"
 #include "core/motion/starts.h"
+#include "core/motion/wall_following.h"
 #include "core/motion/walls.h"
 #include "tests/core/vehicles.h"
 
@@ -211,6 +212,71 @@ TEST(WallFilter, LeavesWhatIsAllowedAsItIs) {
   EXPECT_LE(slides.velocity_mps.y(), 1e-9);
   EXPECT_TRUE(slides.wall);
   EXPECT_EQ(filter.safe({0, 0, {110, 60 - kept_m, 0}, 20}, along_mps, {}).velocity_mps, along_mps);
+}
+
+/// A spiral wall with so many corners, of which the turns are so far apart.
+Ring spiral(int corners, double pitch_m) {
+  Ring ring;
+  const int half = corners / 2;
+  const auto point = [&](int i, double off_m) {
+    const double turns = 0.5 + (kSide_m / 2 - 20) / pitch_m * i / half;
+    const double angle = 2 * M_PI * turns, radius_m = pitch_m * turns + off_m;
+    return Eigen::Vector2d(kSide_m / 2 + radius_m * std::cos(angle),
+                           kSide_m / 2 + radius_m * std::sin(angle));
+  };
+  for (int i = 0; i < half; ++i) ring.push_back(point(i, 0));
+  for (int i = half - 1; i >= 0; --i) ring.push_back(point(i, 0.2));
+  return ring;
+}
+
+/// A round room with so many corners in a block.
+Rings round_room(int corners, double radius_m) {
+  const double middle_m = kSide_m / 2;
+  Ring room;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * M_PI * i / corners;
+    room.emplace_back(middle_m + radius_m * std::cos(angle), middle_m + radius_m * std::sin(angle));
+  }
+  return {{{50, 50}, {250, 50}, {250, 250}, {50, 250}}, room};
+}
+
+/// A plan may come from anyone who knows the key. Bodies that follow walls under it keep out, and
+/// each step looks at a bounded number of edges.
+TEST(WallFilter, KeepsFollowersOutWhateverThePlansWallsAre) {
+  const std::vector<Rings> plans = {{spiral(kMaxWallVertices, 8)},
+                                    {spiral(4000, 6.2)},
+                                    round_room(kMaxWallVertices - 4, 4),
+                                    round_room(kMaxWallVertices - 4, 40)};
+  for (std::size_t plan = 0; plan < plans.size(); ++plan) {
+    Mission mission = in_maze({});
+    mission.walls = IndexedRings(plans[plan]);
+    ASSERT_TRUE(are_walls(mission.walls, mission.domain)) << plan;
+    SeparationFilter filter(mission, 0);
+    WallFollower follower(mission, 0);
+    Drawn draw;
+    Eigen::Vector3d x_m(kSide_m / 2 + 0.3, kSide_m / 2, 0);
+    ASSERT_GE(spare_at_start_m(mission, 0, x_m), 0) << plan;
+    double least_m = 1e9;
+    for (Tick tick = 0; tick < 40; ++tick) {
+      const Eigen::Vector3d wanted_mps(draw.between(-15, 15), 10, 0);
+      const auto safe = filter.safe({0, tick, x_m, mission.speed_limit_mps},
+                                    follower.aim(tick, x_m, wanted_mps), {});
+      follower.note(true);
+      x_m += safe.velocity_mps * mission.timing.dt_s;
+      ASSERT_TRUE(x_m.allFinite()) << plan;
+      least_m = std::min(least_m, clearance_m(mission.walls, x_m.head<2>()));
+    }
+    EXPECT_GE(least_m, mission.wall_clearance_m) << plan;
+  }
+}
+
+TEST(WallFilter, RefusesPlansWithEdgesOfLengthZero) {
+  Rings walls = maze();
+  EXPECT_TRUE(are_walls(walls, in_maze({}).domain));
+  walls[0].push_back(walls[0].back());
+  EXPECT_FALSE(are_walls(walls, in_maze({}).domain));
+  walls[0].back() = walls[0].front();
+  EXPECT_FALSE(are_walls(walls, in_maze({}).domain));
 }
 
 }  // namespace

@@ -179,6 +179,16 @@ TEST(FreeRegion, LeadsTheSameWayWhereverTheDomainIsAndWhateverItsAxesAreCalled) 
   }
 }
 
+TEST(FreeRegion, HasAWayIfItIsNotLongerThanTheMost) {
+  const FreeRegion region({box(50, 25, 0.5, 80)}, kDomain, 0.5);
+  const int from = region.cell_at({45, 35}), to = region.cell_at({55, 35});
+  const double way_m = region.ways_m(from)[static_cast<std::size_t>(to)];
+  EXPECT_GT(way_m, 20);
+  EXPECT_TRUE(region.has_way(from, to, 1.0001 * way_m));
+  EXPECT_FALSE(region.has_way(from, to, 0.9999 * way_m));
+  EXPECT_TRUE(region.has_way(from, from, 0));
+}
+
 TEST(FreeRegion, KnowsHowMuchIsFreeAndWhere) {
   const FreeRegion region(rooms(1), kDomain, 2);
   EXPECT_NEAR(region.free_share(), 0.92, 0.01);

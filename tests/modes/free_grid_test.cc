@@ -161,16 +161,5 @@ TEST_F(Palisade, HasDoorsForPointsIfBodiesHaveNoWayBetweenParts) {
   EXPECT_LT(doors_between_sides(free_grid(square(), sees_between, &bodies).value()), 20);
 }
 
-TEST(FreeRegion, HasAWayIfItIsNotLongerThanTheMost) {
-  const Rings wall = {{{1000, 500}, {1010, 500}, {1010, 2100}, {1000, 2100}}};
-  const FreeRegion region(wall, square(), 10);
-  const int from = region.cell_at({900, 700}), to = region.cell_at({1100, 700});
-  const double way_m = region.ways_m(from)[static_cast<std::size_t>(to)];
-  EXPECT_GT(way_m, 400);
-  EXPECT_TRUE(region.has_way(from, to, 1.0001 * way_m));
-  EXPECT_FALSE(region.has_way(from, to, 0.9999 * way_m));
-  EXPECT_TRUE(region.has_way(from, from, 0));
-}
-
 }  // namespace
 }  // namespace ergocast

@@ -95,5 +95,38 @@ TEST_F(RobotsInTheOffice, TheWorldTakesTheLagFromWorldArg) {
   EXPECT_EQ(ergocast({"run", "office", "--world-arg=--lag"}), 2) << "without --world";
 }
 
+/// Two rooms with a door of 1.6 m, as a robot's map.
+class RobotsInARobotsMap : public OwnHost {
+ protected:
+  std::filesystem::path map() const {
+    std::ofstream picture(folder_ / "floor.pgm");
+    picture << "P2 50 30 255\n";
+    for (int row = 0; row < 30; ++row) {
+      for (int column = 0; column < 50; ++column) {
+        const bool side = row == 0 || row == 29 || column == 0 || column == 49;
+        const bool between = column == 24 && (row < 11 || row > 18);
+        picture << (side || between ? "0 " : "254 ");
+      }
+    }
+    std::ofstream(folder_ / "floor.yaml")
+        << "image: floor.pgm\nresolution: 0.2\norigin: [0, 0, 0]\nnegate: 0\n"
+           "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    return folder_ / "floor.yaml";
+  }
+};
+
+TEST_F(RobotsInARobotsMap, CoverItWithoutContact) {
+  const std::filesystem::path scenario = folder_ / "floor.textproto";
+  ASSERT_EQ(ergocast({"new", "--map", map(), "--out", scenario}), 0) << output();
+  ASSERT_EQ(ergocast({"run", scenario, "--set", "separation.response_s=0.15", "--duration", "60",
+                      "--lockstep", "--world", "ergocast-example-mujoco", "--out", out()}),
+            0)
+      << output();
+  const std::string world = text_of(out() / "log/world.log");
+  EXPECT_NE(world.find("0 contacts of two robots, 0 of a robot and a wall"), std::string::npos)
+      << world;
+  EXPECT_LT(summary()["ergodic_metric"]["last"], 0.1);
+}
+
 }  // namespace
 }  // namespace ergocast::test

@@ -2,6 +2,7 @@
 // Walls from a robot's map: they are where the map's cells are, however it lies.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "core/motion/walls.h"
@@ -124,7 +125,22 @@ TEST_F(MapWallsTest, NamesStartsInUnknownSpace) {
   for (int y = 0; y < 10; ++y) map.at(2, y) = map.at(1, y) = '?';
   const Loaded result = load(map);
   ASSERT_FALSE(result);
-  EXPECT_TRUE(has(joined(result.error()), "agents.starts[0]: is in a wall"));
+  const std::string printed = joined(result.error());
+  EXPECT_TRUE(has(printed, "agents.starts[0]: is in unknown space of "));
+  EXPECT_TRUE(has(printed, "room.yaml"));
+  EXPECT_TRUE(has(printed, "unknown_free: true in world.walls[0]"));
+  EXPECT_EQ(std::count(printed.begin(), printed.end(), '\n'), 1) << printed;
+  good(load(map, "unknown_free: true"));
+  for (int y = 0; y < 10; ++y) map.at(2, y) = map.at(1, y) = '#';
+  EXPECT_TRUE(has(joined(load(map).error()), "agents.starts[0]: is in a wall"));
+}
+
+TEST_F(MapWallsTest, NamesStartsOutsideTheMapAsUnknownSpace) {
+  RoomMap map;
+  map.origin = "[30, 0, 0]";
+  const Loaded result = load(map);
+  ASSERT_FALSE(result);
+  EXPECT_TRUE(has(joined(result.error()), "agents.starts[0]: is in unknown space of "));
 }
 
 /// A room in the west of 10 columns, and one in the east of 9.
@@ -134,8 +150,20 @@ RoomMap two_rooms() {
   return map;
 }
 
-TEST_F(MapWallsTest, CloseThePartsThatTheLargestHasNoWayTo) {
-  const Rings rings = walls(two_rooms());
+TEST_F(MapWallsTest, CloseThePartsThatTheLargestHasNoWayToAndListThem) {
+  const Scenario scenario = good(load(two_rooms()));
+  ASSERT_EQ(scenario.map_rooms().size(), 1U);
+  const MapRooms& rooms = scenario.map_rooms().front();
+  EXPECT_NEAR(rooms.free_m2, 95 * 50, 1e-6);
+  ASSERT_EQ(rooms.rooms.size(), 2U);
+  EXPECT_EQ(rooms.used, 0);
+  EXPECT_NEAR(rooms.rooms[0].area_m2, 50 * 50, 50);
+  EXPECT_NEAR(rooms.rooms[1].area_m2, 45 * 50, 50);
+  EXPECT_LT(rooms.rooms[0].middle_m.x(), 50);
+  double closed_m2 = 0;
+  for (const Polygon& polygon : rooms.closed) closed_m2 += area_m2(polygon);
+  EXPECT_NEAR(closed_m2, 45 * 50, 1);
+  const Rings& rings = scenario.mission().walls;
   EXPECT_FALSE(solid(rings, 5, 5));
   EXPECT_TRUE(solid(rings, 15, 5));
 }
@@ -143,7 +171,10 @@ TEST_F(MapWallsTest, CloseThePartsThatTheLargestHasNoWayTo) {
 TEST_F(MapWallsTest, KeepThePartOfTheFirstStart) {
   RoomMap map = two_rooms();
   for (int y = 0; y < 10; ++y) map.at(4, y) = '#';  // the start is at (10, 20) m
-  const Rings rings = walls(map);
+  const Scenario scenario = good(load(map));
+  EXPECT_EQ(scenario.map_rooms().front().rooms.size(), 3U);
+  EXPECT_EQ(scenario.map_rooms().front().used, 2);
+  const Rings& rings = scenario.mission().walls;
   EXPECT_FALSE(solid(rings, 2, 5));
   EXPECT_TRUE(solid(rings, 7, 5));
   EXPECT_TRUE(solid(rings, 15, 5));

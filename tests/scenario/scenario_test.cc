@@ -379,6 +379,48 @@ TEST(ShippedValues, UniformSquareIsThePublishedCase) {
   EXPECT_EQ(mission.target_coefficients.cwiseAbs().sum(), 1);  // μ_00 alone
 }
 
+TEST(Scenario, TheLawHasTheSpeedOfTheFastestKindIfEachHasItsOwn) {
+  const auto with = [](const std::string& law, const std::string& second) {
+    std::string text = small_with("law { u_max_mps: 5 }", law);
+    const std::string start = "starts { x_m: 10 y_m: 20 }";
+    text.replace(
+        text.find(start), start.size(),
+        "kind { name: \"a\" count: 1 u_max_mps: 5 } kind { name: \"b\" count: 1 " + second + " }");
+    return text;
+  };
+  const Scenario derived = good(with("", "u_max_mps: 2"));
+  EXPECT_EQ(derived.mission().law.u_max_mps, 5);
+  EXPECT_EQ(plan_of(derived), plan_of(good(with("law { u_max_mps: 5 }", "u_max_mps: 2"))));
+  EXPECT_EQ(plan_of(good(derived.print())), plan_of(derived));
+  EXPECT_TRUE(has(joined(problems_of(with("", ""))), "law.u_max_mps: is missing"));
+  EXPECT_EQ(problems_of(with("", "u_max_mps: 2000000")).size(), 1U);
+}
+
+TEST(Scenario, AgentsWithoutKindsHaveASensorAndKindsWithoutTheirOwnTakeIt) {
+  const std::string start = "starts { x_m: 10 y_m: 20 }";
+  const auto agents = [&](const std::string& more) {
+    return small_with(start, start + " " + more);
+  };
+  const std::string kind = "kind { name: \"all\" count: 3 footprint_sigma_m: 4 quality: 2 }";
+  const Scenario scenario = good(agents("random_count: 2 footprint_sigma_m: 4 quality: 2"));
+  EXPECT_EQ(plan_of(scenario), plan_of(good(agents("random_count: 2 " + kind))));
+  EXPECT_EQ(plan_of(good(scenario.print())), plan_of(scenario));
+  const Mission mixed = good(agents("footprint_sigma_m: 4 kind { name: \"a\" count: 1 } kind { "
+                                    "name: \"b\" count: 1 footprint_sigma_m: 1 }"))
+                            .mission();
+  EXPECT_EQ(mixed.kinds[0].footprint_sigma_m, 4);
+  EXPECT_EQ(mixed.kinds[1].footprint_sigma_m, 1);
+  EXPECT_EQ(mixed.kinds[1].quality, 1);
+  const auto refused = [&](const std::string& more, const std::string& what) {
+    const auto problems = problems_of(agents(more));
+    EXPECT_EQ(problems.size(), 1U) << joined(problems);
+    EXPECT_TRUE(has(joined(problems), what));
+  };
+  refused("footprint_sigma_m: -1", "agents.footprint_sigma_m: -1 is below the limit 0");
+  refused("quality: 0", "agents.quality: 0 is not above 0");
+  refused("footprint_sigma_m: 200", "agents.footprint_sigma_m: 200 is larger than the domain");
+}
+
 // 0.7 + 0.1 is less than 0.8.
 TEST(Scenario, APlaceOnTheUpperEdgeIsInTheDomainWhateverItsOriginIs) {
   const std::string text = R"(

@@ -128,6 +128,19 @@ TEST_F(New, LeavesOutWhatTheRobotsCannotReach) {
   expect_that_it_runs();
 }
 
+TEST_F(New, ItsScenarioIsCheckedWithItsRoomsAndAPicture) {
+  ASSERT_EQ(make(map(kClosedRooms), {"--radius", "0.15"}), 0) << output();
+  const std::filesystem::path picture = folder_ / "rooms.svg";
+  ASSERT_EQ(ergocast({"check", scenario(), "--picture", picture}), 0) << output();
+  EXPECT_TRUE(answered("floor.yaml: ")) << output();
+  EXPECT_TRUE(answered("rooms for bodies that keep 0.27 m from walls: 3")) << output();
+  EXPECT_TRUE(answered("agents start here")) << output();
+  EXPECT_TRUE(answered("cut off, so it counts as wall")) << output();
+  EXPECT_NE(text_of(picture).find("url(#closed)"), std::string::npos);
+  EXPECT_TRUE(text_of(picture).ends_with("</svg>\n"));
+  EXPECT_EQ(ergocast({"check", scenario(), "--picture", folder_ / "none/rooms.svg"}), 2);
+}
+
 TEST_F(New, RefusesMapsWithoutRoomAndTooManyRobots) {
   EXPECT_EQ(make(map(kTwoRooms), {"--radius", "3"}), 2);
   EXPECT_TRUE(answered("has no room for robots with a radius of 3 m")) << output();
