@@ -51,8 +51,9 @@ std::string wall(int number, double x_m, double y_m, double half_x_m, double hal
 }
 
 /// For each edge, a thin box just inside the solid side.
-std::string planks(const Rings& walls, int number, double height_m) {
+std::string planks(const Rings& rings, int number, double height_m) {
   constexpr double kHalf_m = 0.02;
+  const IndexedRings walls(rings);
   std::string out;
   for_segments(walls, [&](const Segment& edge) {
     const Eigen::Vector2d way_m = edge.to_m - edge.from_m;
