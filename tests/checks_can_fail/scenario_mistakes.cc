@@ -53,6 +53,7 @@ std::vector<Mistake> mistakes_between_fields() {
       {kLaw, "law { noise_intensity: 3 noise_ceiling: 2", "law.noise_ceiling: 2 is below"},
       {kLaw, "law { perturbation: CONSTANT noise_ceiling: 2", "law.noise_ceiling: has no effect"},
       {kLaw, "law { contraction_gain_per_s: 0.1", "law.u_max_mps: 5 is too weak"},
+      {"u_max_mps: 5", "", "law.u_max_mps: is missing, and agents need a speed"},
       {kLaw, "law { memory_half_life_s: 0.99", "law.memory_half_life_s: 0.99 is below 10 steps"},
       {"u_max_mps: 5", "u_max_mps: 500 contraction_gain_per_s: 11",
        "law.contraction_gain_per_s: 11 makes"},
