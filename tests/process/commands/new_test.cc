@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast new` for small maps: what it writes passes the checks, and runs as it is.
+#include <cstdlib>
+
 #include "tests/process/support/programs.h"
 
 namespace ergocast::test {
@@ -62,6 +64,24 @@ constexpr const char* kCorridor = R"(
 #......################################?
 #......################################?
 ########################################)";
+
+/// Two halls of 20 m by 24 m with pairs of posts, between which robots do not fit. The posts are
+/// smaller than a cell of the modes' grid.
+std::string halls_with_posts() {
+  constexpr int kColumns = 200, kRows = 120;
+  std::string drawing;
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const bool side = row == 0 || row == kRows - 1 || column == 0 || column == kColumns - 1;
+      const bool between = column == kColumns / 2 && (row < 20 || row > 36);
+      const bool post = row % 12 == 10 && row < 112 && (column % 12 == 10 || column % 12 == 2) &&
+                        std::abs(column - kColumns / 2) > 5 && column > 9 && column < 192;
+      drawing += side || between || post ? '#' : '.';
+    }
+    drawing += '\n';
+  }
+  return drawing;
+}
 
 class New : public OwnHost {
  protected:
@@ -126,6 +146,13 @@ TEST_F(New, WritesAScenarioThatRunsForRoomsACorridorAndATurnedMap) {
 TEST_F(New, LeavesOutWhatTheRobotsCannotReach) {
   ASSERT_EQ(make(map(kClosedRooms), {"--radius", "0.15"}), 0) << output();
   expect_that_it_runs();
+}
+
+TEST_F(New, PostsHoldNoRobotUp) {
+  ASSERT_EQ(make(map(halls_with_posts()), {"--robots", "6"}), 0) << output();
+  EXPECT_NE(text_of(scenario()).find("free_domain: true"), std::string::npos);
+  ASSERT_EQ(ergocast({"simulate", scenario(), "--duration", "200", "--out", out()}), 0) << output();
+  EXPECT_LT(summary()["separation"]["longest_block_s"], 10);
 }
 
 TEST_F(New, ItsScenarioIsCheckedWithItsRoomsAndAPicture) {
