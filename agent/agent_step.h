@@ -8,6 +8,7 @@
 
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
+#include "core/search/search_cells.h"
 #include "team/beacon_book.h"
 
 namespace ergocast {
@@ -18,6 +19,7 @@ struct OwnState {
   std::int64_t roster_revision = 0;  ///< the world's
   Tick answered_tick = -1;           ///< the newest whose command the vehicle had
   Eigen::Vector3d position_m{0, 0, 0}, velocity_mps{0, 0, 0};
+  std::int32_t reported_cell = kNoCell;
 };
 
 /// The newest tick that the agent has begun.
@@ -31,7 +33,8 @@ struct AgentStep {
   Eigen::Vector3d x_m{0, 0, 0};     ///< the point of the domain nearest to body_m
   Eigen::Vector3d body_m{0, 0, 0};  ///< a robot may be outside of the domain
   Eigen::Vector3d body_mps{0, 0, 0};
-  std::optional<BasisAt> basis_at;  ///< at x_m
+  std::int32_t reported_cell = kNoCell;  ///< by its sensor
+  std::optional<BasisAt> basis_at;       ///< at x_m
 
   Moment moment() const { return {tick, begun}; }
 };

@@ -162,8 +162,12 @@ void MissionRun::on(const WorldState& world, const Arrival& arrival, Participant
       repeat_wanted_ = repeat_wanted_ || arrival.fresh;
       return;
     }
-    pending_ = OwnState{tick, world.roster_revision, vehicle.answered_tick, vehicle.position_m,
-                        vehicle.velocity_mps};
+    pending_ = OwnState{tick,
+                        world.roster_revision,
+                        vehicle.answered_tick,
+                        vehicle.position_m,
+                        vehicle.velocity_mps,
+                        vehicle.reported_cell};
   }
 }
 
@@ -222,6 +226,7 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   step_.roster_revision = own.roster_revision;
   step_.body_m = own.position_m;
   step_.body_mps = own.velocity_mps;
+  step_.reported_cell = own.reported_cell;
   step_.x_m = mission.domain.nearest(own.position_m);
   step_.basis_at.emplace(step_.x_m, mission.domain, mission.basis);
   const RosterEntry* const entry = me.follower().entry_of(me.incarnation());

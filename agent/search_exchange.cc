@@ -43,7 +43,10 @@ Tick SearchExchange::last_due(AgentId agent, Tick counted) const {
 
 void SearchExchange::begin(const AgentStep& step, bool covers, Participant& me, Outbox& out) {
   efforts_.set_now(step.counted);
-  if (covers) efforts_.look(self_, step.counted, step.x_m);
+  if (covers) {
+    efforts_.look(self_, step.counted, step.x_m);
+    efforts_.report(self_, step.counted, step.reported_cell);
+  }
   if (last_due(self_.agent, step.counted) <= sent_at_) return;
   send_own(step, me, out);
   relay_one_row(step.counted, me, out);

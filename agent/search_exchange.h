@@ -29,7 +29,8 @@ class SearchExchange {
 
   const Efforts& efforts() const { return efforts_; }
 
-  /// The counted tick of `step` has come. The agent looks, if it covers, and sends what is due.
+  /// The counted tick of `step` has come. The agent looks and notes what its sensor reports, if it
+  /// covers, and sends what is due.
   /// @param covers  whether its time there counts
   void begin(const AgentStep& step, bool covers, Participant& me, Outbox& out);
   /// Sends again what it has sent last.

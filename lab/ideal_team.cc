@@ -67,7 +67,11 @@ IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
     if (follows_walls(mission_)) agents_.back().follower.emplace(mission_, author.agent);
   }
   foresees_ = needs_.coverage && look_ahead_.any();
-  if (needs_.search) efforts_.emplace(mission_);
+  if (needs_.search) {
+    efforts_.emplace(mission_);
+    objects_ = Objects(mission_);
+    reports_ = Reports(mission_, objects_.places_m());
+  }
   for (const Agent& agent : agents_) {
     if (efforts_) efforts_->add_row(agent.author);
   }
@@ -146,7 +150,12 @@ void IdealTeam::step() {
 void IdealTeam::search() {
   if (!efforts_) return;
   efforts_->set_now(tick_);
-  for (const Agent& agent : agents_) efforts_->look(agent.author, tick_, agent.x_m);
+  for (const Agent& agent : agents_) {
+    const AgentId id = agent.author.agent;
+    efforts_->look(agent.author, tick_, agent.x_m);
+    const ObjectSet detected = objects_.detected(id, tick_, agent.x_m);
+    efforts_->report(agent.author, tick_, reports_.cell(id, tick_, agent.x_m, detected));
+  }
 }
 
 void IdealTeam::see_bodies() {

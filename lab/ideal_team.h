@@ -16,12 +16,14 @@
 #include "core/law/look_ahead.h"
 #include "core/law/target_shift.h"
 #include "core/law/team_metric.h"
+#include "core/measure/objects.h"
 #include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
 #include "core/motion/separation.h"
 #include "core/motion/vehicle.h"
 #include "core/motion/wall_following.h"
+#include "core/search/reports.h"
 
 namespace ergocast::lab {
 
@@ -129,6 +131,8 @@ class IdealTeam {
   std::vector<AgentId> team_;
   std::vector<TeamPlace> places_;   // if the law needs them
   std::optional<Efforts> efforts_;  // the same
+  Objects objects_;
+  Reports reports_;
   std::vector<Agent> agents_;
   std::optional<SeparationFilter> separation_;
   std::vector<Neighbour> bodies_;

@@ -97,7 +97,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kDamagedMessagesRefused, "no damaged message is accepted"},
         {Invariant::kHeldNeverShrinks, "what is held never shrinks"},
         {Invariant::kDetectionsInReach, "sensors detect only objects within their radius"},
-        {Invariant::kLooksAreTrue, "looks are as their author sent them, and count once"},
+        {Invariant::kLooksAreTrue,
+         "looks and reports are as their author sent them, and count once"},
         {Invariant::kNoStepCountsTwice, "no step counts twice"},
         {Invariant::kNothingCountsWhilePaused, "nothing counts while paused or at rest"},
         {Invariant::kWhatIsNotPausedCounts, "every tick counts unless paused or at rest"},
@@ -348,7 +349,8 @@ class Invariants {
   std::vector<Eigen::Vector3d> objects_m_;
   /// For each object by tick and agent.
   std::map<int, std::set<std::pair<Tick, AgentId>>> detections_;
-  std::set<Incarnation> worlds_;  // that have sent a state
+  std::map<AgentId, std::set<Tick>> reports_;  // ticks at which a sensor reports something
+  std::set<Incarnation> worlds_;               // that have sent a state
   /// The counts that each author has sent, by tile and newest look.
   std::map<Author, std::map<std::pair<std::int32_t, Tick>, std::array<std::uint16_t, kTileCells>>>
       looks_sent_;

@@ -15,6 +15,7 @@ void Invariants::check_detections(double t_s, const WorldState& world) {
   worlds_.insert(world.header.incarnation);
   const double radius_m = objects_m_.empty() ? 0 : sensor_radius_m(mission_);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
+    if (vehicle.reported_cell != kNoCell) reports_[vehicle.id].insert(world.header.tick);
     for (int object = 0; object < kMaxObjects; ++object) {
       if ((vehicle.detected >> object & 1) == 0) continue;
       detections_[object].emplace(world.header.tick, vehicle.id);
@@ -37,18 +38,24 @@ bool Invariants::all_states_count(Tick excused) const {
          mission_.timing.pace == Pace::kLockstep;
 }
 
-/// Each find is a detection. If all detections count, it is the first of its object.
+/// Each find is a detection. If all detections count, it is the first of its object. With false
+/// alarms it is a detection or comes after one.
 void Invariants::check_finds(double t_s, const Finds& finds, Tick excused) {
   const Tick ticks = ticks_of(mission_, &truth_.amendments());
   std::string wrong;
   std::map<int, std::pair<Tick, AgentId>> recorded;
   for (const Find& find : finds.list()) {
     recorded[find.object] = {find.tick, find.agent};
-    if (!detections_[find.object].contains({find.tick, find.agent}))
+    const auto& known = detections_[find.object];
+    const bool confirmed =
+        mission_.sensor.has_false_alarms() && !known.empty() && known.begin()->first <= find.tick;
+    if (!confirmed && !known.contains({find.tick, find.agent}))
       wrong = text("object ", find.object, " was not detected at tick ", find.tick);
   }
   for (const auto& [object, all] : detections_) {
-    if (!all_states_count(excused) || all.empty() || all.begin()->first >= ticks) continue;
+    if (mission_.sensor.has_false_alarms() || !all_states_count(excused) || all.empty() ||
+        all.begin()->first >= ticks)
+      continue;
     const auto find = recorded.find(object);
     if (find == recorded.end() || find->second != *all.begin())
       wrong = text("object ", object, " was detected at tick ", all.begin()->first);

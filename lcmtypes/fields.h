@@ -251,6 +251,7 @@ struct Fields<WorldState> {
       io.vector(vehicle.position_m);
       io.vector(vehicle.velocity_mps);
       io.number(vehicle.detected);
+      io.within(vehicle.reported_cell, kNoCell, kMaxSearchCells - 1);
     }
   }
 };
@@ -275,6 +276,7 @@ struct Fields<RecordAck> {
     io.flag(m.last);
     io.quantity(m.detection_probability);
     io.holds(m.detection_probability <= 1);
+    io.within(m.wrong_confirmations, 0, std::numeric_limits<std::int32_t>::max());
     for (auto& find : io.length(m.finds, m.find_count)) {
       io.within(find.object, 0, kMaxObjects - 1);
       io.within(find.agent, 0, kMaxAgents - 1);

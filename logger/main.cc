@@ -178,11 +178,15 @@ class RunLogger {
   }
 
  private:
-  /// Logs each find once, also those that a former logger has recorded.
+  /// Logs each find once, and each contact that is confirmed and wrong, also those that a former
+  /// logger has recorded.
   void tell_finds() {
     const std::vector<Find>& finds = recorder_.facts().finds.list();
     for (; finds_told_ < finds.size(); ++finds_told_)
       spdlog::info("{}", to_text(finds[finds_told_]));
+    const int wrong = recorder_.facts().wrong_confirmations.value_or(0);
+    if (wrong > wrong_told_) spdlog::warn("{}", wrong_confirmations_text(wrong));
+    wrong_told_ = wrong;
   }
 
   bool has_room() const {
@@ -255,6 +259,7 @@ class RunLogger {
   int interruptions_ = 0;
   Amendments amendments_written_;
   std::size_t recalls_written_ = 0, finds_told_ = 0;
+  int wrong_told_ = 0;
   std::vector<std::byte> plan_of_record_;  // of the record that it continues; empty: any
   Recorder recorder_;
   Tick seen_rows_ = 0;

@@ -61,6 +61,7 @@ ReportedFigures figures_of(const AgentReports& reports, const MissionFollower& f
 }  // namespace
 
 const char* trajectory_header(const Mission& mission) {
+  if (mission.sensor.has_false_alarms()) return kTrajectoryHeaderWithReports;
   if (mission.objects.total() > 0) return kTrajectoryHeaderWithObjects;
   return mission.domain.planar() ? kTrajectoryHeader : kTrajectoryHeaderInSpace;
 }
@@ -83,6 +84,7 @@ void RecordTables::begin(const Mission& mission) {
     cosines_.begin(*in_cosines_);
   }
   measures_ = TeamMeasures(in_cosines_ ? *in_cosines_ : mission);
+  confirmations_ = Confirmations(mission);
   facts_.finds = Finds(mission.objects.total());
   trajectory_ << trajectory_header(mission) << '\n';
 }
@@ -118,7 +120,7 @@ RowTick RecordTables::replay(const RunData& past, const MissionKnowledge& known)
       ++facts_.ticks;
       facts_.held_ticks += row.counts ? 0 : 1;
     }
-    observe(context, id, point.x_m, point.detected);
+    observe(context, id, point.x_m, {point.detected, point.reported_cell});
     ++vehicles;
     former_end_ = {point.tick, id};
   });
@@ -159,7 +161,8 @@ void RecordTables::write_trajectory(const Context& context, const TickState& now
   for (const auto& [id, vehicle] : now.vehicles) {
     const auto after = next.vehicles.find(id);
     if (after == next.vehicles.end() || std::pair(tick, id) <= former_end_) continue;
-    const ObjectSet detected = observe(context, id, vehicle.position_m, vehicle.detected);
+    const Seen seen =
+        observe(context, id, vehicle.position_m, {vehicle.detected, vehicle.reported_cell});
     if (context.row.is_last(context.ends.tick_count()))
       note_home(mission, id, after->second.position_m);
     line += std::to_string(tick) + ',';
@@ -171,7 +174,9 @@ void RecordTables::write_trajectory(const Context& context, const TickState& now
         append_number(line, vector[axis]);
       }
     }
-    if (mission.objects.total() > 0) line += ',' + std::to_string(detected);
+    if (mission.objects.total() > 0 || mission.sensor.has_false_alarms())
+      line += ',' + std::to_string(seen.detected);
+    if (mission.sensor.has_false_alarms()) line += ',' + std::to_string(seen.cell);
     line += '\n';
   }
   trajectory_ << line;
@@ -198,9 +203,9 @@ bool RecordTables::is_recalled(const Context& context, AgentId id) {
   return recalled;
 }
 
-/// Returns those of `detected` that count: an agent that covers nothing finds nothing.
-ObjectSet RecordTables::observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m,
-                                ObjectSet detected) {
+/// Returns what of `seen` counts: an agent that covers nothing finds nothing.
+RecordTables::Seen RecordTables::observe(const Context& context, AgentId id,
+                                         const Eigen::Vector3d& x_m, Seen seen) {
   const Mission& mission = context.mission();
   const RosterEntry* entry = member(context.known.follower, id, context.row.tick);
   const bool covers = entry != nullptr && context.row.counts && !is_recalled(context, id);
@@ -214,10 +219,13 @@ ObjectSet RecordTables::observe(const Context& context, AgentId id, const Eigen:
     if (in_cosines_) cosines_.see(*in_cosines_, counted, entry->kind, x_m);
   }
   if (keeps_distance(mission)) row_places_m_.push_back(x_m);
-  detected = covers && !rests ? facts_.finds.known(detected) : 0;
+  if (!covers || rests) return {0, kNoCell};
+  seen.detected = facts_.finds.known(seen.detected);
   const double t_s = static_cast<double>(counted) * mission.timing.dt_s;
-  facts_.finds.note(detected, {.agent = id, .tick = context.row.tick, .t_s = t_s, .x_m = x_m});
-  return detected;
+  facts_.finds.note(confirmations_.see(id, counted, x_m, seen.detected, seen.cell),
+                    {.agent = id, .tick = context.row.tick, .t_s = t_s, .x_m = x_m});
+  if (mission.sensor.has_false_alarms()) facts_.wrong_confirmations = confirmations_.wrong();
+  return seen;
 }
 
 /// Has the observers count against the target that holds at the row's tick.
@@ -245,6 +253,7 @@ void RecordTables::begin_target(const Context& context, const ReceivedAmendment*
       change != nullptr ? change->target->in_cosines() : judged.target_coefficients;
   if (in_cosines_) cosines_.begin_target(judged, cosines);
   measures_.begin_target(judged, cosines, context.row.counted());
+  confirmations_.begin_target(cosines);
   TargetFacts& facts = facts_.targets.emplace_back();
   if (change != nullptr) facts.amendment = change->amendment;
   facts.from = facts.until = from;

@@ -16,6 +16,7 @@
 #include "core/measure/finds.h"
 #include "core/measure/team_measures.h"
 #include "core/mission/end_schedule.h"
+#include "core/search/confirmations.h"
 #include "logger/agent_reports.h"
 #include "logger/observer.h"
 #include "logger/received_amendments.h"
@@ -60,6 +61,8 @@ struct RunFacts {
   std::map<AgentId, double> from_home_m;
   /// What the team has found, of the mission's objects.
   Finds finds;
+  /// With false alarms: contacts that were confirmed and are no objects.
+  std::optional<int> wrong_confirmations;
   /// For each agent that was recalled: the first row in which it rests for that reason.
   std::map<AgentId, Tick> recalls;
 };
@@ -93,6 +96,9 @@ inline constexpr const char* kTrajectoryHeader = "tick,t_s,agent,x_m,y_m,vx_mps,
 /// With objects to find, which only planes have: bit j of the last number is object j.
 inline constexpr const char* kTrajectoryHeaderWithObjects =
     "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps,detected";
+/// With false alarms, which only planes have: the last number is the cell of a report, or -1.
+inline constexpr const char* kTrajectoryHeaderWithReports =
+    "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps,detected,reported";
 inline constexpr const char* kTrajectoryHeaderInSpace =
     "tick,t_s,agent,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps";
 /// The header of a mission's trajectory.csv.
@@ -144,8 +150,12 @@ class RecordTables {
   void write_trajectory(const Context& context, const TickState& now, const TickState& next);
   void note_home(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m);
   bool is_recalled(const Context& context, AgentId id);
-  ObjectSet observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m,
-                    ObjectSet detected);
+  /// What a sensor saw in a row.
+  struct Seen {
+    ObjectSet detected;
+    std::int32_t cell;  // kNoCell: it reported nothing
+  };
+  Seen observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m, Seen seen);
   void begin_row(const Context& context);
   void begin_target(const Context& context, const ReceivedAmendment* change);
   void note_target(const Mission& mission, Tick until);
@@ -160,6 +170,7 @@ class RecordTables {
   std::optional<Mission> in_cosines_;  // with basis.free_domain
   Observer cosines_;                   // observes in_cosines_, if there is one
   TeamMeasures measures_;
+  Confirmations confirmations_;
   std::vector<Eigen::Vector3d> row_places_m_;    // of all bodies, where a distance is kept
   std::pair<Tick, AgentId> former_end_{-1, -1};  // a former process's last row, …
   MetricsRow former_metrics_{.tick = -1};        // … also of the metrics

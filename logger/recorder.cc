@@ -161,6 +161,7 @@ void Recorder::write_rows(Instant now) {
 
 RecordAck Recorder::record_ack(bool last) const {
   RecordAck ack{{}, last, tables_.detection_probability()};
+  ack.wrong_confirmations = tables_.facts().wrong_confirmations.value_or(0);
   for (const Find& find : tables_.facts().finds.list())
     ack.finds[static_cast<std::size_t>(ack.find_count++)] = find;
   return ack;

@@ -32,6 +32,7 @@ constexpr std::size_t kMostColumns = 9;  // of either table
 struct Fields {
   std::array<double, kMostColumns> at;
   std::size_t count;
+  std::size_t axes;  // of a place in it
 
   double operator[](std::size_t column) const { return at[column]; }
 };
@@ -83,7 +84,8 @@ std::optional<std::string> read_table(
   do {
     std::optional<std::string> wrong;
     for (std::string line; !wrong && lines.next(line);) {
-      Fields fields{{}, columns_of(lines.header())};
+      const std::size_t axes = lines.header().find(",z_m") == std::string::npos ? 2 : 3;
+      Fields fields{{}, columns_of(lines.header()), axes};
       const std::optional<std::size_t> bad = first_bad_column(line, fields);
       wrong = bad ? not_numbers(line, *bad, lines.header()) : accept(fields);
     }
@@ -103,6 +105,20 @@ bool is_count(double value, double most = kExact) {
   return value >= 0 && value <= most && value == std::floor(value);
 }
 
+/// Reads what a sensor saw, from a column on, if the table has it.
+std::optional<std::string> add_seen(TrackPoint& point, const Fields& f, std::size_t column) {
+  if (f.count <= column) return {};
+  if (!is_count(f[column], std::numeric_limits<ObjectSet>::max()))
+    return "the objects detected are not a whole number of 32 bits";
+  point.detected = static_cast<ObjectSet>(f[column]);
+  if (f.count <= ++column) return {};
+  if (f[column] != kNoCell && !is_count(f[column], kMaxSearchCells - 1))
+    return "the cell reported is neither -1 nor a whole number below " +
+           std::to_string(kMaxSearchCells);
+  point.reported_cell = static_cast<std::int32_t>(f[column]);
+  return {};
+}
+
 std::optional<std::string> add_point(RunData& run, const Fields& f) {
   if (!is_count(f[0]) || f[1] < 0) return "the tick is not a whole number ≥ 0 at a time ≥ 0";
   if (!is_count(f[2]) || f[2] >= kMaxAgents) {
@@ -110,16 +126,11 @@ std::optional<std::string> add_point(RunData& run, const Fields& f) {
   }
   const auto agent = static_cast<AgentId>(f[2]);
   TrackPoint point{static_cast<Tick>(f[0]), f[1]};
-  const std::size_t axes = (f.count - 3) / 2;  // of position and velocity
-  for (std::size_t axis = 0; axis < axes; ++axis) {
+  for (std::size_t axis = 0; axis < f.axes; ++axis) {
     point.x_m[static_cast<Eigen::Index>(axis)] = f[3 + axis];
-    point.v_mps[static_cast<Eigen::Index>(axis)] = f[3 + axes + axis];
+    point.v_mps[static_cast<Eigen::Index>(axis)] = f[3 + f.axes + axis];
   }
-  if (const std::size_t last = 3 + 2 * axes; f.count > last) {
-    if (!is_count(f[last], std::numeric_limits<ObjectSet>::max()))
-      return "the objects detected are not a whole number of 32 bits";
-    point.detected = static_cast<ObjectSet>(f[last]);
-  }
+  if (auto wrong = add_seen(point, f, 3 + 2 * f.axes)) return wrong;
   const auto track = run.tracks.find(agent);
   if (track != run.tracks.end() &&
       (point.tick <= track->second.back().tick || point.t_s <= track->second.back().t_s)) {

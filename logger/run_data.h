@@ -17,6 +17,7 @@
 #include "core/mission/end_schedule.h"
 #include "core/mission/hold.h"
 #include "core/mission/mission.h"
+#include "core/search/search_cells.h"
 #include "logger/received_amendments.h"
 #include "logger/slope.h"
 
@@ -27,8 +28,9 @@ struct TrackPoint {
   Tick tick = 0;
   double t_s = 0;
   Eigen::Vector3d x_m{0, 0, 0};
-  Eigen::Vector3d v_mps{0, 0, 0};  ///< the command computed at x_m
-  ObjectSet detected = 0;          ///< of the mission's objects
+  Eigen::Vector3d v_mps{0, 0, 0};        ///< the command computed at x_m
+  ObjectSet detected = 0;                ///< of the mission's objects
+  std::int32_t reported_cell = kNoCell;  ///< by its sensor
 };
 using Track = std::vector<TrackPoint>;  ///< ascending by tick
 

@@ -258,7 +258,9 @@ void add_team(const Recorder& recorder, const Mission& mission, Json& summary) {
 }
 
 /// Which of the mission's objects the team has found, in the order of the finds.
-void add_objects(const Finds& finds, Json& summary) {
+void add_objects(const RunFacts& facts, Json& summary) {
+  if (facts.wrong_confirmations) summary["wrong_confirmations"] = *facts.wrong_confirmations;
+  const Finds& finds = facts.finds;
   if (finds.objects() == 0) return;
   Json list = Json::array();
   for (const Find& find : finds.list()) {
@@ -329,7 +331,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   add_ticks(recorder, summary);
   add_metric(facts, mission, summary);
   if (mission) add_team(recorder, *mission, summary);
-  add_objects(facts.finds, summary);
+  add_objects(facts, summary);
   if (mission) summary["conventions"] = conventions(mission->basis);
   add_wall_time(facts, context, summary);
   summary["agents"] = agents(recorder);

@@ -84,7 +84,8 @@ std::string TableLines::place() const {
 }
 
 std::vector<std::string> trajectory_headers() {
-  return {kTrajectoryHeader, kTrajectoryHeaderWithObjects, kTrajectoryHeaderInSpace};
+  return {kTrajectoryHeader, kTrajectoryHeaderWithObjects, kTrajectoryHeaderWithReports,
+          kTrajectoryHeaderInSpace};
 }
 
 std::string in_quotes(const std::string& line) {

@@ -48,7 +48,7 @@ class TableLines {
   std::optional<std::string> problem_;
 };
 
-/// The headers that trajectory.csv may have: of a plane, with objects, of a box.
+/// The headers that trajectory.csv may have: of a plane, with objects, with reports, of a box.
 std::vector<std::string> trajectory_headers();
 
 /// A line as an error message quotes it.

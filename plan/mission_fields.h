@@ -182,6 +182,15 @@ void list_fields(auto& io, MaybeConst<SearchSensor> auto& sensor) {
   io.number({2, "detections_per_s", limits::above(0, 1e6),
              unless(sensor.detections_per_s, usual.detections_per_s)},
             sensor.detections_per_s);
+  io.number({3, "false_alarms_per_s", limits::between(0, 1e6),
+             unless(sensor.false_alarms_per_s, usual.false_alarms_per_s)},
+            sensor.false_alarms_per_s);
+  io.number({4, "position_error_m", limits::between(0, 1e7),
+             unless(sensor.position_error_m, usual.position_error_m)},
+            sensor.position_error_m);
+  io.number({5, "confirm_at", limits::between(0.5, 0.999999),
+             unless(sensor.confirm_at, usual.confirm_at)},
+            sensor.confirm_at);
 }
 
 /// Number 1 of the plan is the version of the program that wrote it.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/measure/detection.h"
 #include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
@@ -219,6 +220,13 @@ bool fits(const HiddenObjects& objects, const Mission& mission) {
          std::ranges::all_of(objects.places_m, free);
 }
 
+/// Reports are cells of a plane. An end by finding needs finds that the world knows at once.
+bool fits(const SearchSensor& sensor, const Mission& mission) {
+  if (sensor.position_error_m > sensor_radius_m(mission) / 2) return false;
+  return !sensor.has_false_alarms() ||
+         (mission.domain.planar() && mission.objects.end_when_found == 0);
+}
+
 bool is_team(const Mission& mission) {
   const auto size = static_cast<double>(mission.starts_m.size());
   const auto& starts_m = mission.starts_m;
@@ -277,7 +285,7 @@ bool within_limits(const Mission& mission) {
                       mission.timing.dt_s) &&
          is_team(mission) && are_kinds(mission) && bodies_fit(mission) &&
          fits(mission.separation, mission) && walls_fit(mission) && stations_fit(mission) &&
-         fits(mission.objects, mission);
+         fits(mission.objects, mission) && fits(mission.sensor, mission);
 }
 
 }  // namespace ergocast

@@ -118,6 +118,9 @@ Json conventions(const Mission& mission, bool free_domain) {
   }
   add("sensor", "finds an object within " + readable(sensor_radius_m(mission)) + " m at the rate " +
                     readable(mission.sensor.detections_per_s) + " /s, through walls");
+  if (mission.sensor.has_false_alarms())
+    add("false alarms", readable(mission.sensor.false_alarms_per_s) + " /s; confirmed at " +
+                            readable(mission.sensor.confirm_at));
   add("time step", readable(mission.timing.dt_s) + " s");
   add("maps", "Σ cₖ fₖ with f of unit norm, in multiples of the uniform density");
   return list;

@@ -175,6 +175,7 @@ std::vector<WorldState> Fleet::snapshot(Tick tick) const {
     vehicle.position_m = slot.x_m;
     vehicle.velocity_mps = slot.applied_mps;
     vehicle.detected = objects_.detected(id, tick, slot.x_m);
+    vehicle.reported_cell = reports_.cell(id, tick, slot.x_m, vehicle.detected);
   }
   return states;
 }
@@ -183,6 +184,7 @@ std::optional<std::string> Fleet::learn(const Mission& mission) {
   if (!mission_) {
     mission_ = mission;
     objects_ = Objects(mission);
+    reports_ = Reports(mission, objects_.places_m());
   }
   if (!physics_maker_ || physics_) return {};
   auto made = physics_maker_(mission);

@@ -24,6 +24,7 @@
 #include "core/mission/zones.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/separation.h"
+#include "core/search/reports.h"
 #include "sim/command_history.h"
 #include "sim/physics.h"
 #include "team/messages.h"
@@ -126,6 +127,7 @@ class Fleet {
 
   std::optional<Mission> mission_;
   Objects objects_;
+  Reports reports_;
   std::map<AgentId, Slot> vehicles_;
   std::optional<SeparationFilter>
       filter_;                     // if it guards, has walls or zones, or a body is no point

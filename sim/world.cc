@@ -190,7 +190,8 @@ void World::note_found(std::vector<WorldState>& states) {
     });
   };
   for (const WorldState& state : states) {
-    if (me_.is_held(tick_) || me_.is_over(tick_)) break;
+    // With false alarms only the record knows.
+    if (me_.is_held(tick_) || me_.is_over(tick_) || mission().sensor.has_false_alarms()) break;
     for (const Vehicle& vehicle : state.vehicles_in_part())
       if (vehicle.detected != 0 && covers(vehicle.id)) found_ |= vehicle.detected;
   }

@@ -52,6 +52,8 @@ StudyMeasure::StudyMeasure(const Mission& mission)
     : mission_(mission),
       team_(mission),
       objects_(mission),
+      reports_(mission, objects_.places_m()),
+      confirmations_(mission),
       finds_(mission.objects.total()),
       escape_distance_m_(lab::escape_distance_m(mission.domain)),
       at_edge_m_(kAtEdgeShare * mission.domain.shortest_side_m()),
@@ -75,9 +77,12 @@ void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector3d&
   const auto id = static_cast<AgentId>(agent);
   const bool covers = !rests(mission_, id, tick);
   team_.see(id, tick, x_m, covers);
-  if (covers)
-    finds_.note(objects_.detected(id, tick, x_m),
+  if (covers) {
+    const ObjectSet detected = objects_.detected(id, tick, x_m);
+    const std::int32_t cell = reports_.cell(id, tick, x_m, detected);
+    finds_.note(confirmations_.see(id, tick, x_m, detected, cell),
                 {.agent = id, .tick = tick, .t_s = t_s(tick), .x_m = x_m});
+  }
   const double offset2_m2 = (x_m - mission_.law.contraction_center_m).squaredNorm();
   offset2_sum_m2_ += offset2_m2;
   figures_.offset2_max_m2 = std::max(figures_.offset2_max_m2, offset2_m2);
@@ -130,6 +135,8 @@ StudyFigures StudyMeasure::figures() const {
   figures.path_m = team.path_m;
   const bool any = finds_.objects() > 0;
   figures.objects_found = any ? static_cast<double>(finds_.list().size()) : kNone;
+  figures.wrong_confirmations =
+      mission_.sensor.has_false_alarms() ? static_cast<double>(confirmations_.wrong()) : kNone;
   const double first_s = finds_.list().empty() ? kNever : finds_.list().front().t_s;
   figures.first_find_time_s = any ? first_s : kNone;
   figures.offset2_mean_m2 = offset2_sum_m2_ / static_cast<double>(positions_);

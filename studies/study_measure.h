@@ -8,6 +8,8 @@
 #include "core/measure/objects.h"
 #include "core/measure/team_measures.h"
 #include "core/mission/mission.h"
+#include "core/search/confirmations.h"
+#include "core/search/reports.h"
 #include "lab/manifolds.h"
 #include "studies/study_run.h"
 
@@ -37,6 +39,8 @@ class StudyMeasure {
   const Mission& mission_;
   TeamMeasures team_;
   Objects objects_;
+  Reports reports_;
+  Confirmations confirmations_;
   Finds finds_;
   double escape_distance_m_, at_edge_m_;
   std::vector<std::optional<lab::Manifold>> manifolds_;

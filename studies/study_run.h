@@ -62,9 +62,10 @@ struct StudyFigures {
   double greatest_age_s = 0, wasserstein_m = 0, path_m = 0;
   /// Figures of the mission's objects; nan if it has none. The time is infinite if none was found.
   double objects_found = 0, first_find_time_s = 0;
-  double edge_share = 0;      ///< share of all agents' ticks at an edge
-  double speed_mean_mps = 0;  ///< of the vehicles: their commands within the speed limit
-  std::int64_t messages = 0;  ///< contributions sent, including those repeated for others
+  double wrong_confirmations = 0;  ///< core/search/confirmations.h; nan without false alarms
+  double edge_share = 0;           ///< share of all agents' ticks at an edge
+  double speed_mean_mps = 0;       ///< of the vehicles: their commands within the speed limit
+  std::int64_t messages = 0;       ///< contributions sent, including those repeated for others
 };
 
 /// Runs the mission of a compiled plan. It runs without messages where the result is the same

@@ -50,6 +50,7 @@ constexpr Quantity kQuantities[] = {
     {"time_to_four_fifths_s", &StudyFigures::four_fifths_time_s},
     {"objects_found", &StudyFigures::objects_found},
     {"time_to_first_find_s", &StudyFigures::first_find_time_s},
+    {"wrong_confirmations", &StudyFigures::wrong_confirmations},
     {"greatest_age_s", &StudyFigures::greatest_age_s},
     {"sliced_wasserstein_m", &StudyFigures::wasserstein_m},
     {"path_m", &StudyFigures::path_m},

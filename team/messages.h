@@ -228,6 +228,7 @@ struct Vehicle {
   Eigen::Vector3d velocity_mps{0, 0,
                                0};  ///< applied in the step that led here; with inertia, at its end
   ObjectSet detected = 0;           ///< by its sensor at this tick
+  std::int32_t reported_cell = kNoCell;  ///< by its sensor, core/search/reports.h
 };
 
 /// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.
@@ -281,7 +282,8 @@ struct Beacon {
 struct RecordAck {
   Header header;
   bool last = false;  ///< the mission is over, and the logger leaves: this is its last message
-  double detection_probability = 0;  ///< of the recorded ticks, core/measure/detection.h
+  double detection_probability = 0;      ///< of the recorded ticks, core/measure/detection.h
+  std::int32_t wrong_confirmations = 0;  ///< core/search/confirmations.h
   std::int32_t find_count = 0;
   std::array<Find, kMaxObjects>
       finds{};  ///< in the recorded ticks, in their order; t_s is not sent

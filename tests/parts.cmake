@@ -31,6 +31,7 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/measure_test.cc
     core/merge_property_test.cc
     core/mower_test.cc
+    core/contacts_test.cc
     core/objects_test.cc
     core/noise_test.cc
     core/perturbation_test.cc

@@ -86,6 +86,9 @@ void MissionWatch::on(const RecordAck& ack, const Arrival& arrival) {
     find.t_s = static_cast<double>(me_.counted(find.tick)) * timing_.dt_s;
     display_.print(to_text(find));
   }
+  if (ack.wrong_confirmations <= wrong_told_) return;
+  wrong_told_ = ack.wrong_confirmations;
+  display_.print(wrong_confirmations_text(wrong_told_));
 }
 
 void MissionWatch::reach(Stage stage, Instant now) {

@@ -93,6 +93,7 @@ class MissionWatch {
   bool failed_ = false;
   std::string reason_;
   std::size_t finds_told_ = 0;
+  int wrong_told_ = 0;
   Tick tick_ = 0;           // the newest, whether it counts or not
   Instant tick_since_{};    // when the last tick or stage was reached
   Instant last_running_{};  // when a running agent was last received

@@ -133,6 +133,8 @@ void print_summary(const Json& summary) {
   }
   if (summary.contains("detection")) print_achievement(summary);
   if (summary.contains("objects")) print_objects(summary["objects"]);
+  if (const int wrong = summary.value("wrong_confirmations", 0); wrong > 0)
+    std::printf("            %s\n", wrong_confirmations_text(wrong).c_str());
   std::printf("  messages  %s sent, %s received, %s lost, %s dropped by the kernel\n",
               text("/messages/sent").c_str(), text("/messages/received").c_str(),
               text("/messages/lost").c_str(), text("/messages/kernel_drops").c_str());

@@ -111,9 +111,15 @@ void TrajectoryComparison::miss(const std::string& simulated) {
 /// Whether the recorded row is the simulated one, except for a velocity of zero.
 bool TrajectoryComparison::stands_where(const std::string& simulated) const {
   const std::string& header = lines_.header();
-  const bool with_objects = header.ends_with(",detected");
-  const auto axes = std::ranges::count(header.substr(header.find(",vx_mps")), ',') - with_objects;
-  const std::size_t behind = with_objects ? simulated.rfind(',') : simulated.size();
+  const std::size_t seen = std::min(header.find(",detected"), header.size());
+  const auto commas = [&](std::size_t from, std::size_t to) {
+    return std::count(header.begin() + static_cast<std::ptrdiff_t>(from),
+                      header.begin() + static_cast<std::ptrdiff_t>(to), ',');
+  };
+  const auto axes = commas(header.find(",vx_mps"), seen);
+  std::size_t behind = simulated.size();
+  for (auto column = commas(seen, header.size()); column > 0; --column)
+    behind = simulated.rfind(',', behind - 1);
   std::size_t end = behind;
   std::string none;
   for (auto axis = axes; axis > 0; --axis, none += ",0") end = simulated.rfind(',', end - 1);

@@ -100,6 +100,7 @@ std::string team_json(const TeamPicture& at) {
       {"clamped_commands", at.clamped_commands},
       {"forgotten", at.forgotten}};
   json["objects"] = objects_json(at);
+  if (at.wrong_confirmations) json["wrong_confirmations"] = *at.wrong_confirmations;
   json["holds"] = nlohmann::ordered_json::array();
   for (const Hold& hold : at.holds)
     json["holds"].push_back({hold.from, or_null(!hold.open(), hold.until)});

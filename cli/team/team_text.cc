@@ -176,6 +176,8 @@ std::string second_line(const TeamPicture& at) {
   if (at.objects > 0)
     text += ", " + std::to_string(at.finds.size()) + " of " + std::to_string(at.objects) +
             " hidden objects found";
+  if (at.wrong_confirmations.value_or(0) > 0)
+    text += ", " + wrong_confirmations_text(*at.wrong_confirmations);
   if (!at.finds.empty()) text += ", the newest: " + to_text(at.finds.back());
   if (at.target) text += ", " + target_text(at);
   if (at.end)

@@ -84,6 +84,7 @@ void TeamView::on(const RecordAck& ack, const Arrival& arrival) {
   detection_probability_ = ack.detection_probability;
   const auto finds = ack.all_finds();
   if (finds.size() > finds_.size()) finds_.assign(finds.begin(), finds.end());
+  wrong_confirmations_ = std::max(wrong_confirmations_, ack.wrong_confirmations);
 }
 
 Instant TeamView::last_sign(const Author& author) const {
@@ -282,6 +283,7 @@ TeamPicture TeamView::picture(Instant now) const {
   if (const auto& mission = follower().mission()) {
     picture.objects = mission->objects.total();
     picture.finds = finds_;
+    if (mission->sensor.has_false_alarms()) picture.wrong_confirmations = wrong_confirmations_;
     for (Find& find : picture.finds)
       find.t_s = static_cast<double>(me_.counted(find.tick)) * mission->timing.dt_s;
   }

@@ -78,8 +78,9 @@ struct TeamPicture {
   bool free_domain = false;              ///< … in the modes of the free domain
   /// How likely an object drawn from the target has been found; nothing: no logger has reported it.
   std::optional<double> detection_probability;
-  int objects = 0;          ///< that the world hides, by the plan
-  std::vector<Find> finds;  ///< in their order, as a logger has reported them
+  int objects = 0;                         ///< that the world hides, by the plan
+  std::vector<Find> finds;                 ///< in their order, as a logger has reported them
+  std::optional<int> wrong_confirmations;  ///< likewise, with false alarms
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
@@ -144,8 +145,9 @@ class TeamView {
   std::map<AgentId, std::pair<Tick, Vehicle>> vehicles_;  // each one's newest state
   std::string coordinator_host_;
   std::optional<double> detection_probability_;  // from the newest RECORD_ACK
-  std::vector<Find> finds_;                      // from the one with most
-  std::optional<MissionState> team_state_;       // from TEAM_STATUS, which comes more often
+  int wrong_confirmations_ = 0;
+  std::vector<Find> finds_;                 // from the one with most
+  std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;
   bool team_paused_ = false;  // from TEAM_STATUS
 };

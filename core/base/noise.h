@@ -22,6 +22,8 @@ enum class Purpose : std::uint32_t {
   kHand = 9,          ///< on which side an agent goes along a wall that holds it up
   kObject = 10,       ///< where the simulated world's objects are
   kDetection = 11,    ///< whether a sensor detects an object
+  kReport = 12,       ///< the error of a reported place
+  kFalseAlarm = 13,   ///< whether and where a sensor reports nothing real
 };
 
 /// Two independent 64-bit words (Philox 4×32-10, Salmon et al. 2011).

@@ -25,6 +25,7 @@ Searcher::Searcher(const Mission& mission, int kind)
       cells_(mission),
       spread_m_(kSpread * cells_.radius_m),
       potential_(cells_.cells, mission.walls, kSmoothing * cells_.radius_m),
+      contacts_(mission),
       source_(static_cast<Eigen::Index>(cells_.cells.total())),
       along_x_(cells_.cells.count.x()),
       along_y_(cells_.cells.count.y()),
@@ -38,6 +39,7 @@ Searcher::Searcher(const Mission& mission, int kind)
 
 void Searcher::set_target(const Coefficients& target) {
   prior_ = target_mass(basis_, walls_, target, cells_.cells);
+  contacts_.set_prior(prior_);
   turn_ = -1;
 }
 
@@ -54,14 +56,16 @@ Eigen::Vector3d Searcher::wanted_mps(const LawInput& input) {
 void Searcher::renew(const LawInput& input) {
   ERGOCAST_REQUIRE(input.efforts != nullptr);
   source_.setZero();
-  add_left(*input.efforts);
+  contacts_.renew(*input.efforts);
+  add_left(input);
   add_teammates(input);
   potential_.solve(source_);
 }
 
 /// Subtracts b, as masses of cells. Only differences of efforts count, so exp() does not vanish
 /// everywhere.
-void Searcher::add_left(const Efforts& efforts) {
+void Searcher::add_left(const LawInput& input) {
+  const Efforts& efforts = *input.efforts;
   const Cells& cells = cells_.cells;
   std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max();
   const auto each = [&](auto&& visit) {
@@ -75,11 +79,25 @@ void Searcher::add_left(const Efforts& efforts) {
   each([&](std::size_t, std::uint32_t looks) { fewest = std::min(fewest, looks); });
   double left = 0;
   each([&](std::size_t cell, std::uint32_t looks) {
-    const double mass = prior_[cell] * std::exp(-cells_.nats_per_look * (looks - fewest));
+    if (contacts_.confirmed(cell)) return;
+    const bool mine = contacts_.nats(cell) != 0 && is_nearest(input, cell);
+    const double mass = prior_[cell] * std::exp((mine ? contacts_.nats(cell) : 0.0) -
+                                                cells_.nats_per_look * (looks - fewest));
     source_[static_cast<Eigen::Index>(cell)] = -mass;
     left += mass;
   });
   if (left > 0) source_ /= left;
+}
+
+/// Whether no teammate is nearer to a cell.
+bool Searcher::is_nearest(const LawInput& input, std::size_t cell) const {
+  const auto rows = static_cast<std::size_t>(cells_.cells.count.y());
+  const Eigen::Vector3d x_m(cells_.cells.center_m(0, static_cast<int>(cell / rows)),
+                            cells_.cells.center_m(1, static_cast<int>(cell % rows)), 0);
+  const double own_m = (input.x_m - x_m).norm();
+  return std::ranges::all_of(input.places, [&](const TeamPlace& mate) {
+    return mate.agent == input.agent || (mate.x_m - x_m).norm() >= own_m;
+  });
 }
 
 /// Adds p, as masses of cells. A teammate's Gaussian has its whole mass in free cells.

@@ -2,6 +2,8 @@
 // The law that searches: each agent goes to where much is left to find and no teammate is near.
 //
 //   b_i ∝ m_i exp(−E_i)      what is left: the target's mass of a cell, and the looks of all agents
+//   b_i is larger where reports make an object likely, and 0 in a contact that is confirmed, if the
+//   sensors have false alarms (core/search/contacts.h)
 //   p   = (1/N) Σ_j G_j      what teammates take care of: a Gaussian of width ℓ around each
 //
 // The agent descends the potential u of core/search/search_field.h with the source p − b, always at
@@ -17,6 +19,7 @@
 
 #include "core/law/law.h"
 #include "core/law/steering.h"
+#include "core/search/contacts.h"
 #include "core/search/search_cells.h"
 #include "core/search/search_field.h"
 
@@ -37,7 +40,8 @@ class Searcher final : public Law {
 
  private:
   void renew(const LawInput& input);
-  void add_left(const Efforts& efforts);
+  void add_left(const LawInput& input);
+  bool is_nearest(const LawInput& input, std::size_t cell) const;
   void add_teammates(const LawInput& input);
   void set_gaussian(int axis, const Eigen::Vector3d& x_m, Eigen::VectorXd& along) const;
 
@@ -48,7 +52,8 @@ class Searcher final : public Law {
   double spread_m_;
   SearchField potential_;
   std::vector<double> prior_;  // mass of each cell
-  Eigen::VectorXd free_;       // 1 for each cell that is not in a wall, else 0
+  Contacts contacts_;
+  Eigen::VectorXd free_;  // 1 for each cell that is not in a wall, else 0
   Eigen::VectorXd source_;
   Eigen::VectorXd along_x_, along_y_;  // a Gaussian at the middles of columns and rows
   Tick renewal_ticks_, turn_ = -1;

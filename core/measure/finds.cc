@@ -14,6 +14,11 @@ std::string to_text(const Find& find) {
   return text;
 }
 
+std::string wrong_confirmations_text(int count) {
+  return std::to_string(count) + (count == 1 ? " contact that was confirmed is no object"
+                                             : " contacts that were confirmed are no objects");
+}
+
 ObjectSet Finds::known(ObjectSet detected) const {
   return detected & static_cast<ObjectSet>((std::uint64_t{1} << objects_) - 1);
 }

@@ -26,6 +26,9 @@ struct Find {
 /// "object 2 found by agent 3 at (412.0, 77.5) m after 123.4 s".
 std::string to_text(const Find& find);
 
+/// "1 contact that was confirmed is no object".
+std::string wrong_confirmations_text(int count);
+
 /// All finds in their order, at most one of each object.
 class Finds {
  public:

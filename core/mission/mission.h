@@ -141,10 +141,16 @@ struct HiddenObjects {
 };
 
 /// The sensor with which agents find objects. core/measure/ measures by it; only the law kSearch
-/// (core/search/) steers by it.
+/// (core/search/) steers by it. With false alarms its reports steer, too, and an object counts as
+/// found once they confirm it: core/search/contacts.h.
 struct SearchSensor {
   double radius_m = 0;            ///< 0: core/measure/detection.h has a default
   double detections_per_s = 0.5;  ///< of an object within the radius
+  double false_alarms_per_s = 0;  ///< anywhere within the radius; 0: a detection is certain
+  double position_error_m = 0;    ///< standard deviation of a reported place, along x and along y
+  double confirm_at = 0.99;       ///< how likely a contact must be an object
+
+  bool has_false_alarms() const { return false_alarms_per_s > 0; }
 };
 
 struct Mission {

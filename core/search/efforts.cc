@@ -7,14 +7,6 @@
 #include "core/base/require.h"
 
 namespace ergocast {
-namespace {
-
-void halve(EffortTile& tile, std::int64_t times) {
-  const int shift = static_cast<int>(std::clamp<std::int64_t>(times, 0, 16));
-  for (std::uint16_t& looks : tile.looks) looks = static_cast<std::uint16_t>(looks >> shift);
-}
-
-}  // namespace
 
 Efforts::Efforts(const Mission& mission)
     : cells_(mission), half_life_(mission), sums_(cells_.tile_count()) {}
@@ -32,10 +24,16 @@ const std::vector<EffortTile>* Efforts::row_of(const Author& author) const {
 
 void Efforts::add_row(const Author& author) { row(author); }
 
+void Efforts::halve(EffortTile& tile, std::int64_t times) const {
+  const int shift = static_cast<int>(std::clamp<std::int64_t>(times, 0, 16));
+  for (std::uint16_t& count : tile.looks)
+    count = cells_.count_of(cells_.looks_in(count) >> shift, cells_.reports_in(count) >> shift);
+}
+
 void Efforts::set_now(Tick counted) {
   const std::int64_t halvings = half_life_.halvings(counted);
   if (halvings <= halvings_) return;
-  std::ranges::fill(sums_, std::array<std::uint32_t, kTileCells>{});
+  std::ranges::fill(sums_, std::array<Sum, kTileCells>{});
   for (Row& row : rows_) {
     for (std::size_t tile = 0; tile < row.tiles.size(); ++tile) {
       halve(row.tiles[tile], halvings - halvings_);
@@ -46,7 +44,17 @@ void Efforts::set_now(Tick counted) {
 }
 
 void Efforts::add(std::size_t tile, const EffortTile& counts) {
-  for (std::size_t slot = 0; slot < kTileCells; ++slot) sums_[tile][slot] += counts.looks[slot];
+  for (std::size_t slot = 0; slot < kTileCells; ++slot) {
+    sums_[tile][slot].looks += cells_.looks_in(counts.looks[slot]);
+    sums_[tile][slot].reports += cells_.reports_in(counts.looks[slot]);
+  }
+}
+
+void Efforts::subtract(std::size_t tile, const EffortTile& counts) {
+  for (std::size_t slot = 0; slot < kTileCells; ++slot) {
+    sums_[tile][slot].looks -= cells_.looks_in(counts.looks[slot]);
+    sums_[tile][slot].reports -= cells_.reports_in(counts.looks[slot]);
+  }
 }
 
 void Efforts::look(const Author& author, Tick counted, const Eigen::Vector3d& x_m) {
@@ -57,11 +65,26 @@ void Efforts::look(const Author& author, Tick counted, const Eigen::Vector3d& x_
   cells_.cells.for_near(x_m, cells_.radius_m, [&](int i, int j, int) {
     const TileCell cell = cells_.tile_cell(i, j);
     EffortTile& tile = own.tiles[cell.tile];
-    if (tile.looks[cell.slot] >= cells_.most_looks) return;
+    if (cells_.looks_in(tile.looks[cell.slot]) >= cells_.most_looks) return;
     tile.newest_look = counted;
     ++tile.looks[cell.slot];
-    ++sums_[cell.tile][cell.slot];
+    ++sums_[cell.tile][cell.slot].looks;
   });
+}
+
+void Efforts::report(const Author& author, Tick counted, std::int32_t cell) {
+  Row& own = row(author);
+  const bool exists = cell >= 0 && static_cast<std::size_t>(cell) < cells_.cells.total();
+  if (!cells_.reports() || !exists || counted <= own.newest_report) return;
+  own.newest_report = counted;
+  const TileCell at = cells_.tile_cell(cell);
+  EffortTile& tile = own.tiles[at.tile];
+  std::uint16_t& count = tile.looks[at.slot];
+  const std::uint32_t looks = cells_.looks_in(count), reports = cells_.reports_in(count);
+  if (looks >= cells_.most_looks || reports >= kMaxReports) return;
+  tile.newest_look = counted;
+  count = cells_.count_of(looks, reports + 1);
+  ++sums_[at.tile][at.slot].reports;
 }
 
 /// A look counts once in each cell, so no count is above the number of looks.
@@ -69,7 +92,8 @@ bool Efforts::possible(const EffortTile& tile, Tick sent) const {
   if (tile.newest_look < 0 || tile.newest_look > sent) return false;
   const std::int64_t most =
       std::min<std::int64_t>(cells_.most_looks, cells_.looks_by(tile.newest_look));
-  return std::ranges::all_of(tile.looks, [&](std::uint16_t looks) { return looks <= most; });
+  return std::ranges::all_of(tile.looks,
+                             [&](std::uint16_t count) { return cells_.looks_in(count) <= most; });
 }
 
 bool Efforts::merge(const Author& author, std::size_t tile, EffortTile theirs, Tick sent) {
@@ -79,10 +103,8 @@ bool Efforts::merge(const Author& author, std::size_t tile, EffortTile theirs, T
   // A tile from after the next halving comes too early; it will be sent again.
   if (theirs.newest_look <= ours.newest_look || half_life_.halvings(sent) > halvings_) return true;
   halve(theirs, halvings_ - half_life_.halvings(sent));
-  for (std::size_t slot = 0; slot < kTileCells; ++slot) {
-    sums_[tile][slot] -= ours.looks[slot];
-    sums_[tile][slot] += theirs.looks[slot];
-  }
+  subtract(tile, ours);
+  add(tile, theirs);
   ours = theirs;
   return true;
 }

@@ -2,7 +2,8 @@
 // Where all agents have searched, as one agent knows it: a state-based CRDT (a replicated value
 // whose copies merge in any order) of counts.
 //
-// One row per (agent, incarnation): for each cell, how often this agent has looked at it. A row is
+// One row per (agent, incarnation): for each cell, how often this agent has looked at it and, with
+// false alarms, how often it has reported something there. A row is
 // kept in tiles of 8 × 8 cells, each with the counted tick of its newest look. A tile with a later
 // tick replaces one with an earlier tick, so loss, repetition and reordering need no protocol.
 // Counts are integers, so their sum over all rows does not depend on the order of merging.
@@ -24,7 +25,7 @@ namespace ergocast {
 
 struct EffortTile {
   Tick newest_look = -1;  ///< counted; −1: this agent has never looked here
-  std::array<std::uint16_t, kTileCells> looks{};
+  std::array<std::uint16_t, kTileCells> looks{};  ///< and reports: SearchCells::looks_in()
 };
 
 class Efforts {
@@ -43,6 +44,11 @@ class Efforts {
   /// each tick, also if ticks are counted again. Does not allocate. @pre `author` has a row
   void look(const Author& author, Tick counted, const Eigen::Vector3d& x_m);
 
+  /// The agent's sensor reports something in a cell at tick `counted`, at most once at each tick. A
+  /// cell in which no more looks count takes no more reports either, because they would be evidence
+  /// without their looks. A cell that does not exist has no effect. @pre `author` has a row
+  void report(const Author& author, Tick counted, std::int32_t cell);
+
   /// Takes in a tile as its author had it at tick `sent`. A tile that is not newer than the one
   /// held has no effect.
   /// @return false without effect: no agent can have looked so often
@@ -55,23 +61,30 @@ class Efforts {
   const std::vector<EffortTile>* row_of(const Author& author) const;
 
   /// How often all agents have looked at a cell, each up to cells().most_looks.
-  std::uint32_t looks(const TileCell& cell) const { return sums_[cell.tile][cell.slot]; }
+  std::uint32_t looks(const TileCell& cell) const { return sums_[cell.tile][cell.slot].looks; }
+  /// How often all agents have reported something in a cell.
+  std::uint32_t reports(const TileCell& cell) const { return sums_[cell.tile][cell.slot].reports; }
 
  private:
   struct Row {
     Author author;
     std::vector<EffortTile> tiles;
-    Tick newest_look = -1;  // that look() has done
+    Tick newest_look = -1, newest_report = -1;  // that look() and report() have done
+  };
+  struct Sum {
+    std::uint32_t looks = 0, reports = 0;
   };
   Row& row(const Author& author);
   bool possible(const EffortTile& tile, Tick sent) const;
+  void halve(EffortTile& tile, std::int64_t times) const;
   void add(std::size_t tile, const EffortTile& counts);
+  void subtract(std::size_t tile, const EffortTile& counts);
 
   SearchCells cells_;
   HalfLife half_life_;
   std::int64_t halvings_ = 0;
   std::vector<Row> rows_;  // ascending by author
-  std::vector<std::array<std::uint32_t, kTileCells>> sums_;
+  std::vector<std::array<Sum, kTileCells>> sums_;
 };
 
 }  // namespace ergocast

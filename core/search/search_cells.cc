@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/measure/detection.h"
 
@@ -12,7 +11,8 @@ namespace ergocast {
 namespace {
 
 constexpr double kLeastRadiusPerSearchCell = 0.75;
-constexpr double kMostNats = 8;
+/// Of one agent in a cell. Two false alarms in a cell take about 10 to be refuted.
+constexpr double kMostNats = 8, kMostNatsWithFalseAlarms = 16;
 
 double side_m(const Mission& mission) {
   return std::max(sensor_radius_m(mission),
@@ -29,12 +29,14 @@ SearchCells::SearchCells(const Mission& mission)
       tile_columns(tiles(cells.count.x())),
       radius_m(std::max(sensor_radius_m(mission),
                         kLeastRadiusPerSearchCell * cells.size_m.head<2>().maxCoeff())),
-      ticks_per_look(ergocast::ticks_per_look(mission, cells)) {
+      ticks_per_look(ergocast::ticks_per_look(mission, cells)),
+      look_bits(mission.sensor.has_false_alarms() ? 12 : 16) {
   const double share = std::pow(sensor_radius_m(mission) / radius_m, 2);
   nats_per_look = share * mission.sensor.detections_per_s * static_cast<double>(ticks_per_look) *
                   mission.timing.dt_s;
-  constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
-  most_looks = static_cast<std::uint16_t>(std::clamp(kMostNats / nats_per_look, 1.0, kMost));
+  const double nats = reports() ? kMostNatsWithFalseAlarms : kMostNats;
+  const double most = (1 << look_bits) - 1;
+  most_looks = static_cast<std::uint16_t>(std::clamp(nats / nats_per_look, 1.0, most));
 }
 
 }  // namespace ergocast

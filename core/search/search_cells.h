@@ -25,6 +25,13 @@ inline constexpr int kMaxSearchCellsPerSide = 64;
 inline constexpr std::size_t kMaxTiles =
     std::size_t{kMaxSearchCellsPerSide / kTileSide} * (kMaxSearchCellsPerSide / kTileSide);
 
+inline constexpr int kMaxSearchCells = kMaxSearchCellsPerSide * kMaxSearchCellsPerSide;
+/// Limit (Team): reports of one agent in a cell, with false alarms. Beyond it: more of them do not
+/// count.
+inline constexpr std::uint32_t kMaxReports = 15;
+/// The number of no cell.
+inline constexpr std::int32_t kNoCell = -1;
+
 /// A cell as rows have it: they are in tiles.
 struct TileCell {
   std::size_t tile, slot;
@@ -39,10 +46,25 @@ struct SearchCells {
   double radius_m;           ///< of the sensor
   Tick ticks_per_look;       ///< sensors look once in so many ticks, for all of them
   double nats_per_look;      ///< −ln of the share of objects that one look misses
-  std::uint16_t most_looks;  ///< of one agent that count in a cell: about 8 nats, at least 1
+  std::uint16_t most_looks;  ///< of one agent that count in a cell: about 8 nats, at least 1; with
+                             ///< false alarms 16
+  int look_bits;  ///< of a count, the lowest; with false alarms the four others are reports
 
+  /// Whether sensors report anything: they have false alarms.
+  bool reports() const { return look_bits < 16; }
+  std::uint32_t looks_in(std::uint16_t count) const {
+    return count & ((std::uint32_t{1} << look_bits) - 1);
+  }
+  std::uint32_t reports_in(std::uint16_t count) const { return std::uint32_t{count} >> look_bits; }
+  std::uint16_t count_of(std::uint32_t looks, std::uint32_t reports) const {
+    return static_cast<std::uint16_t>(reports << look_bits | looks);
+  }
   std::size_t tile_count() const {
     return static_cast<std::size_t>(tile_rows) * static_cast<std::size_t>(tile_columns);
+  }
+  /// A cell by its number in `cells`.
+  TileCell tile_cell(std::int32_t cell) const {
+    return tile_cell(cell / cells.count.y(), cell % cells.count.y());
   }
   /// The cell in column `i`, along x, and row `j`, along y.
   TileCell tile_cell(int i, int j) const {

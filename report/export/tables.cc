@@ -52,6 +52,7 @@ class Tables {
   void trajectory() {
     const bool planar = record_.mission.domain.planar();
     const bool with_objects = record_.mission.objects.total() > 0;
+    const bool with_reports = record_.mission.sensor.has_false_alarms();
     const std::string header = trajectory_header(record_.mission);
     table("trajectory.csv", header + place_header(), [&](std::ostream& file) {
       for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
@@ -59,7 +60,8 @@ class Tables {
         for (const Eigen::Vector3d& vector : {point.x_m, point.v_mps}) {
           for (int axis = 0; axis < (planar ? 2 : 3); ++axis) file << ',' << shortest(vector[axis]);
         }
-        if (with_objects) file << ',' << point.detected;
+        if (with_objects || with_reports) file << ',' << point.detected;
+        if (with_reports) file << ',' << point.reported_cell;
         file << place_at(point.x_m.head<2>()) << '\n';
       });
     });

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks the objects of the simulated world.
+// Checks the objects of the simulated world, and the sensors that find them.
 #include "scenario/rules/validate_objects.h"
 
 #include <algorithm>
 
+#include "core/measure/detection.h"
 #include "core/motion/walls.h"
 #include "scenario/parse/convert.h"
+#include "text/shortest.h"
 
 namespace ergocast {
 namespace {
@@ -52,9 +54,33 @@ void validate_end(const proto::Scenario& scenario, Checks& checks) {
   }
 }
 
+/// What false alarms need.
+void validate_sensor(const proto::Scenario& scenario, Checks& checks) {
+  if (!scenario.has_sensor() || !checks.sound("sensor") || !checks.sound("domain")) return;
+  const proto::Sensor& sensor = scenario.sensor();
+  Mission mission;
+  mission.domain = domain_of(scenario.domain());
+  mission.sensor.radius_m = sensor.radius_m();
+  const double most_m = sensor_radius_m(mission) / 2;
+  if (sensor.position_error_m() > most_m)
+    checks.problem("sensor.position_error_m",
+                   shortest(sensor.position_error_m()) + " m is above half of the sensor's radius",
+                   "write at most " + shortest(rounded_down(most_m)));
+  if (!(sensor.false_alarms_per_s() > 0)) return;
+  if (scenario.domain().has_size_z_m())
+    checks.problem("sensor.false_alarms_per_s",
+                   "reports belong to a plane, and the domain is a box",
+                   "remove it, or domain.size_z_m");
+  if (scenario.world().objects().has_end_when_found())
+    checks.problem("world.objects.end_when_found",
+                   "with false alarms no agent knows at once whether an object is found",
+                   "remove it, or sensor.false_alarms_per_s");
+}
+
 }  // namespace
 
 void validate_objects(const proto::Scenario& scenario, Checks& checks) {
+  validate_sensor(scenario, checks);
   if (!scenario.world().has_objects() || !checks.sound("world.objects")) return;
   const proto::Objects& objects = scenario.world().objects();
   if (scenario.domain().has_size_z_m()) {

@@ -250,6 +250,13 @@ std::vector<Mistake> mistakes_of_objects() {
       objects("count: 2 end_when_found: 3",
               "world.objects.end_when_found: 3 is above the number of objects, 2"),
       objects(place + "end_when_found: 2", "2 is above the number of objects, 1"),
+      objects("count: 2 end_when_found: 1",
+              "world.objects.end_when_found: with false alarms no agent knows at once",
+              "} sensor { false_alarms_per_s: 0.1"),
+      {kLaw, "sensor { radius_m: 5 position_error_m: 2.6 } law {",
+       "sensor.position_error_m: 2.6 m is above half of the sensor's radius"},
+      in_space(kLaw, "sensor { false_alarms_per_s: 0.1 } law {",
+               "sensor.false_alarms_per_s: reports belong to a plane"),
       {"agents {",
        "world { objects { count: 2 end_when_found: 1 } } agents { kind { name: \"a\" count: 1 "
        "station { x_m: 10 y_m: 20 } }",

@@ -252,6 +252,8 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(wire.vehicles[0].position_m[2], 3);
   EXPECT_EQ(wire.vehicles[0].velocity_mps[0], 4);
   EXPECT_EQ(static_cast<ObjectSet>(wire.vehicles[0].detected), 0x80000005);
+  EXPECT_EQ(wire.vehicles[0].reported_cell, 4095);
+  EXPECT_EQ(wire.vehicles[1].reported_cell, -1);
   EXPECT_EQ(wire.vehicles[1].vehicle_id, 127);
   EXPECT_EQ(wire.vehicles[1].vehicle_answered_tick, -1);
   EXPECT_EQ(wire.vehicles[1].velocity_mps[1], -11);
@@ -260,6 +262,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   const auto ack = read_by_lcm<record_ack_t>(encoded(record_ack()));
   expect_header(ack.ack_header, kLogger);
   EXPECT_EQ(ack.detection_probability, 0.25);
+  EXPECT_EQ(ack.wrong_confirmations, 3);
   ASSERT_EQ(ack.find_count, 2);
   EXPECT_EQ(ack.finds[0].object, 31);
   EXPECT_EQ(ack.finds[0].find_agent, 127);

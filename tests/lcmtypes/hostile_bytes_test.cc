@@ -293,6 +293,7 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<RecordAck>(record_ack(), [](RecordAck& m) { m.header.sender = kWorld; }),
       changed<RecordAck>(record_ack(), [](RecordAck& m) { m.detection_probability = 1.5; }),
       changed<RecordAck>(record_ack(), [](RecordAck& m) { m.detection_probability = -0.5; }),
+      changed<RecordAck>(record_ack(), [](RecordAck& m) { m.wrong_confirmations = -1; }),
       changed<RecordAck>(record_ack(), [](RecordAck& m) { m.finds[0].object = kMaxObjects; }),
       changed<RecordAck>(record_ack(), [](RecordAck& m) { m.finds[0].agent = -1; }),
       changed<RecordAck>(record_ack(), [](RecordAck& m) { m.finds[1].tick = -1; }),

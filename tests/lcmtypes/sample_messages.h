@@ -169,7 +169,7 @@ inline WorldState world_state() {
   m.part = 1;
   m.parts = 8;
   m.vehicle_count = 2;
-  m.vehicles[0] = {16, 77, {1.0 / 3, -2, 3}, {4, 5, 6}, 0x80000005};
+  m.vehicles[0] = {16, 77, {1.0 / 3, -2, 3}, {4, 5, 6}, 0x80000005, 4095};
   m.vehicles[1] = {127, -1, {7, 8, 9}, {10, -11, 1e-300}};
   return m;
 }
@@ -179,7 +179,7 @@ inline Command command() {
 }
 
 inline RecordAck record_ack() {
-  RecordAck m{header_of_sender(kLogger), true, 0.25, 2};
+  RecordAck m{header_of_sender(kLogger), true, 0.25, 3, 2};
   m.finds[0] = {.object = 31, .agent = 127, .tick = 4711, .x_m = {1.0 / 3, -2, 0}};
   m.finds[1] = {.object = 0, .agent = 0, .tick = 4712};
   return m;

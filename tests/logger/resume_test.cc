@@ -121,6 +121,36 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatWasNotStopped
   }
 }
 
+/// Three reports of an object confirm it, two of them recorded by the former process.
+TEST_F(Resume, ReportsOfTheFormerProcessCount) {
+  Mission mission = small_mission(1);
+  mission.objects.count = 1;
+  mission.sensor.false_alarms_per_s = 0.01;
+  const auto seen_at = [](Tick tick) {
+    WorldState state = state_of(tick);
+    const bool sees = tick == 3 || tick == 5 || tick == 12;
+    state.vehicles[0].detected = sees ? 1 : 0;
+    state.vehicles[0].reported_cell = sees ? 7 : kNoCell;
+    return state;
+  };
+  Record whole(mission), first(mission);
+  for (Tick tick = 0; tick < 20; ++tick) {
+    whole.deliver(seen_at(tick));
+    if (tick < 10) first.deliver(seen_at(tick));
+  }
+  EXPECT_TRUE(whole.trajectory_rows()[3].ends_with(",1,7")) << whole.trajectory_rows()[3];
+  EXPECT_TRUE(whole.trajectory_rows()[4].ends_with(",0,-1")) << whole.trajectory_rows()[4];
+  Record second(mission, past(first.trajectory.str(), first.metrics.str()));
+  for (Tick tick = 9; tick < 20; ++tick) second.deliver(seen_at(tick));
+  const std::vector<Find>& finds = whole.recorder.facts().finds.list();
+  const std::vector<Find>& resumed = second.recorder.facts().finds.list();
+  ASSERT_EQ(finds.size(), 1u);
+  EXPECT_EQ(finds[0].tick, 12);
+  ASSERT_EQ(resumed.size(), 1u);
+  EXPECT_EQ(resumed[0].tick, 12);
+  EXPECT_EQ(second.recorder.facts().wrong_confirmations, 0);
+}
+
 /// Object 5 does not exist.
 TEST_F(Resume, FindsOfTheFormerProcessCount) {
   Mission mission = small_mission(1);

@@ -18,6 +18,7 @@ namespace {
 
 using test::rich_mission;
 using test::rich_mission_in_space;
+using test::with_false_alarms;
 using test::with_free_domain;
 using test::with_inertia;
 using test::with_lease;
@@ -371,6 +372,11 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) {
         m = with_places(with_walls(m)), m.objects.places_m[0] = {41, 31, 0};
       },
+      [](Mission& m) { m = with_places(with_false_alarms(m)); },  // ends when found
+      [](Mission& m) { m = with_false_alarms(rich_mission_in_space()); },
+      [](Mission& m) { m.sensor.position_error_m = 1e4; },
+      [](Mission& m) { m.sensor.confirm_at = 1; },
+      [](Mission& m) { m.sensor.false_alarms_per_s = -1; },
       [](Mission& m) { m.wall_clearance_m = 1; },  // of no walls
       [](Mission& m) { m = with_walls(rich_mission_in_space()); },
       [](Mission& m) { m = with_walls(m), m.wall_clearance_m = -1; },

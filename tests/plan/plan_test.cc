@@ -17,6 +17,7 @@ namespace {
 
 using test::rich_mission;
 using test::rich_mission_in_space;
+using test::with_false_alarms;
 using test::with_free_domain;
 using test::with_inertia;
 using test::with_lease;
@@ -112,12 +113,13 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
              flying = Fields(with_wings(mission)).texts, walled = Fields(with_walls(mission)).texts,
              freed = Fields(with_free_domain(rich_mission())).texts,
              leased = Fields(with_lease(mission)).texts, counted = Fields(rich_mission()).texts,
-             placed = Fields(with_places(rich_mission())).texts;
+             placed = Fields(with_places(rich_mission())).texts,
+             alarmed = Fields(with_false_alarms(rich_mission())).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
     EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i] || flying[i] != plain[i] ||
                 walled[i] != plain[i] || freed[i] != plain[i] || leased[i] != plain[i] ||
-                counted[i] != plain[i] || placed[i] != plain[i])
+                counted[i] != plain[i] || placed[i] != plain[i] || alarmed[i] != plain[i])
         << "default: field " << i;
   expect_travels(mission);
   expect_travels(rich_mission());
@@ -127,6 +129,7 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   expect_travels(with_walls(rich_mission()));
   expect_travels(with_lease(rich_mission()));
   expect_travels(with_places(rich_mission()));
+  expect_travels(with_false_alarms(rich_mission()));
   expect_travels(with_stations(rich_mission()));
   expect_travels(with_stations(rich_mission_in_space()));
 }

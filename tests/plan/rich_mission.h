@@ -81,9 +81,12 @@ inline Mission rich_mission() {
   mission.separation.position_error_m = 0.15;
   mission.separation.disturbance_m = 0.22;
   mission.separation.response_s = 1.1;
-  mission.separation.lease_s = 0;  // needs bodies with beacons: with_lease()
-  mission.wall_clearance_m = 0;    // needs walls: with_walls()
-  mission.vehicle = {};            // inertia allows none of these: with_inertia()
+  mission.separation.lease_s = 0;         // needs bodies with beacons: with_lease()
+  mission.wall_clearance_m = 0;           // needs walls: with_walls()
+  mission.sensor.false_alarms_per_s = 0;  // needs a plane: with_false_alarms()
+  mission.sensor.position_error_m = 0.25;
+  mission.sensor.confirm_at = 0.95;
+  mission.vehicle = {};  // inertia allows none of these: with_inertia()
   mission.wait_for_logger = false;
   return mission;
 }
@@ -107,6 +110,14 @@ inline Mission rich_mission_in_space() {
 /// The mission with objects at known places; it must be in a plane, and without stations.
 inline Mission with_places(Mission mission) {
   mission.objects = {0, {{20, 21, 0}, {22, 23, 0}}, 2};
+  return mission;
+}
+
+/// The mission with sensors that have false alarms, which does not end by finding; it must be in a
+/// plane.
+inline Mission with_false_alarms(Mission mission) {
+  mission.sensor.false_alarms_per_s = 0.02;
+  mission.objects.end_when_found = 0;
   return mission;
 }
 

@@ -84,6 +84,40 @@ TEST_F(FindingObjects, EndTheMissionIfThatIsWanted) {
   EXPECT_EQ(ergocast({"verify", folder_ / "simulated"}), 0) << output();
 }
 
+/// Reports reach agents and record, also after kills, and objects count once reports confirm them.
+TEST_F(FindingObjects, ConfirmThemWhenSensorsHaveFalseAlarms) {
+  const std::vector<std::string> set{"--set", kObjects,
+                                     "--set", kRadius,
+                                     "--set", "law.kind=SEARCH",
+                                     "--set", "sensor.false_alarms_per_s=0.05",
+                                     "--set", "sensor.position_error_m=20"};
+  const auto objects = simulated(set);
+  EXPECT_GT(objects["found"].get<int>(), 0);
+  const auto alone = nlohmann::json::parse(text_of(folder_ / "simulated" / "summary.json"));
+  EXPECT_GE(alone["wrong_confirmations"], 0);
+  const std::string rows = text_of(folder_ / "simulated" / "trajectory.csv");
+  EXPECT_NE(rows.find(",detected,reported\n"), std::string::npos);
+  EXPECT_NE(rows.find(",0,-1\n"), std::string::npos);
+
+  std::vector<std::string> words{"--lockstep"};
+  words.insert(words.end(), set.begin(), set.end());
+  Child mission = launch_held(scenario(), words);
+  kill_next({"ergocast-logger"});
+  kill_next({"ergocast-sim"});
+  release();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_EQ(summary()["restarts"], 2);
+  EXPECT_EQ(summary()["objects"], objects);
+  EXPECT_EQ(summary()["wrong_confirmations"], alone["wrong_confirmations"]);
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+
+  // A detection alone is no find.
+  std::vector<std::string> certain = set;
+  certain[7] = "sensor.false_alarms_per_s=0";
+  const auto detected = simulated(certain);
+  EXPECT_LE(detected["finds"][0]["tick"], objects["finds"][0]["tick"]);
+}
+
 TEST_F(FindingObjects, WithoutObjectsNothingIsSaid) {
   ASSERT_EQ(ergocast({"simulate", scenario(), "--duration", "20", "--out", out()}), 0) << output();
   EXPECT_FALSE(summary().contains("objects"));

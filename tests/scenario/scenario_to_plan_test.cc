@@ -66,7 +66,8 @@ TEST(MissionText, IsThatOfItsScenarioWithoutDescriptionAndTarget) {
 TEST(MissionText, ReadsBackToEveryFieldOfAMission) {
   for (const Mission& mission :
        {rich_mission(), rich_mission_in_space(), with_inertia(rich_mission()),
-        with_wings(rich_mission()), with_walls(rich_mission()), with_places(rich_mission())}) {
+        with_wings(rich_mission()), with_walls(rich_mission()), with_places(rich_mission()),
+        with_false_alarms(rich_mission())}) {
     const std::string text = mission_text(mission) + "target { uniform_weight: 1 }";
     // There is no target in walls.
     EXPECT_EQ(encode_plan(as_scenarios_know_it(good(text).mission())),

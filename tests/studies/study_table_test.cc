@@ -62,16 +62,17 @@ TEST(StudyTable, RowsReadBackExactly) {
 
 TEST(StudyTable, HasAColumnForEachFieldTimeAndAgent) {
   const Study study = two_by_two();
-  EXPECT_EQ(StudyTable(study).header(),
-            "scenario,law.epsilon,law.regularization,seed,agents,messages,ergodic_metric,detection_"
-            "probability,"
-            "time_to_half_s,time_to_four_fifths_s,objects_found,time_to_first_find_s,"
-            "greatest_age_s,sliced_wasserstein_m,path_m,slope,"
-            "offset2_mean_m2,offset2_max_m2,edge_share,speed_mean_mps,ergodic_metric_at_1_s,"
-            "ergodic_metric_at_1.25_s,ergodic_metric_at_1.6_s,ergodic_metric_at_2_s,"
-            "ergodic_metric_at_2.5_s,ergodic_metric_at_3.2_s,ergodic_metric_at_4_s,"
-            "ergodic_metric_at_5_s,ergodic_metric_at_6.3_s,ergodic_metric_at_8_s,"
-            "ergodic_metric_at_10_s,ergodic_metric_at_12.5_s,escape_time_0_s,escape_time_1_s");
+  EXPECT_EQ(
+      StudyTable(study).header(),
+      "scenario,law.epsilon,law.regularization,seed,agents,messages,ergodic_metric,detection_"
+      "probability,"
+      "time_to_half_s,time_to_four_fifths_s,objects_found,time_to_first_find_s,wrong_confirmations,"
+      "greatest_age_s,sliced_wasserstein_m,path_m,slope,"
+      "offset2_mean_m2,offset2_max_m2,edge_share,speed_mean_mps,ergodic_metric_at_1_s,"
+      "ergodic_metric_at_1.25_s,ergodic_metric_at_1.6_s,ergodic_metric_at_2_s,"
+      "ergodic_metric_at_2.5_s,ergodic_metric_at_3.2_s,ergodic_metric_at_4_s,"
+      "ergodic_metric_at_5_s,ergodic_metric_at_6.3_s,ergodic_metric_at_8_s,"
+      "ergodic_metric_at_10_s,ergodic_metric_at_12.5_s,escape_time_0_s,escape_time_1_s");
 }
 
 TEST(StudyTable, RefusesWhatIsNoRowOfTheStudy) {

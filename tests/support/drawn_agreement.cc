@@ -200,6 +200,7 @@ void agree_on_objects(proto::Scenario& scenario) {
   const auto& kinds = scenario.agents().kind();
   if (std::ranges::any_of(kinds, [](const auto& kind) { return kind.station_size() > 0; }))
     objects.clear_end_when_found();
+  if (scenario.sensor().false_alarms_per_s() > 0) objects.clear_end_when_found();
   if (objects.has_end_when_found())
     objects.set_end_when_found(
         std::min(objects.end_when_found(), std::max(objects.places_size(), objects.count())));
@@ -274,6 +275,8 @@ void agree(proto::Scenario& scenario) {
   agree_on_vehicles(scenario);
   if (scenario.has_separation()) agree_on_distance(scenario);
   agree_on_walls(scenario);
+  if (scenario.has_sensor() && scenario.domain().has_size_z_m())
+    scenario.mutable_sensor()->clear_false_alarms_per_s();
   agree_on_objects(scenario);
   agree_on_stations(scenario);
 }

@@ -126,6 +126,9 @@ const std::map<std::string, Rule>& rules() {
       {"Scenario.sensor", may(draw_block)},
       {"Sensor.radius_m", may(spread(1, 50))},
       {"Sensor.detections_per_s", may(spread(0.01, 5))},
+      {"Sensor.false_alarms_per_s", may(spread(0.001, 0.5))},  // see drawn_agreement.h
+      {"Sensor.position_error_m", may(number(0, 0.5))},
+      {"Sensor.confirm_at", may(number(0.5, 0.999))},
       {"Scenario.goal_ergodic_metric", may(spread(1e-9, 1))},
       {"Scenario.origin", may(draw_block)},
       {"Origin.latitude_deg", must(number(54, 54))},  // where the GeoJSON files lie

@@ -46,6 +46,7 @@ export class Run {
     this.recalledFrom = new Map(); // world's tick from which a recalled agent rests
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
+    this.wrong = 0;
     this.finds = []; // {object, agent, tick, t_s, x_m, y_m}, as a record or the newest status has them
     // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
     this.amendments = [];

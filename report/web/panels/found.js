@@ -7,7 +7,8 @@ export function findsText(run, row = Infinity) {
   const { objects } = run.mission;
   if (!(objects > 0)) return undefined;
   const found = run.finds.filter(({ tick }) => tick <= row * run.stride);
-  return `${found.length} of ${objects}`;
+  const wrong = run.wrong > 0 ? `, and ${run.wrong} confirmed where none is` : '';
+  return `${found.length} of ${objects}${wrong}`;
 }
 
 // At the end, by a summary, which may say anything.

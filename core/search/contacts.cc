@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Looks only at cells with reports, which are few.
+#include "core/search/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "core/base/require.h"
+#include "core/measure/detection.h"
+
+namespace ergocast {
+namespace {
+
+/// No target is so sure of a place that nothing is anywhere else.
+constexpr double kLeastOthers = 1e-3;
+/// More evidence is as good as this. Its exp() is finite.
+constexpr double kMostEvidence = 300;
+
+/// How likely a report is in the object's cell, along one axis: the object is uniform in the cell,
+/// and the error is normal.
+double in_own_cell(double error_m, double side_m) {
+  if (!(error_m > 0)) return 1;
+  const double sides = side_m / error_m;
+  return std::erf(sides / std::numbers::sqrt2) -
+         std::sqrt(2 / std::numbers::pi) / sides * -std::expm1(-sides * sides / 2);
+}
+
+}  // namespace
+
+Contacts::Contacts(const Mission& mission)
+    : cells_(mission),
+      has_false_alarms_(mission.sensor.has_false_alarms()),
+      confirmed_at_(std::log(mission.sensor.confirm_at / (1 - mission.sensor.confirm_at))),
+      prior_(cells_.cells.total(), 0),
+      left_(prior_),
+      nats_(prior_),
+      reports_(prior_.size(), 0),
+      confirmed_(prior_.size(), 0) {
+  if (!has_false_alarms_) return;
+  const SearchSensor& sensor = mission.sensor;
+  const Eigen::Vector3d& side_m = cells_.cells.size_m;
+  const double seen_m2 = std::numbers::pi * std::pow(sensor_radius_m(mission), 2);
+  const double ratio =
+      sensor.detections_per_s * seen_m2 / (sensor.false_alarms_per_s * side_m.x() * side_m.y());
+  for (const std::size_t columns : {0, 1}) {
+    for (const std::size_t rows : {0, 1}) {
+      const double own_column = in_own_cell(sensor.position_error_m, side_m.x());
+      const double own_row = in_own_cell(sensor.position_error_m, side_m.y());
+      const double share = (columns == 0 ? own_column : (1 - own_column) / 2) *
+                           (rows == 0 ? own_row : (1 - own_row) / 2);
+      gain_[columns][rows] = std::log1p(ratio * share);
+    }
+  }
+  contacts_.reserve(prior_.size());
+  confirmed_contacts_.reserve(prior_.size());
+}
+
+void Contacts::set_prior(const std::vector<double>& mass) {
+  ERGOCAST_REQUIRE(mass.size() == prior_.size());
+  prior_ = mass;
+}
+
+void Contacts::renew(const Efforts& efforts) {
+  if (!has_false_alarms_) return;
+  read(efforts);
+  std::ranges::fill(confirmed_, 0);
+  confirmed_contacts_.clear();
+  confirm_likely();
+  weigh();
+}
+
+void Contacts::read(const Efforts& efforts) {
+  const Eigen::Array3i& count = cells_.cells.count;
+  contacts_.clear();
+  std::size_t cell = 0;
+  for (int i = 0; i < count.x(); ++i) {
+    for (int j = 0; j < count.y(); ++j, ++cell) {
+      const TileCell at = cells_.tile_cell(i, j);
+      reports_[cell] = efforts.reports(at);
+      left_[cell] = prior_[cell] * std::exp(-cells_.nats_per_look * efforts.looks(at));
+      if (reports_[cell] > 0) contacts_.push_back(cell);
+    }
+  }
+}
+
+void Contacts::confirm_likely() {
+  while (true) {
+    double best = confirmed_at_;
+    std::optional<std::size_t> likeliest;
+    for (const std::size_t contact : contacts_) {
+      if (reports_[contact] == 0) continue;
+      const double odds = log_odds(contact);
+      if (likeliest ? odds <= best : odds < best) continue;
+      best = odds;
+      likeliest = contact;
+    }
+    if (!likeliest) return;
+    confirm(*likeliest);
+  }
+}
+
+void Contacts::confirm(std::size_t contact) {
+  confirmed_contacts_.push_back(contact);
+  for_neighbours(contact, [&](std::size_t cell) {
+    confirmed_[cell] = 1;
+    reports_[cell] = 0;
+  });
+}
+
+void Contacts::weigh() {
+  std::ranges::fill(nats_, 0.0);
+  for (const std::size_t contact : contacts_) {
+    if (reports_[contact] == 0) continue;
+    nats_[contact] =
+        log_gain(contact) - std::log(others(contact)) - std::log1p(std::exp(log_odds(contact)));
+  }
+}
+
+/// ln g.
+double Contacts::log_gain(std::size_t cell) const {
+  const auto rows = static_cast<std::size_t>(cells_.cells.count.y());
+  double nats = 0;
+  for_neighbours(cell, [&](std::size_t other) {
+    if (reports_[other] > 0)
+      nats += reports_[other] *
+              gain_[other / rows == cell / rows ? 0 : 1][other % rows == cell % rows ? 0 : 1];
+  });
+  return std::min(nats, kMostEvidence);
+}
+
+/// ln o; −∞ where no object can be.
+double Contacts::log_odds(std::size_t contact) const {
+  double sum = 0;
+  for_neighbours(contact, [&](std::size_t cell) {
+    if (confirmed_[cell] == 0 && left_[cell] > 0) sum += left_[cell] * std::exp(log_gain(cell));
+  });
+  return std::log(sum) - std::log(others(contact));
+}
+
+/// 1 − Σ m.
+double Contacts::others(std::size_t contact) const {
+  double others = 1;
+  for_neighbours(contact, [&](std::size_t cell) { others -= prior_[cell]; });
+  return std::max(others, kLeastOthers);
+}
+
+}  // namespace ergocast
