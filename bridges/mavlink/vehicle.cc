@@ -24,6 +24,8 @@ constexpr double kHeightError_m = 2;
 constexpr double kFastestClimb_mps = 1, kClimbGain_per_s = 0.5;
 /// How often it asks an autopilot that refuses.
 constexpr int kMostRequests = 5;
+/// How long it waits for what an autopilot has accepted, before it asks again [s].
+constexpr int kPatience = 5;
 /// PX4 enters OFFBOARD only after setpoints have arrived for a while.
 constexpr std::int64_t kSetpointsBeforeOffboard = 20;
 
@@ -159,7 +161,11 @@ void Vehicle::on(const Statustext& text, Instant) {
 void Vehicle::on(const CommandAck& ack, Instant) {
   if (ack.command != requested_ || requests_ == 0) return;
   constexpr std::uint8_t kAccepted = 0, kInProgress = 5;
-  if (ack.result == kAccepted || ack.result == kInProgress) return;
+  if (ack.result == kAccepted || ack.result == kInProgress) {
+    requests_ = 0;
+    patience_ = kPatience;
+    return;
+  }
   const std::string what = ack.command == kSetMode ? external_mode()
                            : ack.command == kArm   ? "to arm"
                                                    : "to take off";
@@ -379,8 +385,9 @@ void Vehicle::take_command(std::vector<Packet>& out) {
     next = command(kTakeOff, 0, 0, static_cast<float>(options_.altitude_m.value_or(5)));
   }
   if (!next) return requests_ = 0, void();
-  if (next->command != requested_) requests_ = 0;
+  if (next->command != requested_) requests_ = patience_ = 0;
   requested_ = next->command;
+  if (patience_ > 0) return --patience_, void();
   if (++requests_ > kMostRequests) {
     if (requests_ == kMostRequests + 1)
       note(true, "has asked " + std::to_string(kMostRequests) +

@@ -139,6 +139,7 @@ class Vehicle {
 
   bool was_external_ = false, was_engaged_ = false;  // at the last turn
   bool taken_over_ = false;                          // by the pilot, or a failsafe
+  int patience_ = 0;                                 // turns until an accepted request is repeated
   int requests_ = 0;                                 // for the same step of taking command
   std::uint16_t requested_ = 0;
   std::string last_why_ = "-", fatal_;

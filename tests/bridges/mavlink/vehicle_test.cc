@@ -436,8 +436,15 @@ TEST(MavlinkVehicle, TakesCommandOnlyIfToldToAndLeavesItToThePilotIfItIsRefused)
   EXPECT_TRUE(flight.said("the autopilot refuses OFFBOARD: DENIED")) << flight.log;
   EXPECT_TRUE(flight.said("leaves it to the pilot"));
   flight.heartbeat.custom_mode = kOffboard;
-  flight.pass(2);
-  EXPECT_GE(orders(400), 1);
+  flight.pass(1.5);
+  EXPECT_EQ(orders(400), 1);
+  CommandAck accepted;
+  accepted.command = 400;
+  flight.hear(accepted);
+  flight.pass(5);
+  EXPECT_EQ(orders(400), 1) << "what was accepted is not asked again at once";
+  flight.pass(1);
+  EXPECT_EQ(orders(400), 2);
   flight.heartbeat.base_mode = 128;
   flight.pass(2);
   EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << "PX4 takes off by climbing";

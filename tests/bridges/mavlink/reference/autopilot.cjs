@@ -84,6 +84,8 @@ const make = (clazz, fields) => Object.assign(new clazz(), fields);
 const allowed = () => state.mode === external && state.armed && state.air;
 const say = text => send(make(mavlink.common.StatusText, { severity: 4, text }));
 const started = process.hrtime.bigint();
+let nextPosition = 0; // ms
+let nextHeartbeat = 0;
 const bootNs = () => process.hrtime.bigint() - started;
 
 function heartbeat() {
@@ -147,11 +149,18 @@ function step() {
   if (options.body !== 'rover') state.up = Math.max(0, state.up + up * STEP);
   if (state.up > 0.5) state.air = true;
   if (takeoff > 0 && state.up >= takeoff - 0.5) takeoff = 0;
-  if (state.steps % 2 === 0) position();
+  const now = Number(bootNs() / 1000000n);
+  if (now >= nextPosition) {
+    nextPosition = now + 40;
+    position();
+  }
   if (state.steps % 25 === 0) {
     send(make(mavlink.common.ExtendedSysState, { vtolState: 0, landedState: state.air ? 2 : 1 }));
   }
-  if (state.steps % 50 === 0) heartbeat();
+  if (now >= nextHeartbeat) {
+    nextHeartbeat = now + 1000;
+    heartbeat();
+  }
 }
 
 function takeSetpoint(m) {
