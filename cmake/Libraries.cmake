@@ -60,7 +60,7 @@ file(GLOB HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
 list(REMOVE_ITEM HEADERS core/base/vectorized.h core/basis/free_gains.h target/maps/map_text.h
   target/maps/map_yaml.h target/maps/occupancy_map.h target/maps/picture.h target/maps/png_reader.h)
 list(APPEND HEADERS lcmtypes/channels.h lcmtypes/codec.h lcmtypes/message_authenticator.h lab/ideal_team.h
-  scenario/map_rooms.h scenario/scenario.h scenario/parse/problem.h scenario/parse/source.h studies/study_run.h)
+  scenario/compile/map_rooms.h scenario/scenario.h scenario/parse/problem.h scenario/parse/source.h studies/study_run.h)
 foreach(header ${HEADERS})
   file(STRINGS ${CMAKE_SOURCE_DIR}/${header} needed REGEX "^#include \"")
   list(TRANSFORM needed REPLACE "^#include \"([^\"]+)\".*" "\\1")

@@ -12,7 +12,7 @@
 
 #include "core/base/result.h"
 #include "core/mission/mission.h"
-#include "scenario/map_rooms.h"
+#include "scenario/compile/map_rooms.h"
 #include "scenario/parse/problem.h"
 #include "scenario/parse/source.h"
 #include "target/density_picture.h"

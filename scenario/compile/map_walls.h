@@ -8,7 +8,7 @@
 
 #include "core/base/geometry.h"
 #include "scenario/compile/drawn_polygons.h"
-#include "scenario/map_rooms.h"
+#include "scenario/compile/map_rooms.h"
 #include "target/maps/occupancy_map.h"
 
 namespace ergocast {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "scenario/map_rooms.h"
+#include "scenario/compile/map_rooms.h"
 #include "scenario/rules/checks.h"
 #include "scenario/scenario.pb.h"
 
