@@ -22,6 +22,7 @@ bool is_one_of(const Message& message) {
 
 Urgency urgency_of(const Message& message) {
   if (is_one_of<Stop, Amend, Recall>(message)) return Urgency::kOrder;
+  if (is_one_of<Command>(message)) return Urgency::kCommand;
   if (is_one_of<Contribution, Effort>(message)) return Urgency::kCoverage;
   if (is_one_of<AgentStatus, TeamStatus, Digest>(message)) return Urgency::kReport;
   return Urgency::kMotion;

@@ -18,12 +18,13 @@ namespace ergocast::relay {
 /// In what order a full link carries datagrams: the first at once, the others by turns.
 enum class Urgency {
   kOrder,     ///< STOP, AMEND (pauses, too), RECALL
-  kMotion,    ///< what vehicles need at once: beacons, states, commands, MISSION, HELLO
+  kMotion,    ///< what all agents need at once: beacons, states, MISSION, HELLO
+  kCommand,   ///< COMMAND, which only the site of the world needs
   kCoverage,  ///< CONTRIBUTION, EFFORT
   kReport,    ///< statuses and digests
   kOther,     ///< other messages of LCM, which only a relay with --insecure carries
 };
-inline constexpr std::size_t kUrgencies = 5;
+inline constexpr std::size_t kUrgencies = 6;
 
 /// Only the newer one of two messages with the same place is needed. Parts have separate places.
 struct Place {
