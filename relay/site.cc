@@ -28,7 +28,7 @@ void Site::hear(Bus bus, std::span<const std::byte> datagram, Instant now) {
   if (!admitted) return;
   // What waited while the site is cut off would be old when the path is back. The team's own
   // repeats make up for it.
-  if (!joined() || !sender_) return void(++carrier_.no_path);
+  if (!joined()) return void(++carrier_.no_path);
   sender_->add(*admitted, bus, datagram);
 }
 
@@ -132,7 +132,7 @@ void Site::advance(Instant now, Outbox& out) {
 }
 
 void Site::send_waiting(Instant now, Outbox& out) {
-  if (!joined() || !sender_) return;
+  if (!joined()) return;
   while (auto packet = sender_->next_packet(now)) {
     ++flow_counts_.packets_sent;
     out.packets.push_back({flow_->hub(), *std::move(packet)});
@@ -143,7 +143,7 @@ Instant Site::next_wakeup() const {
   Instant next = Instant::max();
   if (flow_) next = std::min(next, flow_->next_wakeup());
   if (candidate_) next = std::min(next, candidate_->next_wakeup());
-  if (joined() && sender_) next = std::min(next, sender_->next_wakeup());
+  if (joined()) next = std::min(next, sender_->next_wakeup());
   const bool looks = !flow_ || flow_hub_ > 0;
   if (looks && !candidate_ && !wanted_) next = std::min(next, next_search_);
   return next;
