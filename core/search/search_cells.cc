@@ -11,7 +11,7 @@ namespace ergocast {
 namespace {
 
 constexpr double kLeastRadiusPerSearchCell = 0.75;
-/// Of one agent in a cell. Two false alarms in a cell take about 10 to be refuted.
+/// The effort of one agent that counts in a cell. Refuting two false alarms in it takes about 10.
 constexpr double kMostNats = 8, kMostNatsWithFalseAlarms = 16;
 
 double side_m(const Mission& mission) {
