@@ -149,6 +149,7 @@ Result<Scenario, Problems> Scenario::compile(Written& written) {
                  "widen the narrowest way, or write free_domain: false");
     return failure(findings.take());
   }
+  findings.add_notes();
   if (!running) warn(state->mission, findings);
   warn_of_target(state->mission, state->target_density, findings);
   state->warnings = findings.take();

@@ -10,6 +10,7 @@
 
 #include "scenario/parse/convert.h"
 #include "target/geo/gdal_files.h"
+#include "target/geo/polygon_file.h"
 #include "target/maps/map_file.h"
 #include "target/maps/netcdf_grid.h"
 #include "target/raster_integral.h"
@@ -94,7 +95,7 @@ class TargetCompiler {
     OpenedMap opened = map_kind(map.file()) == MapKind::kGeoTiff
                            ? open_geotiff(map.file(), origin_, domain_)
                            : open_map(map.file());
-    if (!opened) return checks_.problem(field, opened.error().what, opened.error().remedy);
+    if (!opened) return refuse(field, opened.error());
     MapFile& file = **opened;
     const Rectangle extent = file.extent() ? *file.extent() : extent_of(map);
     const RasterGrid grid{from_corner(extent, domain_), file.columns(), file.rows()};
@@ -104,17 +105,22 @@ class TargetCompiler {
     RasterPicture picture(grid, base_m_, static_cast<int>(maps_[0].rows()),
                           static_cast<int>(maps_[0].cols()));
     std::vector<double> row(static_cast<std::size_t>(grid.columns));
-    for (int i = 0; i < grid.rows; ++i) {
+    std::size_t bad_rows = 0;
+    for (int i = 0; i < grid.rows && bad_rows < kMostFileProblems; ++i) {
       if (const auto problem = file.next_row(row)) {
-        return checks_.problem(field, problem->what, problem->remedy);
+        refuse(field, *problem);
+        if (!problem->ends_row) return;
+        if (++bad_rows == kMostFileProblems && i + 1 < grid.rows)
+          checks_.problem(field, map.file() + " may have further problems after these",
+                          "repair these rows first");
+        continue;
       }
       const int from_south = map.first_row() == proto::Map::SOUTH ? i : grid.rows - 1 - i;
       for (RasterIntegral& integral : integrals) integral.add_row(from_south, row);
       picture.add_row(from_south, row);
     }
-    if (!integrals[0].has_mass()) {
-      return nothing_in(map.file(), field);
-    }
+    if (bad_rows > 0) return;
+    if (!integrals[0].has_mass()) return nothing_in(map.file(), field);
     double left = 0;
     for (std::size_t i = 0; i < storeys_.size(); ++i) {
       const Eigen::VectorXd along_z = profile(map, storeys_[i].heights);
@@ -127,11 +133,16 @@ class TargetCompiler {
     weight_of_maps_ += map.weight();
   }
 
+  void refuse(const std::string& field, const MapProblem& problem) {
+    checks_.problem(field, problem.what, problem.remedy);
+    for (const MapProblem& other : problem.more) refuse(field, other);
+  }
+
   void voxels(const proto::Voxels& written, const std::string& path) {
-    NetcdfChoice choice{
-        written.variable(),
-        std::nullopt,
-        {written.x_axis(), written.y_axis(), written.z_axis(), written.time_axis()}};
+    NetcdfChoice choice{written.variable(),
+                        std::nullopt,
+                        {written.x_axis(), written.y_axis(), written.z_axis(), written.time_axis()},
+                        domain_.planar()};
     if (written.has_time_index()) choice.time_index = written.time_index();
     auto opened = NetcdfGrid::open(written.file(), choice);
     if (!opened) return checks_.problem(path, opened.error().what, opened.error().remedy);
@@ -187,9 +198,12 @@ class TargetCompiler {
 
   std::string extents_of(const NetcdfGrid& grid) const {
     const Heights low = grid.layers().front(), high = grid.layers().back();
-    return ": its extent is " + text_of(grid.raster().extent) + ", z " +
-           span_text(low.low_m, high.high_m - low.low_m) + ", the domain " +
-           text_of(base_of(domain_)) + ", z " + span_text(domain_.origin_m.z(), domain_.size_m.z());
+    const auto along_z = [&](double low_m, double size_m) {
+      return domain_.planar() ? "" : ", z " + span_text(low_m, size_m);
+    };
+    return ": its extent is " + text_of(grid.raster().extent) +
+           along_z(low.low_m, high.high_m - low.low_m) + ", the domain " +
+           text_of(base_of(domain_)) + along_z(domain_.origin_m.z(), domain_.size_m.z());
   }
 
   void nothing_left(const std::string& path, const Rectangle& extent) {

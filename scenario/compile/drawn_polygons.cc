@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/indexed_rings.h"
 #include "scenario/parse/findings.h"
 #include "target/contour/contour.h"
 #include "target/geo/svg_painter.h"
@@ -133,6 +134,16 @@ std::optional<std::string> conflict(const Drawing& drawing,
 Placed painted(const Drawing& drawing, const Placement& place, bool solid_white) {
   const auto paint = paint_svg(drawing.to_paint, drawing.size, solid_white);
   if (!paint) return failure(paint.error());
+  // Rows of cells begin at the top.
+  const double below = drawing.size.y() - paint->cell * static_cast<double>(paint->solid.rows());
+  if (paint->hair) {
+    const auto [column, row] = *paint->hair;
+    const Ring at = place.ring({{column + 0.5, row + 0.5 + below / paint->cell}}, paint->cell);
+    const auto about = [](double at_m) { return shortest(std::round(at_m * 100) / 100); };
+    return refuse("shows something at x " + about(at[0].x()) + ", y " + about(at[0].y()) +
+                      " m that is too thin and bright to be solid",
+                  "paint it darker or wider, or delete it");
+  }
   std::size_t solid = 0;
   for (std::size_t i = 0; i < paint->solid.size(); ++i) solid += paint->solid[i];
   if (solid == 0)
@@ -142,8 +153,6 @@ Placed painted(const Drawing& drawing, const Placement& place, bool solid_white)
     return refuse("more than 90 % of it is solid", "remove its background, or paint it white");
   const auto polygons = polygons_around(paint->solid, Straightening::kOutwards);
   if (!polygons) return refuse("is full of specks", "leave out hatches and textures");
-  // Rows of cells begin at the top.
-  const double below = drawing.size.y() - paint->cell * static_cast<double>(paint->solid.rows());
   std::vector<PlacedPolygon> placed;
   for (const Polygon& polygon : *polygons) {
     const auto put = [&](Ring ring) {

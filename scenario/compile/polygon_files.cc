@@ -160,8 +160,7 @@ class PolygonFileReader {
       return {};
     }
     found_.files.push_back(std::move(walls->image));
-    for (const PlacedPolygon& one : walls->polygons)
-      if (!sound(one, field, domain)) return {};
+    if (!all_sound(walls->polygons, field, domain)) return {};
     refuse_starts(walls->starts, path);
     found_.maps.push_back(std::move(walls->rooms));
     return std::move(walls->polygons);
@@ -194,10 +193,8 @@ class PolygonFileReader {
   std::vector<PlacedPolygon> inside(std::vector<PlacedPolygon> found, const std::string& field,
                                     double& area) {
     const Box domain = domain_of(scenario_.domain());
-    for (const PlacedPolygon& one : found) {
-      area += area_m2(one.polygon);
-      if (!sound(one, field, domain)) return {};
-    }
+    for (const PlacedPolygon& one : found) area += area_m2(one.polygon);
+    if (!all_sound(found, field, domain)) return {};
     std::erase_if(found, [&](const PlacedPolygon& one) { return !meets(one.polygon, domain); });
     if (found.empty()) {
       refuse(field, "", "none of its polygons meets the domain",
@@ -214,6 +211,7 @@ class PolygonFileReader {
 
   void refuse(const std::string& field, const PolygonFileProblem& problem) {
     refuse(field, problem.member, problem.what, problem.remedy);
+    for (const PolygonFileProblem& other : problem.more) refuse(field, other);
   }
 
   /// @param vertices  of all polygons of the file
@@ -226,12 +224,15 @@ class PolygonFileReader {
     return false;
   }
 
-  bool sound(const PlacedPolygon& one, const std::string& field, const Box& domain) {
-    const auto flaw = flaw_of(one.polygon, least_area_m2(domain.size_m.maxCoeff()));
-    if (!flaw) return true;
-    refuse(field, one.member, "ring " + std::to_string(flaw->hole + 1) + ": " + flaw->what,
-           flaw->remedy);
-    return false;
+  bool all_sound(const std::vector<PlacedPolygon>& polygons, const std::string& field,
+                 const Box& domain) {
+    PolygonFileProblems problems;
+    for (const PlacedPolygon& one : polygons)
+      if (const auto flaw = flaw_of(one.polygon, least_area_m2(domain.size_m.maxCoeff())))
+        problems.add({one.member, "ring " + std::to_string(flaw->hole + 1) + ": " + flaw->what,
+                      flaw->remedy});
+    if (!problems.empty()) refuse(field, problems.all());
+    return problems.empty();
   }
 
   std::optional<std::vector<PlacedPolygon>> drawn(const std::string& field, const DrawnAs& as) {
@@ -271,26 +272,34 @@ class PolygonFileReader {
                     "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson"))
       return std::nullopt;
     std::vector<PlacedPolygon> placed;
+    PolygonFileProblems problems;
     for (const GeoPolygon& polygon : polygons) {
-      auto local = local_polygon(polygon, field);
-      if (!local) return std::nullopt;
-      placed.push_back(std::move(*local));
+      if (polygon.rings.empty()) {
+        findings_.note(field, file_ + ": " + polygon.member + ": has no place, and is left out",
+                       "delete it there, or draw it");
+        continue;
+      }
+      auto local = local_polygon(polygon);
+      if (!local) problems.add(std::move(local.error()));
+      if (local) placed.push_back(std::move(*local));
     }
-    return placed;
+    if (problems.empty()) return placed;
+    refuse(field, problems.all());
+    return std::nullopt;
   }
 
-  std::optional<PlacedPolygon> local_polygon(const GeoPolygon& polygon, const std::string& field) {
+  Result<PlacedPolygon, PolygonFileProblem> local_polygon(const GeoPolygon& polygon) const {
     PlacedPolygon local{polygon.member, {}};
     for (std::size_t i = 0; i < polygon.rings.size(); ++i) {
       Ring ring;
       for (const GeoPlace& place : polygon.rings[i]) {
         ring.push_back(plane_->to_local_m(place));
         if (ring.back().norm() <= kFarthest_m) continue;
-        refuse(field, polygon.member,
-               "[" + shortest(place.longitude_deg) + ", " + shortest(place.latitude_deg) +
-                   "] is more than 1000 km from the origin",
-               "write longitude before latitude; or move the origin");
-        return std::nullopt;
+        return failure(PolygonFileProblem{polygon.member,
+                                          "[" + shortest(place.longitude_deg) + ", " +
+                                              shortest(place.latitude_deg) +
+                                              "] is more than 1000 km from the origin",
+                                          "write longitude before latitude; or move the origin"});
       }
       if (i == 0) {
         local.polygon.outline = std::move(ring);

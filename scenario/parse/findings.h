@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenario/parse/error_recovery.h"
@@ -54,18 +55,31 @@ class Findings {
   void add_to_file(std::string what, std::string remedy);
   void add_to_flag(std::string flag, std::string what, std::string remedy);
 
+  /// What a person should know if there is no problem.
+  void note(const std::string& path, const std::string& what, std::string remedy) {
+    notes_.push_back({path, what, std::move(remedy)});
+  }
+  /// Adds the notes as if they were problems: as warnings.
+  void add_notes() {
+    for (const Note& one : std::exchange(notes_, {})) add(one.path, one.what, one.remedy);
+  }
+
   bool empty() const { return found_.empty(); }
 
   /// Sorted by their place in the file; those without a line come last.
   std::vector<Problem> take();
 
  private:
+  struct Note {
+    std::string path, what, remedy;
+  };
   struct Found {
     Place place;
     Problem problem;
   };
   google::protobuf::TextFormat::ParseLocation locate(const std::string& path) const;
 
+  std::vector<Note> notes_;
   std::string file_;
   std::optional<google::protobuf::TextFormat::ParseInfoTree> locations_;
   std::map<std::string, std::string> flags_;

@@ -162,7 +162,12 @@ class Validator {
               double size_m) {
     if (!sound(path) || !sound(size_path)) return;
     const double limit_m = kMaxOriginPerSize * size_m;
-    in_range(path, origin_m, limits::between(-limit_m, limit_m));
+    if (std::abs(origin_m) <= limit_m) return;
+    problem(path,
+            shortest(origin_m) + " is more than " + shortest(limit_m) +
+                " m from 0, too far for a domain of " + shortest(size_m) + " m",
+            "count from its corner; if these are coordinates of a map, such as UTM, write the "
+            "corner as origin { latitude_deg: … longitude_deg: … }");
   }
 
   void basis() {

@@ -169,7 +169,7 @@ class TargetValidator {
 
   static std::string remedy_for(const std::string& file) {
     if (file.ends_with(".nc"))
-      return "write the plane as one: gdal_translate NETCDF:in.nc:VARIABLE out.tif";
+      return "write it as voxels { file: \"" + file + "\" variable: \"…\" }";
     return "write the map as one of these: convert in out.png, or gdal_translate in out.tif";
   }
 
@@ -202,7 +202,6 @@ class TargetValidator {
   }
 
   void voxels(const proto::Voxels& grid, const std::string& path) {
-    if (domain_.planar() && longer_side_m_ > 0) return checks_.of_a_box_alone(path);
     if (!grid.has_file() || grid.file().empty()) {
       checks_.missing(path + ".file", "is missing", "add the name of a .nc");
     } else if (!grid.file().ends_with(".nc")) {

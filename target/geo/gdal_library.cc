@@ -26,7 +26,11 @@ void note_error(int level, int /*number*/, const char* message) {
 
 }  // namespace
 
-std::string GdalLibrary::reported() { return first_error.empty() ? "" : ": " + first_error; }
+std::string GdalLibrary::reported() {
+  constexpr std::size_t kMost = 200;
+  if (first_error.size() > kMost) first_error = first_error.substr(0, kMost) + " …";
+  return first_error.empty() ? "" : ": " + first_error;
+}
 
 bool GdalLibrary::load(const char* const* drivers, bool warnings) {
   setenv("OPENBLAS_NUM_THREADS", "1", 1);  // each thread of it would take memory
@@ -72,6 +76,7 @@ bool GdalLibrary::load(const char* const* drivers, bool warnings) {
   ERGOCAST_FIND(GDALRasterIO);
   ERGOCAST_FIND(OSRNewSpatialReference);
   ERGOCAST_FIND(OSRClone);
+  ERGOCAST_FIND(OSRIsLocal);
   ERGOCAST_FIND(OSRImportFromProj4);
   ERGOCAST_FIND(OSRSetAxisMappingStrategy);
   ERGOCAST_FIND(OCTNewCoordinateTransformationOptions);

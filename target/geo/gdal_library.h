@@ -54,6 +54,7 @@ struct GdalLibrary {
 
   Handle (*OSRNewSpatialReference)(Text text);
   Handle (*OSRClone)(Handle reference);
+  int (*OSRIsLocal)(Handle reference);
   int (*OSRImportFromProj4)(Handle reference, Text text);
   void (*OSRSetAxisMappingStrategy)(Handle reference, int strategy);
   Handle (*OCTNewCoordinateTransformationOptions)();

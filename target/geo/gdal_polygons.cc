@@ -42,6 +42,7 @@ class LayerReader {
       reject_layer("", "cannot be opened" + GdalLibrary::reported(), "save it anew");
     for (int i = 0; i < gdal_.GDALDatasetGetLayerCount(dataset); ++i)
       layer(gdal_.GDALDatasetGetLayer(dataset, i));
+    if (!problems_.empty()) throw BadLayer{problems_.all()};
     if (!GdalLibrary::reported().empty())
       reject_layer("", "GDAL" + GdalLibrary::reported(), "save it anew");
     if (found_.empty()) reject_layer("", "has no polygon", "draw one, or name another file");
@@ -57,12 +58,19 @@ class LayerReader {
     while (const Handle feature = gdal_.OGR_L_GetNextFeature(layer)) {
       if (to_earth_ == nullptr) enter(layer, name);
       const std::string member = name + ", feature " + std::to_string(gdal_.OGR_F_GetFID(feature));
-      const Handle geometry = gdal_.OGR_F_GetGeometryRef(feature);
-      if (geometry == nullptr)
-        reject_layer(member, "has no geometry", "delete it there, or draw it");
-      this->geometry(geometry, member);
+      try {
+        this->feature(feature, member);
+      } catch (const BadLayer& refused) {
+        problems_.add(refused.problem);
+      }
       gdal_.OGR_F_Destroy(feature);
     }
+  }
+
+  void feature(Handle feature, const std::string& member) {
+    const Handle geometry = gdal_.OGR_F_GetGeometryRef(feature);
+    if (geometry == nullptr) reject_layer(member, "has no geometry", "delete it there, or draw it");
+    this->geometry(geometry, member);
   }
 
   void enter(Handle layer, const std::string& name) {
@@ -70,10 +78,14 @@ class LayerReader {
     if (reference == nullptr)
       reject_layer(name, "does not say where on the earth it lies",
                    "name its reference system: ogr2ogr -a_srs EPSG:25832 out.gpkg in.shp");
+    if (gdal_.OSRIsLocal(reference) != 0)
+      reject_layer(
+          name, "is in a local system, which has no place on the earth",
+          "write vertices in metres, or bring it to a system of EPSG: in QGIS, Georeferencer");
     to_earth_ = gdal_.transformation(reference, earth_);
     if (to_earth_ == nullptr)
       reject_layer(name, "cannot be brought to WGS 84" + GdalLibrary::reported(),
-                   "convert it: ogr2ogr -t_srs EPSG:4326 out.gpkg in.gpkg");
+                   "name its system: ogr2ogr -s_srs EPSG:25832 -t_srs EPSG:4326 out.gpkg in.gpkg");
   }
 
   void geometry(Handle geometry, const std::string& member) {
@@ -136,15 +148,21 @@ class LayerReader {
   Handle earth_ = nullptr, to_earth_ = nullptr;
   std::size_t places_ = 0;
   Json found_ = Json::array();
+  PolygonFileProblems problems_;
 };
+
+Json json_of(const PolygonFileProblem& problem) {
+  return {problem.member, problem.what, problem.remedy};
+}
 
 std::string polygons_answer(const fs::path& file) {
   Json result;
   try {
     result["polygons"] = LayerReader(file).polygons();
   } catch (const BadLayer& refused) {
-    const PolygonFileProblem& problem = refused.problem;
-    result["problem"] = {problem.member, problem.what, problem.remedy};
+    result["problems"].push_back(json_of(refused.problem));
+    for (const PolygonFileProblem& other : refused.problem.more)
+      result["problems"].push_back(json_of(other));
   }
   return result.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -175,10 +193,10 @@ Result<std::vector<GeoPolygon>, PolygonFileProblem> read_gdal_polygons(const fs:
         PolygonFileProblem{"", "GDAL cannot read it within 20 s of processor time and 768 MiB",
                            "simplify it: ogr2ogr -simplify 1 out.gpkg in.gpkg"});
   const Json result = Json::parse(*told);  // the child has printed all of it
-  if (result.contains("problem")) {
-    const auto& problem = result["problem"];
-    return failure(PolygonFileProblem{problem[0], problem[1], problem[2]});
-  }
+  PolygonFileProblems problems;
+  for (const Json& one : result.value("problems", Json::array()))
+    problems.add({one[0], one[1], one[2]});
+  if (!problems.empty()) return failure(problems.all());
   std::vector<GeoPolygon> polygons;
   for (const Json& one : result["polygons"]) {
     GeoPolygon& polygon = polygons.emplace_back();

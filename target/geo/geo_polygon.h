@@ -11,8 +11,8 @@ namespace ergocast {
 
 /// The outline, then the holes; without the repeated last position.
 struct GeoPolygon {
-  std::string member;  ///< "features[2].geometry"
-  std::vector<std::vector<GeoPlace>> rings;
+  std::string member;                        ///< "features[2].geometry"
+  std::vector<std::vector<GeoPlace>> rings;  ///< none for a feature of GeoJSON without a place
 };
 
 }  // namespace ergocast

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Walks the members of a parsed file with their names; the first problem ends the walk.
+// Walks the members of a parsed file with their names; a problem ends that of its feature or
+// polygon.
 #include "target/geo/geojson.h"
 
 #include <algorithm>
@@ -37,19 +38,32 @@ std::string below(const std::string& member, const char* name) {
 class Walk {
  public:
   std::vector<GeoPolygon> polygons;
+  PolygonFileProblems problems;
 
   void file(const Json& root) {
     if (root.is_object() && root.contains("crs")) reference_system(root["crs"]);
     if (type_of(root) == "FeatureCollection") {
       const Json& features = list(root, "features", "");
-      for (std::size_t i = 0; i < features.size(); ++i) object(features[i], indexed("features", i));
+      for (std::size_t i = 0; i < features.size(); ++i)
+        apart([&] { object(features[i], indexed("features", i)); });
     } else {
       object(root, "");
     }
-    if (polygons.empty()) fail("", "has no polygon", "draw one, or name another file");
+    const bool none =
+        std::ranges::all_of(polygons, [](const auto& one) { return one.rings.empty(); });
+    if (none && problems.empty()) fail("", "has no polygon", "draw one, or name another file");
   }
 
  private:
+  template <class Read>
+  void apart(Read read) {
+    try {
+      read();
+    } catch (Refused& refused) {
+      problems.add(std::move(refused.problem));
+    }
+  }
+
   static std::string type_of(const Json& json) {
     const bool has_type = json.is_object() && json.contains("type") && json["type"].is_string();
     return has_type ? json["type"].get<std::string>() : "";
@@ -78,7 +92,10 @@ class Walk {
   void object(const Json& json, const std::string& member) {
     if (type_of(json) != "Feature") return geometry(json, member);
     const auto at = json.find("geometry");
-    if (at != json.end() && at->is_null()) return;  // a feature without a place (RFC 7946, 3.2)
+    if (at != json.end() && at->is_null()) {  // a feature without a place (RFC 7946, 3.2)
+      polygons.push_back({member, {}});
+      return;
+    }
     geometry(at == json.end() ? Json() : *at, below(member, "geometry"));
   }
 
@@ -88,24 +105,26 @@ class Walk {
       polygon(list(json, "coordinates", member), member, below(member, "coordinates"));
     } else if (type == "MultiPolygon") {
       const Json& parts = list(json, "coordinates", member);
+      if (parts.empty()) polygons.push_back({member, {}});
       const std::string name = below(member, "coordinates");
       for (std::size_t i = 0; i < parts.size(); ++i)
-        polygon(parts[i], indexed(name, i), indexed(name, i));
+        apart([&] { polygon(parts[i], indexed(name, i), indexed(name, i)); });
     } else {
       fail(member,
-           type.empty() ? "is no GeoJSON object with a type" : "is a " + type + ", not a polygon",
-           "keep Polygon and MultiPolygon features only");
+           type.empty() ? "is no GeoJSON object with a type"
+                        : "has the type " + type + ", which is no polygon",
+           "keep features of the types Polygon and MultiPolygon");
     }
   }
 
   void polygon(const Json& rings, const std::string& member, const std::string& coordinates) {
-    if (!rings.is_array() || rings.empty()) {
+    if (!rings.is_array()) {
       fail(coordinates, "is no list of rings", "write the outline, then the holes");
     }
     GeoPolygon& polygon = polygons.emplace_back();
     polygon.member = member;
     for (std::size_t i = 0; i < rings.size(); ++i)
-      polygon.rings.push_back(ring(rings[i], indexed(coordinates, i)));
+      apart([&] { polygon.rings.push_back(ring(rings[i], indexed(coordinates, i))); });
   }
 
   static std::vector<GeoPlace> ring(const Json& positions, const std::string& member) {
@@ -150,21 +169,46 @@ class Walk {
 
 }  // namespace
 
+namespace {
+
+/// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error …"
+PolygonFileProblem no_json(std::string_view error) {
+  constexpr std::string_view kAt = "parse error at ";
+  if (const std::size_t at = error.find(kAt); at != error.npos)
+    error.remove_prefix(at + kAt.size());
+  const std::size_t colon = error.starts_with("line ") ? error.find(": ") : error.npos;
+  const std::string place(colon == error.npos ? "" : error.substr(0, colon));
+  const std::string_view what = colon == error.npos ? error : error.substr(colon + 2);
+  const bool comma =
+      what.find("unexpected ']'") != what.npos || what.find("unexpected '}'") != what.npos;
+  const bool curly = what.find('\xe2') != what.npos;
+  return {place, "is no JSON: " + std::string(what),
+          comma   ? "remove the comma before it"
+          : curly ? "write straight quotes"
+                  : "repair it there"};
+}
+
+}  // namespace
+
 Result<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    return failure(
+        PolygonFileProblem{"", "is in UTF-16, and GeoJSON is UTF-8",
+                           "convert it: iconv -f UTF-16 -t UTF-8 in.geojson > out.geojson"});
   if (text.starts_with('<'))
     return failure(PolygonFileProblem{"", "is XML such as KML, no GeoJSON",
                                       "name KML as such: a file that ends in .kml"});
   try {
     Walk walk;
     walk.file(parse_bounded<Json>(text, kMostValues));
+    if (!walk.problems.empty()) return failure(walk.problems.all());
     return std::move(walk.polygons);
   } catch (const JsonTooLarge& problem) {
     return failure(PolygonFileProblem{"", problem.what(), kSimplify});
   } catch (const Refused& refused) {
     return failure(refused.problem);
   } catch (const Json::exception& error) {
-    return failure(
-        PolygonFileProblem{"", "is no JSON: " + std::string(error.what()), "repair it there"});
+    return failure(no_json(error.what()));
   }
 }
 

@@ -89,6 +89,9 @@ class TiffReader {
     std::array<double, 6> six{};
     if (reference == nullptr || gdal_.GDALGetGeoTransform(data_, six.data()) != 0)
       reject_tiff(" does not say where on the earth it lies", kSay);
+    if (gdal_.OSRIsLocal(reference) != 0)
+      reject_tiff(" is in a local system, which has no place on the earth",
+                  "write it as a grid in metres: gdal_translate -of AAIGrid in.tif out.asc");
     to_system_.matrix() << six[1], six[2], six[0], six[4], six[5], six[3], 0, 0, 1;
     if (std::abs(to_system_.linear().determinant()) < 1e-300)
       reject_tiff(" has cells without a size", kSay);

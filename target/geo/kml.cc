@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Walks the elements of a parsed file; the first that is not known ends the walk.
+// Walks the elements of a parsed file, and collects those that are not known.
 #include "target/geo/kml.h"
 
 #include <algorithm>
@@ -57,6 +57,7 @@ class KmlWalk {
     const pugi::xml_node root = document.document_element();
     if (kml_name(root) != "kml") fail(root, "is no KML", "name a file that a program saved as KML");
     container(root, 0);
+    if (!problems_.empty()) throw BadKml{problems_.all()};
     if (polygons_.empty()) fail(root, "has no polygon", "draw one, or name another file");
     return std::move(polygons_);
   }
@@ -70,19 +71,25 @@ class KmlWalk {
 
   void container(const pugi::xml_node& node, int depth) {
     if (depth > kDeepestKml) fail(node, "is in more than 32 others", "take it out of its folders");
-    const std::size_t before = polygons_.size();
+    const auto seen = [&] { return polygons_.size() + failures_; };
+    const std::size_t before = seen();
     for (const pugi::xml_node& child : node.children()) {
       if (child.type() != pugi::node_element || kUnplaced.contains(kml_name(child))) continue;
-      if (kKmlContainers.contains(kml_name(child))) {
-        container(child, depth + 1);
-      } else if (kml_name(child) == "Polygon") {
-        polygon(child);
-      } else {
-        fail(child, "is no polygon", kDelete);
+      try {
+        part(child, depth);
+      } catch (const BadKml& refused) {
+        problems_.add(refused.problem);
+        ++failures_;
       }
     }
     const bool has_place = kml_name(node) == "Placemark" || kml_name(node) == "MultiGeometry";
-    if (has_place && polygons_.size() == before) fail(node, "has no polygon", kDelete);
+    if (has_place && seen() == before) fail(node, "has no polygon", kDelete);
+  }
+
+  void part(const pugi::xml_node& node, int depth) {
+    if (kKmlContainers.contains(kml_name(node))) return container(node, depth + 1);
+    if (kml_name(node) == "Polygon") return polygon(node);
+    fail(node, "is no polygon", kDelete);
   }
 
   void polygon(const pugi::xml_node& node) {
@@ -120,7 +127,10 @@ class KmlWalk {
 
   /// Programs close rings, or leave that to the reader.
   std::vector<GeoPlace> ring(const pugi::xml_node& node) const {
-    std::string_view rest = node.text().get();
+    std::string text;  // comments may stand between its parts
+    for (const pugi::xml_node& part : node.children())
+      if (part.type() == pugi::node_pcdata || part.type() == pugi::node_cdata) text += part.value();
+    std::string_view rest = text;
     std::vector<GeoPlace> ring;
     const auto same = [](const GeoPlace& a, const GeoPlace& b) {
       return a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg;
@@ -165,6 +175,8 @@ class KmlWalk {
 
   std::string_view text_;
   std::vector<GeoPolygon> polygons_;
+  PolygonFileProblems problems_;
+  std::size_t failures_ = 0;
 };
 
 }  // namespace

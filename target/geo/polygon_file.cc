@@ -9,6 +9,23 @@
 
 namespace ergocast {
 
+void PolygonFileProblems::add(PolygonFileProblem problem) {
+  auto others = std::exchange(problem.more, {});
+  if (list_.size() < kMostFileProblems) {
+    list_.push_back(std::move(problem));
+  } else if (list_.size() == kMostFileProblems) {
+    list_.push_back({"", "has more problems than these " + std::to_string(kMostFileProblems),
+                     "repair these first"});
+  }
+  for (PolygonFileProblem& other : others) add(std::move(other));
+}
+
+PolygonFileProblem PolygonFileProblems::all() const {
+  PolygonFileProblem first = list_.front();
+  first.more.assign(list_.begin() + 1, list_.end());
+  return first;
+}
+
 std::string line_of(std::string_view text, std::size_t offset) {
   return "line " + std::to_string(1 + std::ranges::count(text.substr(0, offset), '\n'));
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
 
@@ -14,9 +15,28 @@ namespace ergocast {
 /// the scenario is refused.
 inline constexpr std::size_t kMaxPolygonFileBytes = std::size_t{16} << 20;
 
+/// Limit (Files of a scenario): problems of a file that are named at once. Beyond it: the first
+/// are.
+inline constexpr std::size_t kMostFileProblems = 20;
+
 struct PolygonFileProblem {
   std::string member;  ///< the place in the file, or empty for the whole file
   std::string what, remedy;
+  std::vector<PolygonFileProblem> more{};  ///< other problems of the same file
+};
+
+/// The problems of one file, in their order.
+class PolygonFileProblems {
+ public:
+  bool empty() const { return list_.empty(); }
+  /// Takes in a problem and its others; beyond the limit, only that there are more.
+  void add(PolygonFileProblem problem);
+  /// The first one, with the others in it.
+  /// @pre !empty()
+  PolygonFileProblem all() const;
+
+ private:
+  std::vector<PolygonFileProblem> list_;
 };
 
 /// "line 12", of the byte at `offset`.

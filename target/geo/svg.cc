@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Walks the elements of a parsed drawing with their transforms; the first problem ends the walk.
+// Walks the elements of a parsed drawing with their transforms, and collects their problems.
 #include "target/geo/svg.h"
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include "target/geo/svg_shapes.h"
 #include "target/geo/svg_style.h"
 #include "target/geo/svg_syntax.h"
+#include "target/geo/svg_values.h"
 
 namespace ergocast {
 namespace {
@@ -63,14 +64,19 @@ class SvgWalk {
     names_.enter(root);
     if (local_name(root) != "svg" || !names_.is_svg(root))
       places_.fail({}, "is no SVG drawing", "name a file that a drawing program saved as SVG");
-    sheets_ = document.find_node([](const pugi::xml_node& node) {
-      const std::string_view name = node.name();
-      return name == "style" || name.ends_with(":style");
+    document.find_node([&](const pugi::xml_node& node) {
+      symbols_ = symbols_ || local_name(node) == "symbol";
+      if (local_name(node) != "style") return false;
+      sheets_ = true;
+      for (const pugi::xml_node& part : node.children())
+        sheets_hide_ = sheets_hide_ || std::strstr(part.value(), "display") != nullptr;
+      return false;
     });
     if (sheets_) shapes_.note_sheets();
     Drawing result{view_box(root), {}, "", ""};
     element(root, SvgInherited{}, 0);
-    references_.check(places_);
+    references_.check(places_, problems_);
+    if (!problems_.empty()) throw BadSvg{problems_.all()};
     shapes_.take(result);
     result.to_paint = printed(document, root);
     return result;
@@ -147,10 +153,14 @@ class SvgWalk {
     for (pugi::xml_node child = node.first_child(); child;) {
       const pugi::xml_node next = child.next_sibling();
       const std::size_t declared = names_.enter(child);
-      if (!shows(child, outer)) {
-        node.remove_child(child);
-      } else {
-        element(child, outer, depth);
+      try {
+        if (shows(child, outer)) {
+          element(child, outer, depth);
+        } else {
+          node.remove_child(child);
+        }
+      } catch (const BadSvg& bad) {
+        problems_.add(bad.problem);
       }
       names_.leave(declared);
       child = next;
@@ -165,7 +175,7 @@ class SvgWalk {
       return false;
     const auto refused = kRefused.find(name);
     if (refused == kRefused.end()) return true;
-    const bool hidden = outer.hidden || (!sheets_ && properties_of(node)["display"] == "none");
+    const bool hidden = outer.hidden || (!sheets_hide_ && properties_of(node)["display"] == "none");
     if (!hidden || name == "script") places_.fail(node, "is not read", refused->second);
     return false;
   }
@@ -183,59 +193,91 @@ class SvgWalk {
     const std::string name(local_name(node));
     if (depth > kDeepest) places_.fail(node, "is in more than 64 groups", "ungroup the drawing");
     if (name == "style") return sheet(node);
-    if (!is_svg_shape(name) && !kPainted.contains(name))
-      places_.fail(node, "is no element that is painted",
-                   "delete it, or save the drawing as plain SVG: inkscape --export-plain-svg");
     SvgInherited own = outer;
     if (const char* id = node.attribute("id").value(); *id != '\0') {
       own.ids.emplace_back(id);
-      references_.define(id, name == "pattern");
+      references_.define(id, name);
     }
+    if (!is_svg_shape(name) && !kPainted.contains(name))
+      places_.fail(node, "is no element that is painted",
+                   "delete it, or save the drawing as plain SVG: inkscape --export-plain-svg");
     own.defined = own.defined || kDefinitions.contains(name);
+    try {
+      itself(node, own, name, depth);
+    } catch (const BadSvg& bad) {
+      problems_.add(bad.problem);
+    }
+    children(node, own, depth + 1);
+  }
+
+  /// An element without what is inside.
+  void itself(pugi::xml_node& node, SvgInherited& own, const std::string& name, int depth) {
     attributes(node, own, name);
     if (depth > 0 && (name == "svg" || name == "use" || name == "switch"))
       shapes_.paint(node, "is no straight shape");
     auto properties = properties_of(node);
-    own.hidden = own.hidden || (!sheets_ && properties["display"] == "none");
-    own.to_drawing = outer.to_drawing * places_.in(node, "transform", svg_transform);
+    own.hidden = own.hidden || (!sheets_hide_ && properties["display"] == "none");
+    own.to_drawing = own.to_drawing * places_.in(node, "transform", svg_transform);
     shapes_.inherit(node, own, properties);
+    check_emptiness(node, name, properties);
     if (is_svg_shape(name)) shapes_.add(node, name, own);
-    children(node, own, depth + 1);
+  }
+
+  void check_emptiness(pugi::xml_node& node, const std::string& name,
+                       std::map<std::string, std::string>& properties) {
+    const std::string& overflow = properties["overflow"];
+    if (name == "symbol" && (overflow == "visible" || overflow == "auto"))
+      places_.fail(node, "is a symbol that overflows, which is not painted", "write a <g>");
+    // librsvg before 2.57 does not clip symbols otherwise.
+    if (name == "use") {
+      const std::string style = node.attribute("style").value();
+      node.remove_attribute("style");
+      node.append_attribute("style").set_value((style + ";overflow:hidden !important").c_str());
+    }
+    const bool gradient = name == "linearGradient" || name == "radialGradient";
+    const bool linked = node.attribute("href") || node.attribute("xlink:href");
+    if (gradient && !linked && !node.first_child())
+      places_.fail(node, "has no stops, and paints nothing", "draw it anew, or delete it");
   }
 
   /// Checks all data of an element, and removes what other languages added.
   void attributes(pugi::xml_node& node, const SvgInherited& own, const std::string& name) {
-    const auto refers = [&](std::string id) { references_.refer(node, own.ids, std::move(id)); };
     for (pugi::xml_attribute one = node.first_attribute(); one;) {
       const pugi::xml_attribute next = one.next_attribute();
       const std::string attribute = one.name();
       const std::string_view prefix = prefix_of(attribute), local = local_of(attribute);
       if (local == "href" && (prefix.empty() || names_.space_of(prefix) == kLinkSpace) &&
           name != "a") {
-        link(node, one.value(), refers);
+        link(node, own, one.value());
       } else if (!prefix.empty() && prefix != "xmlns" && prefix != "xml") {
         node.remove_attribute(one);
       } else {
-        data(node, attribute, name, refers);
+        data(node, own, attribute, name);
       }
       one = next;
     }
   }
 
-  void link(const pugi::xml_node& node, std::string_view to,
-            const std::function<void(std::string)>& refers) const {
+  void link(const pugi::xml_node& node, const SvgInherited& own, std::string_view to) {
     if (!to.starts_with('#'))
       places_.fail(node, "refers to another file", "put it into the drawing, or delete this");
-    refers(std::string(to.substr(1)));
+    references_.refer(node, own.ids, std::string(to.substr(1)), "href");
   }
 
-  void data(const pugi::xml_node& node, const std::string& attribute, const std::string& name,
-            const std::function<void(std::string)>& refers) {
+  void data(const pugi::xml_node& node, const SvgInherited& own, const std::string& attribute,
+            const std::string& name) {
     if (attribute.starts_with("on"))
       places_.fail(node, attribute + " runs a script, which is not read", "remove it");
     for (const char* condition : {"systemLanguage", "requiredExtensions", "requiredFeatures"})
       if (attribute == condition)
         places_.fail(node, attribute + " makes it show on some machines only", "remove it");
+    const bool root = node.parent().type() == pugi::node_document;
+    const bool known = root || attribute.find(':') != attribute.npos ||
+                       is_svg_attribute(attribute) || is_painted_property(attribute) ||
+                       is_inert_property(attribute);
+    if (!known)
+      places_.fail(node, "has the attribute " + attribute + ", which is none of SVG",
+                   "correct or remove it");
     const std::string_view value = node.attribute(attribute.c_str()).value();
     const bool at_origin = value.find_first_not_of("0px ,") == value.npos;
     if (attribute == "transform-origin" && !at_origin)
@@ -246,13 +288,20 @@ class SvgWalk {
     if (attribute == "d" && name == "path") places_.in(node, attribute, svg_path);
     try {
       if (is_painted_property(attribute) && attribute != "transform")
-        check_svg_value(attribute, value, refers);
+        check_value(node, own.ids, attribute, value);
       if (attribute == "style")
         for (const auto& [property, set] : svg_properties(value))
-          check_svg_value(property, set, refers);
+          check_value(node, own.ids, property, set);
     } catch (const SvgSyntaxError& error) {
       places_.fail(node, error.what(), error.remedy);
     }
+  }
+
+  void check_value(const pugi::xml_node& node, const std::vector<std::string>& around,
+                   const std::string& property, std::string_view value) {
+    check_svg_value(property, value, [&](std::string id) {
+      references_.refer(node, around, std::move(id), property);
+    });
   }
 
   void sheet(pugi::xml_node& node) {
@@ -266,8 +315,9 @@ class SvgWalk {
         shapes_.paint(node, "sets properties of shapes");
         for (const auto& [property, value] : rule) {
           if (property == "stroke-width") shapes_.note_sheet_width(value);
-          check_svg_value(property, value,
-                          [&](std::string id) { references_.refer(node, {}, std::move(id)); });
+          if (property == "overflow" && value != "hidden" && symbols_)
+            places_.fail(node, "lets symbols overflow, which is not painted", "remove overflow");
+          check_value(node, {}, property, value);
         }
       });
     } catch (const SvgSyntaxError& error) {
@@ -280,7 +330,9 @@ class SvgWalk {
   SvgReferences references_;
   SvgShapes shapes_;
   Eigen::Vector2d begin_{0, 0}, size_{0, 0};  // of the viewBox
-  bool sheets_ = false;
+  bool sheets_ = false, symbols_ = false;
+  bool sheets_hide_ = false;  // they can show what an element hides, or the reverse
+  PolygonFileProblems problems_;
 };
 
 }  // namespace

@@ -84,6 +84,17 @@ bool is_solid(std::uint32_t pixel, bool solid_white) {
   return solid_white || luminance(part(16), part(8), part(0)) < kSolidLuminance;
 }
 
+/// Paint on white paper that is neither solid nor white, as the edge of something is; in 8 bits,
+/// white may differ by 2.
+bool is_faint(std::uint32_t pixel) {
+  constexpr double kNearlyWhite = 0.99;
+  const auto part = [&](unsigned shift) { return (pixel >> shift & 255) / 255.0; };
+  return pixel >> 24 == 255 && luminance(part(16), part(8), part(0)) < kNearlyWhite;
+}
+
+/// What a cell is in the child's answer.
+enum Cell : char { kFree, kSolid, kFaint };
+
 std::string answer(Outcome outcome, const std::string& rest) {
   return static_cast<char>(outcome) + rest;
 }
@@ -93,7 +104,7 @@ std::string answer(Outcome outcome, const std::string& rest) {
 class Painter {
  public:
   explicit Painter(const Paint& paint)
-      : paint_(paint), cells_(static_cast<std::size_t>(paint.columns * paint.rows), '\0') {}
+      : paint_(paint), cells_(static_cast<std::size_t>(paint.columns * paint.rows), kFree) {}
 
   std::string paint() {
     if (!rsvg_.load()) return answer(Outcome::kNoLibrary, "");
@@ -123,9 +134,13 @@ class Painter {
     std::vector<std::uint32_t> row(static_cast<std::size_t>(width));
     for (int y = 0; done && pixels != nullptr && y < height; ++y) {
       std::memcpy(row.data(), pixels + stride * y, 4 * row.size());
-      for (int x = 0; x < width; ++x)
-        if (is_solid(row[static_cast<std::size_t>(x)], paint_.solid_white))
-          turned ? mark(y, x) : mark(x, y);
+      for (int x = 0; x < width; ++x) {
+        const std::uint32_t pixel = row[static_cast<std::size_t>(x)];
+        const Cell cell = is_solid(pixel, paint_.solid_white) ? kSolid
+                          : is_faint(pixel)                   ? kFaint
+                                                              : kFree;
+        turned ? mark(y, x, cell) : mark(x, y, cell);
+      }
     }
     rsvg_.cairo_destroy(cairo);
     rsvg_.cairo_surface_destroy(surface);
@@ -133,9 +148,11 @@ class Painter {
   }
 
   /// A pixel, from the upper left corner.
-  void mark(int x, int y) {
+  void mark(int x, int y, Cell cell) {
     const auto row = static_cast<std::size_t>(paint_.rows - 1 - y);
-    cells_[row * static_cast<std::size_t>(paint_.columns) + static_cast<std::size_t>(x)] = 1;
+    char& marked =
+        cells_[row * static_cast<std::size_t>(paint_.columns) + static_cast<std::size_t>(x)];
+    if (cell == kSolid || marked == kFree) marked = cell;
   }
 
   const Paint& paint_;
@@ -143,6 +160,41 @@ class Painter {
   RsvgLibrary rsvg_{};
   RsvgLibrary::Error* error_ = nullptr;
   void* handle_ = nullptr;
+};
+
+/// Finds faint cells that are neither at the edge of something solid nor in a faint area.
+class Hairs {
+ public:
+  explicit Hairs(const CellGrid& cells) : cells_(cells) {}
+
+  std::optional<std::pair<int, int>> first() const {
+    for (int row = 0; row < cells_.rows(); ++row)
+      for (int column = 0; column < cells_.columns(); ++column)
+        if (is(kFaint, column, row) && is_hair(column, row)) return std::pair(column, row);
+    return std::nullopt;
+  }
+
+ private:
+  bool is(Cell cell, int column, int row) const {
+    return cells_.has(column, row) && cells_.at(column, row) == cell;
+  }
+  template <class Test>
+  static bool any_around(int column, int row, int reach, Test test) {
+    for (int y = row - reach; y <= row + reach; ++y)
+      for (int x = column - reach; x <= column + reach; ++x)
+        if (test(x, y)) return true;
+    return false;
+  }
+  bool is_area(int column, int row) const {
+    return !any_around(column, row, 1, [&](int x, int y) { return !is(kFaint, x, y); });
+  }
+  bool is_hair(int column, int row) const {
+    constexpr int kTip = 4;  // of something solid that ends in a point
+    return !any_around(column, row, kTip, [&](int x, int y) { return is(kSolid, x, y); }) &&
+           !any_around(column, row, 1, [&](int x, int y) { return is_area(x, y); });
+  }
+
+  const CellGrid& cells_;
 };
 
 tl::unexpected<PolygonFileProblem> refuse(std::string what, std::string remedy) {
@@ -162,7 +214,7 @@ Result<PaintedDrawing, PolygonFileProblem> paint_svg(const std::string& svg,
                     solid_white};
   PaintedDrawing painted{CellGrid(paint.columns, paint.rows), cell};
   const auto told = in_bounded_child(std::size_t{1} << 23, [&] { return Painter(paint).paint(); });
-  const bool is_whole = told && !told->empty() &&
+  const bool is_whole = told && !told->empty() && told->find("NoMemory") == told->npos &&
                         (static_cast<Outcome>(told->front()) != Outcome::kPainted ||
                          told->size() == 1 + painted.solid.size());
   if (!is_whole)
@@ -177,7 +229,10 @@ Result<PaintedDrawing, PolygonFileProblem> paint_svg(const std::string& svg,
     case Outcome::kPainted:
       break;
   }
-  for (std::size_t i = 0; i < painted.solid.size(); ++i) painted.solid[i] = rest[i] != 0;
+  CellGrid& cells = painted.solid;
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<std::uint8_t>(rest[i]);
+  painted.hair = Hairs(cells).first();
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = cells[i] == kSolid ? 1 : 0;
   return painted;
 }
 

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/base/result.h"
 #include "target/contour/cell_grid.h"
@@ -22,6 +24,9 @@ inline constexpr int kPaintedCells = 2048;
 struct PaintedDrawing {
   CellGrid solid;  ///< 1: some of the cell is painted, and darker than kSolidLuminance
   double cell;     ///< the side, in units of the viewBox
+  /// Column and row of something that is too thin to be as dark as it is meant: a bright line on
+  /// white paper.
+  std::optional<std::pair<int, int>> hair = std::nullopt;
 };
 
 /// @param svg          well-formed, without entities and addresses outside of it

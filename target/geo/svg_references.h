@@ -15,22 +15,28 @@ namespace ergocast {
 
 class SvgReferences {
  public:
-  void define(const std::string& id, bool is_pattern) {
-    ids_.insert(id);
-    if (is_pattern) patterns_.insert(id);
-  }
-  /// @param around  the names of the elements around the one that refers
-  void refer(const pugi::xml_node& node, const std::vector<std::string>& around, std::string id) {
+  /// @param element  the local name of the element with this id; the first of several counts
+  void define(const std::string& id, const std::string& element) { ids_.emplace(id, element); }
+  /// @param around    the names of the elements around the one that refers
+  /// @param property  that refers: "fill", "clip-path"; "href" for links of <use> and of gradients
+  void refer(const pugi::xml_node& node, const std::vector<std::string>& around, std::string id,
+             std::string property) {
     for (const std::string& outer : around) uses_[outer].insert(id);
-    references_.emplace_back(node, std::move(id));
+    references_.push_back({node, std::move(id), std::move(property)});
   }
 
-  /// Each leads to something that is painted, and none back to itself. Throws BadSvg.
-  void check(const SvgPlaces& places) const;
+  /// Each leads to something that is painted there, and none back to itself.
+  void check(const SvgPlaces& places, PolygonFileProblems& problems) const;
 
  private:
-  std::set<std::string> ids_, patterns_;
-  std::vector<std::pair<pugi::xml_node, std::string>> references_;
+  struct Reference {
+    pugi::xml_node node;
+    std::string id, property;
+  };
+  std::string flaw_of(const Reference& reference) const;
+
+  std::map<std::string, std::string> ids_;  // with the names of their elements
+  std::vector<Reference> references_;
   std::map<std::string, std::set<std::string>> uses_;  // by elements around the reference
 };
 

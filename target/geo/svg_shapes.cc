@@ -46,7 +46,7 @@ void SvgShapes::paint(const pugi::xml_node& node, const std::string& why) {
 void SvgShapes::take(Drawing& drawing) {
   drawing.paint_because = paint_because_;
   if (!paint_because_.empty()) {
-    if (thin_problem_) throw BadSvg{*thin_problem_};
+    if (!thin_problems_.empty()) throw BadSvg{thin_problems_.all()};
     return;
   }
   if (exact_problem_) throw BadSvg{*exact_problem_};
@@ -107,9 +107,9 @@ void SvgShapes::check_stroke(const pugi::xml_node& node, const SvgInherited& own
   if (sheets_) least = std::min(least, least_sheet_width_);
   const Eigen::Matrix2d scale = own.to_drawing.linear();
   least *= scale.jacobiSvd().singularValues().minCoeff();
-  if (least < size_.maxCoeff() / kThinnest && !thin_problem_)
-    thin_problem_ = {places_.of(node), "has a stroke too thin to be painted",
-                     "write a greater stroke-width, or stroke: none"};
+  if (least < size_.maxCoeff() / kThinnest)
+    thin_problems_.add({places_.of(node), "has a stroke too thin to be painted",
+                        "write a greater stroke-width, or stroke: none"});
 }
 
 void SvgShapes::add(const pugi::xml_node& node, const std::string& name, const SvgInherited& own) {
@@ -157,7 +157,7 @@ std::optional<SvgShapes::Ring> SvgShapes::rectangle(const pugi::xml_node& node) 
   const double x = value("x"), y = value("y"), w = value("width"), h = value("height");
   const double round = std::max(value("rx"), value("ry"));
   if (!known || round > 0) {
-    paint(node, known ? "has round corners" : "has lengths in percent or in sizes of a font");
+    paint(node, known ? "has round corners" : "has lengths in percent");
     return std::nullopt;
   }
   if (w < 0 || h < 0) places_.fail(node, "has a negative width or height", "write it above 0");
@@ -184,9 +184,8 @@ void SvgShapes::check_width(const pugi::xml_node& node, const Ring& ring) {
     length += (b - a).norm();
   }
   const double width = 2 * std::abs(area) / length, page = size_.maxCoeff();
-  if (stroked_ || !(width > 1e-9 * page) || width > page / kThinnest || thin_problem_) return;
-  thin_problem_ =
-      PolygonFileProblem{places_.of(node), "is too thin to be painted", "widen or delete it"};
+  if (stroked_ || !(width > 1e-9 * page) || width > page / kThinnest) return;
+  thin_problems_.add({places_.of(node), "is too thin to be painted", "widen or delete it"});
 }
 
 /// Merges corners that the transform puts at one place, and a last corner that closes the ring.

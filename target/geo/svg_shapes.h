@@ -74,7 +74,8 @@ class SvgShapes {
   bool sheets_ = false, even_odd_ = false, stroked_ = false;
   std::vector<DrawnShape> shapes_;
   std::string paint_because_;
-  std::optional<PolygonFileProblem> exact_problem_, thin_problem_;
+  std::optional<PolygonFileProblem> exact_problem_;
+  PolygonFileProblems thin_problems_;
 };
 
 }  // namespace ergocast

@@ -9,6 +9,7 @@
 
 #include "target/geo/svg_luminance.h"
 #include "target/geo/svg_syntax.h"
+#include "target/geo/svg_values.h"
 #include "text/read_number.h"
 
 namespace ergocast {
@@ -133,9 +134,11 @@ std::string without_comments(std::string_view text) {
   return rest;
 }
 
-bool is_inert(std::string_view name) {
-  return kInert.contains(name) || name.starts_with('-') || name.starts_with("font-") ||
-         name.starts_with("text-");
+/// A background shows where nothing else is painted.
+bool is_white(std::string_view background) {
+  static const Names kWhite = {"none",    "transparent", "white",  "#fff",
+                               "#ffffff", "#FFF",        "#FFFFFF"};
+  return kWhite.contains(background);
 }
 
 /// The address inside url(…), without quotes.
@@ -153,6 +156,11 @@ const std::string kPlain = "save it as plain SVG, or set fill and stroke of the 
 
 bool is_painted_property(std::string_view name) { return kPaintedProperties.contains(name); }
 
+bool is_inert_property(std::string_view name) {
+  return kInert.contains(name) || name.starts_with('-') || name.starts_with("font-") ||
+         name.starts_with("text-");
+}
+
 SvgProperties svg_properties(std::string_view style) {
   const std::string text = without_comments(style);
   SvgProperties properties;
@@ -168,14 +176,14 @@ SvgProperties svg_properties(std::string_view style) {
     if (value.ends_with("important"))
       if (const std::size_t mark = value.rfind('!'); mark != value.npos)
         value = trim(value.substr(0, mark));
-    std::string low(name);
-    std::ranges::transform(low, low.begin(), [](char c) {
-      return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-    });
-    if (is_inert(low)) continue;
-    if (!is_painted_property(low))
-      reject("has the property " + low + ", which is not painted", "remove it, or " + kPlain);
-    properties.emplace_back(std::move(low), value);
+    if (name.starts_with("background") && !is_white(value))
+      reject(std::string(name) + " is " + quoted(value) + ", and backgrounds are not painted",
+             "write it white, or draw a rect of the page's size");
+    if (is_inert_property(name)) continue;
+    if (!is_painted_property(name))
+      reject("has the property " + std::string(name) + ", which is not painted",
+             "remove it, or write it in small letters, or " + kPlain);
+    properties.emplace_back(name, value);
   }
   return properties;
 }
@@ -201,6 +209,7 @@ void check_svg_value(std::string_view name, std::string_view value,
              "put it into the drawing, or remove it");
     refers(std::string(to.substr(1)));
   }
+  check_svg_word(name, trim(value));
 }
 
 void for_svg_rules(std::string_view sheet, const std::function<void(const SvgProperties&)>& each) {

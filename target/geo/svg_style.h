@@ -20,8 +20,11 @@ SvgProperties svg_properties(std::string_view style);
 /// Whether a property is one that painting knows, as an attribute too.
 bool is_painted_property(std::string_view name);
 
+/// Whether a property changes text, or nothing that is solid; as an attribute too.
+bool is_inert_property(std::string_view name);
+
 /// Checks a value, and calls `refers(id)` for each element that it names by url(#id).
-/// @throws SvgSyntaxError for other addresses, and functions that are not painted
+/// @throws SvgSyntaxError for other addresses, functions and words that are not painted
 void check_svg_value(std::string_view name, std::string_view value,
                      const std::function<void(std::string)>& refers);
 

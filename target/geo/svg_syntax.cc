@@ -99,8 +99,8 @@ std::optional<double> svg_length(std::string_view text) {
         std::pair("cm", kInch / 2.54), std::pair("mm", kInch / 25.4), std::pair("pt", kInch / 72),
         std::pair("pc", kInch / 6)})
     if (unit == name) return value * pixels;
-  if (unit == "%" || unit == "em" || unit == "ex") return std::nullopt;
-  fail("is in " + std::string(unit.substr(0, 20)) + ", which is no unit of SVG",
+  if (unit == "%") return std::nullopt;
+  fail("is in " + std::string(unit.substr(0, 20)) + ", which is not read",
        "write it without a unit, or in mm, cm, in, pt or px");
 }
 

@@ -50,8 +50,7 @@ class SvgReader {
 /// @throws SvgSyntaxError
 std::vector<double> svg_numbers(std::string_view text);
 
-/// A length in pixels, which are units of the viewBox. Nothing if it depends on something else: in
-/// percent, or in sizes of a font.
+/// A length in pixels, which are units of the viewBox. Nothing if it is in percent.
 /// @throws SvgSyntaxError
 std::optional<double> svg_length(std::string_view text);
 

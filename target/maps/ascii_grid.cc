@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "target/maps/map_text.h"
 
@@ -12,6 +13,7 @@ namespace ergocast {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_view_literals;
 
 std::string lower(std::string_view text) {
   std::string low(text);
@@ -31,23 +33,27 @@ class AsciiGrid : public MapFile {
                        "resample it: gdalwarp -tr 10 10 in.asc out.tif");
       header_["cellsize"] = header_["dx"];
     }
-    for (const char* key : {"ncols", "nrows", "cellsize"}) {
-      if (!header_.contains(key)) return missing(key);
-    }
-    for (const char* axis : {"x", "y"}) {
-      if (header_.contains(lowest(axis, "corner")) == header_.contains(lowest(axis, "center"))) {
-        return missing(lowest(axis, "corner") + " or " + lowest(axis, "center"));
-      }
-    }
+    std::string lacking;
+    for (const std::string key : {"ncols", "nrows", "cellsize"})
+      if (!header_.contains(key)) lacking += (lacking.empty() ? "" : ", ") + key;
+    for (const char* axis : {"x", "y"})
+      if (header_.contains(lowest(axis, "corner")) == header_.contains(lowest(axis, "center")))
+        lacking += (lacking.empty() ? "" : ", ") + lowest(axis, "corner") + " or " +
+                   lowest(axis, "center");
+    if (!lacking.empty()) return missing(lacking);
     if (header_.contains("nodata_value")) no_data_ = header_["nodata_value"];
     return take_dimensions();
   }
 
   std::optional<MapProblem> next_row(std::span<double> values) override {
+    std::optional<MapProblem> bad;
     for (double& value : values) {
-      if (auto problem = next_value(value)) return problem;
+      auto problem = next_value(value);
+      if (!problem) continue;
+      if (!problem->ends_row) return problem;
+      if (!bad) bad = std::move(problem);
     }
-    if (++read_ < rows_ || words_.next().empty()) return {};
+    if (++read_ < rows_ || bad || words_.next().empty()) return bad;
     return problem(" has more numbers than ncols · nrows", "correct its header");
   }
 
@@ -71,7 +77,8 @@ class AsciiGrid : public MapFile {
                                         "dx",        "dy"};
     for (;;) {
       first_ = words_.next();
-      if (first_.empty() || number_in(first_)) return {};
+      const bool is_cell = first_.empty() || "+-.0123456789"sv.find(first_[0]) != std::string::npos;
+      if (is_cell || number_in(first_)) return {};
       const std::string key = lower(first_);
       if (std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys)) {
         return MapProblem{here() + ": no key of an ESRI ASCII grid stands here",
@@ -113,7 +120,8 @@ class AsciiGrid : public MapFile {
   }
 
   std::optional<MapProblem> next_value(double& value) {
-    const std::string_view word = first_.empty() ? words_.next() : std::string_view(first_);
+    const std::string first = std::exchange(first_, "");
+    const std::string_view word = first.empty() ? words_.next() : std::string_view(first);
     if (word.empty()) {
       return problem(" ends before its last cell: " + std::to_string(rows_) + " rows of " +
                          std::to_string(columns_) + " are announced",
@@ -129,7 +137,6 @@ class AsciiGrid : public MapFile {
       if (!density) return density.error();
       value = *density;
     }
-    first_.clear();
     return {};
   }
 

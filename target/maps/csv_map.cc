@@ -16,6 +16,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kBlanks = " \t\r";
 /// 8192 numbers of more than a hundred characters.
 constexpr long long kMaxLineBytes = 1 << 20;
+/// Lines of another length that are named.
+constexpr std::size_t kMostRagged = 20;
 
 std::string in_line(const fs::path& file, long long line) {
   return file.string() + ", line " + std::to_string(line);
@@ -31,6 +33,7 @@ class Shape {
       for (int c = bytes->sgetc(); c != kEnd && !problem_; c = bytes->snextc()) take(c);
     }
     if (!problem_) end_line();
+    if (!problem_) problem_ = ragged();
     if (!problem_) problem_ = check_dimensions(file, columns_, rows_);
     if (!problem_ && columns_ > 1 && blank_ends_ == rows_)
       problem_ = MapProblem{file.string() + ": every line ends in a comma",
@@ -60,19 +63,26 @@ class Shape {
       ++rows_;
       if (after_comma_) ++blank_ends_;
       if (rows_ == 1) columns_ = commas_ + 1;
-      if (commas_ + 1 != columns_) {
-        problem_ = MapProblem{in_line(file_, line_) + " has " + std::to_string(commas_ + 1) +
-                                  " numbers, the lines before have " + std::to_string(columns_),
-                              "give every line as many numbers, separated by commas"};
-      }
+      if (commas_ + 1 != columns_ && ragged_.size() < kMostRagged)
+        ragged_.push_back({in_line(file_, line_) + " has " + std::to_string(commas_ + 1) +
+                               " numbers, the first one has " + std::to_string(columns_),
+                           "give every line as many numbers, separated by commas"});
     }
     ++line_;
     commas_ = bytes_ = 0;
     written_ = false;
   }
 
+  std::optional<MapProblem> ragged() const {
+    if (ragged_.empty()) return {};
+    MapProblem first = ragged_.front();
+    first.more.assign(ragged_.begin() + 1, ragged_.end());
+    return first;
+  }
+
   const fs::path& file_;
   std::optional<MapProblem> problem_;
+  std::vector<MapProblem> ragged_;
   long long columns_ = 0, rows_ = 0, line_ = 1, commas_ = 0, bytes_ = 0, blank_ends_ = 0;
   bool written_ = false, after_comma_ = false;
 };

@@ -2,8 +2,6 @@
 // Chooses the reader by the extension of the file's name, and checks size and dimensions first.
 #include "target/maps/map_file.h"
 
-#include <algorithm>
-
 #include "target/maps/ascii_grid.h"
 #include "target/maps/csv_map.h"
 #include "target/maps/picture_map.h"
@@ -12,6 +10,47 @@
 
 namespace ergocast {
 namespace fs = std::filesystem;
+
+namespace {
+
+/// In small letters.
+std::string ending_of(const fs::path& file) {
+  std::string end = file.extension().string();
+  for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  return end;
+}
+
+std::string beginning_of(InputFile& in) {
+  std::string begin(16, '\0');
+  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(in.gcount()));
+  return begin;
+}
+
+/// A file that is something else than its name says, by its first bytes.
+std::optional<MapProblem> of_another_kind(const fs::path& file, std::string_view begin) {
+  const std::string end = ending_of(file), name = file.string();
+  if (end.empty()) return {};
+  const auto is = [&](std::string_view mark, std::string_view ends = "") {
+    return begin.starts_with(mark) && ends.find(end) == ends.npos;
+  };
+  if (is("\x89PNG", ".png .pgm"))
+    return MapProblem{name + " is a PNG picture", "let its name end in .png"};
+  if (is("II*", ".tif .tiff") || is("MM", ".tif .tiff"))
+    return MapProblem{name + " is a TIFF picture", "let its name end in .tif"};
+  if (is("\xff\xd8\xff"))
+    return MapProblem{name + " is a JPEG picture", "convert in.jpg -colorspace Gray out.png"};
+  if (is("PK\3\4"))
+    return MapProblem{name + " is a ZIP archive, such as a spreadsheet", "save the table as CSV"};
+  if (is("CDF", ".nc") || is("\x89HDF", ".nc"))
+    return MapProblem{name + " is a NetCDF or HDF5 file", "write voxels { file: … variable: … }"};
+  if (is("%PDF") || is("SQLite") || is("<", ".tif .tiff") || is("{", ".yaml .yml"))
+    return MapProblem{name + " is a document or a database, not a map",
+                      "export the map itself from where it was made"};
+  return {};
+}
+
+}  // namespace
 
 std::optional<MapProblem> why_unreadable(const fs::path& file) {
   InputFile in(file);
@@ -24,22 +63,21 @@ std::optional<MapProblem> why_unreadable(const fs::path& file) {
     return MapProblem{file.string() + ' ' + problem->what,
                       other ? "name the map itself" : problem->remedy};
   }
-  const int first = in.peek();
-  if (first == InputFile::traits_type::eof())
-    return MapProblem{file.string() + " is empty", "write the map again"};
-  if (first == 0xff || first == 0xfe)
+  const std::string begin = beginning_of(in);
+  if (begin.empty()) return MapProblem{file.string() + " is empty", "write the map again"};
+  const bool is_table = map_kind(file) == MapKind::kCsv || map_kind(file) == MapKind::kAsciiGrid;
+  if (begin.starts_with("\xff\xfe") || begin.starts_with("\xfe\xff") ||
+      (is_table && begin.size() > 1 && begin[1] == '\0'))
     return MapProblem{file.string() + " is in UTF-16",
                       "convert it: iconv -f UTF-16 -t UTF-8 in > out"};
-  if (first == 0xef)
+  if (begin.starts_with("\xef\xbb\xbf"))
     return MapProblem{file.string() + " begins with a byte order mark",
                       "remove it: sed -i '1s/^\\xEF\\xBB\\xBF//' FILE"};
-  return {};
+  return of_another_kind(file, begin);
 }
 
 std::optional<MapKind> map_kind(const fs::path& file) {
-  std::string end = file.extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  const std::string end = ending_of(file);
   if (end == ".png") return MapKind::kPng;
   if (end == ".pgm") return MapKind::kPgm;
   if (end == ".yaml" || end == ".yml") return MapKind::kOccupancy;
@@ -71,7 +109,8 @@ std::optional<MapProblem> check_dimensions(const fs::path& file, long long colum
   const std::string limit = std::to_string(kMaxMapSide);
   return MapProblem{file.string() + " has " + std::to_string(columns) + " columns and " +
                         std::to_string(rows) + " rows; the limits are 1 and " + limit,
-                    "scale it to at most " + limit + " x " + limit};
+                    columns < 1 || rows < 1 ? "write at least one number"
+                                            : "scale it to at most " + limit + " x " + limit};
 }
 
 }  // namespace ergocast

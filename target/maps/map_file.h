@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/result.h"
 #include "target/rectangle.h"
@@ -26,6 +27,9 @@ inline constexpr double kMaxMapValue = 1e30;
 struct MapProblem {
   std::string what;    ///< with the file's name, and the line if it has lines
   std::string remedy;  ///< what to do about it
+  /// Whether it is a problem of a row alone: the next one can be read.
+  bool ends_row = false;
+  std::vector<MapProblem> more{};  ///< other problems of the same file
 };
 
 class MapFile {

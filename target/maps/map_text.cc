@@ -42,12 +42,18 @@ Result<double, MapProblem> density_in(std::string_view text, const std::string& 
     return failure(MapProblem{where + ": semicolons separate the numbers",
                               "write points and commas: tr ',;' '.,' < in.csv > out.csv"});
   }
+  if (!value && number_in(text.substr(0, text.find_first_of(" \t")))) {
+    return failure(MapProblem{where + ": blanks or tabs separate the numbers",
+                              "write commas: tr -s ' \\t' ',' < in.csv > out.csv"});
+  }
   if (!value) {
     return failure(MapProblem{where + ": " + quoted_word(text) + " is not a number",
-                              "write numbers only, with a point for decimals"});
+                              "write numbers only, with a point for decimals", true});
   }
-  if (auto problem = check_density(*value, where + ": " + quoted_word(text)))
+  if (auto problem = check_density(*value, where + ": " + quoted_word(text))) {
+    problem->ends_row = true;
     return failure(*problem);
+  }
   return *value;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "target/maps/map_text.h"
 #include "target/maps/netcdf_axis.h"
@@ -60,6 +61,7 @@ class Grid : public NetcdfGrid {
     variable_ = *found;
     if (!file_->holds_numbers(variable_))
       return MapProblem{place_ + " holds no numbers", "write one of its other variables"};
+    if (auto problem = check_attributes()) return problem;
     if (auto problem = check_names(choice.dimensions)) return problem;
     if (auto problem = find_axes(choice)) return problem;
     if (auto problem = check_size()) return problem;
@@ -76,7 +78,8 @@ class Grid : public NetcdfGrid {
   const std::vector<Heights>& layers() const override { return axes_[2].cells; }
 
   std::optional<MapProblem> row(int layer, int row, std::span<double> values) override {
-    start_[dimension_[2]] = axes_[2].index(static_cast<std::size_t>(layer));
+    if (dimension_[2] < start_.size())
+      start_[dimension_[2]] = axes_[2].index(static_cast<std::size_t>(layer));
     start_[dimension_[1]] = axes_[1].index(static_cast<std::size_t>(row));
     if (auto problem = file_->read(variable_, start_, count_, values)) return problem;
     if (axes_[0].reversed) std::reverse(values.begin(), values.end());
@@ -97,6 +100,24 @@ class Grid : public NetcdfGrid {
   }
 
  private:
+  /// Texts and lists where a number is due would be left out by others, and change the values.
+  std::optional<MapProblem> check_attributes() const {
+    constexpr std::size_t kAnyNumber = 0;
+    for (const auto& [attribute, due] :
+         {std::pair("scale_factor", std::size_t{1}), std::pair("add_offset", std::size_t{1}),
+          std::pair("valid_min", std::size_t{1}), std::pair("valid_max", std::size_t{1}),
+          std::pair("valid_range", std::size_t{2}), std::pair("_FillValue", std::size_t{1}),
+          std::pair("missing_value", kAnyNumber)}) {
+      if (file_->type_of(variable_, attribute) == 0) continue;
+      const std::size_t count = file_->numeric_attributes(variable_, attribute).size();
+      if (count > 0 && (due == kAnyNumber || count == due)) continue;
+      return MapProblem{
+          place_ + ": its attribute " + attribute + " has not the numbers that are due",
+          "write one number, in valid_range two: ncatted, or ncgen -o in.nc in.cdl"};
+    }
+    return std::nullopt;
+  }
+
   /// Whether each named dimension exists, and is named once.
   std::optional<MapProblem> check_names(const std::array<std::string, 4>& names) const {
     std::vector<std::string> there;
@@ -138,6 +159,14 @@ class Grid : public NetcdfGrid {
         if (auto problem = choose_time(i, dimensions[i], choice.time_index)) return problem;
         continue;
       }
+      if (choice.plane && kind == AxisKind::kZ) {
+        if (dimensions[i].length == 1) continue;
+        return MapProblem{
+            place_ + " has " + std::to_string(dimensions[i].length) +
+                " layers, and the domain is a plane",
+            "write origin_z_m and size_z_m of the domain, or keep one layer: ncks -d " +
+                dimensions[i].name + ",0 in.nc out.nc"};
+      }
       const auto axis = static_cast<std::size_t>(kind);
       if (kind == AxisKind::kOther || known[axis]) {
         if (dimensions[i].length == 1) continue;
@@ -156,11 +185,16 @@ class Grid : public NetcdfGrid {
       dimension_[axis] = i;
       known[axis] = true;
     }
+    if (choice.plane) {
+      axes_[2].cells = {{0, 1}};
+      dimension_[2] = dimensions.size();  // none
+      known[2] = true;
+    }
     if (known[0] && known[1] && !known[2]) {
-      return MapProblem{
-          place_ + " is a plane without an axis z, and voxels fill a box",
-          "write it as a map: gdal_translate -of AAIGrid NETCDF:" + file_->name().string() + ":" +
-              choice.variable + " map.asc, then maps { file: \"map.asc\" }"};
+      return MapProblem{place_ + " is a plane without an axis z, and the domain is a box",
+                        "remove size_z_m of the domain; or write a map with layers: gdal_translate "
+                        "-of AAIGrid NETCDF:" +
+                            file_->name().string() + ":" + choice.variable + " map.asc"};
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (known[axis]) continue;

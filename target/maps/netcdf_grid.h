@@ -26,6 +26,7 @@ struct NetcdfChoice {
   std::string variable;
   std::optional<int> time_index;            ///< of several times; the first is 0
   std::array<std::string, 4> dimensions{};  ///< x, y, z and time by name; empty: by CF
+  bool plane = false;                       ///< whether one layer is wanted, without heights
 };
 
 /// Reads rows one by one, so that a grid of any size needs the memory of a row and of one of the
@@ -33,7 +34,7 @@ struct NetcdfChoice {
 class NetcdfGrid {
  public:
   /// The variable's axes are x, y, z and perhaps time (target/maps/netcdf_axis.h); x and y are
-  /// evenly spaced.
+  /// evenly spaced. A plane has no z, or one of length 1.
   static Result<std::unique_ptr<NetcdfGrid>, MapProblem> open(const std::filesystem::path& file,
                                                               const NetcdfChoice& choice);
 
@@ -41,7 +42,7 @@ class NetcdfGrid {
   NetcdfGrid(const NetcdfGrid&) = delete;
   NetcdfGrid& operator=(const NetcdfGrid&) = delete;
 
-  /// The grid's cells seen from above, and their heights, ascending.
+  /// The grid's cells seen from above, and their heights, ascending; in a plane 0 to 1 m.
   virtual const RasterGrid& raster() const = 0;
   virtual const std::vector<Heights>& layers() const = 0;
 

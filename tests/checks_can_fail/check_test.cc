@@ -404,6 +404,17 @@ class CheckCanFail : public Scenarios {
         << output();
   }
 
+  void expect_warning_of_features_without_a_place() {
+    std::string text = kGood;
+    text.replace(text.find(kUniform), kUniform.size(),
+                 "regions { polygon { file: \"nowhere.geojson\" } }");
+    write("s.textproto", text + "origin { latitude_deg: 47.5 longitude_deg: 9.2 }\n");
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_NE(output().find("features[0]: has no place, and is left out"), std::string::npos)
+        << output();
+  }
+
   /// The warning for two agents with these stations, 2 m apart.
   void expect_warning_of_homes(const std::string& stations, const std::string& what) {
     std::string text = kGood;
@@ -418,6 +429,7 @@ class CheckCanFail : public Scenarios {
   }
 
   void plant_warnings() {
+    expect_warning_of_features_without_a_place();
     expect_warning_of_homes("station { x_m: 10 y_m: 9 } station { x_m: 20 y_m: 9 } reserve_s: 0.1",
                             "agents.kind[0].reserve_s: 0.1 is little for 2 agents");
     expect_warning_of_homes(

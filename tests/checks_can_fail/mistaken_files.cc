@@ -38,6 +38,8 @@ void write_grids(const fs::path& folder) {
   grid("sour.nc", [](WaterColumn& c) { c.at("chl").values[300] = -1; });
   grid("salt.nc", [](WaterColumn& c) { c.at("chl").name = "salt"; });
   grid("words.nc", [](WaterColumn& c) { c.at("chl").type = NetcdfType::kText; });
+  grid("text_range.nc",
+       [](WaterColumn& c) { c.at("chl").attributes.emplace_back("valid_range", "0 9"); });
   grid("member.nc", [](WaterColumn& c) { c.rename("depth", "member"); });
   grid("flat.nc", [](WaterColumn& c) { c.at("chl").dimensions = {"time", "y", "x"}; });
   grid("plane.nc", [](WaterColumn& c) { c.at("chl").dimensions = {"time", "depth", "x"}; });
@@ -163,6 +165,12 @@ void write_mistaken_files(const fs::path& folder) {
         "<svg viewBox='0 0 2 1'><path d='M0 0" + repeated(2100, "h.1v.1") + "'/></svg>");
   const std::string page = "<svg viewBox='0 0 2 1'>";
   write("dot.svg", page + "<rect x='1.9' y='.9' width='.01' height='.01' fill='white'/></svg>");
+  write("bright.svg", page +
+                          "<path fill='#fff' d='M0 0h2v1h-2z'/><circle r='.1'/><path "
+                          "stroke='yellow' stroke-width='.001' d='M.5 .5003h1'/></svg>");
+  // Each group is a picture of its own.
+  write("deep.svg", "<svg viewBox='0 0 1 1'>" + repeated(60, "<g opacity='.9'>") +
+                        "<circle r='.1'/>" + repeated(60, "</g>") + "</svg>");
   write("crossing.svg", page + "<path d='M0 0H2V1H0V.5H2V.6H0z'/></svg>");
   write("overlap.svg",
         page + "<rect width='1' height='1'/><rect x='.9' width='2' height='1'/></svg>");
@@ -175,6 +183,19 @@ void write_mistaken_files(const fs::path& folder) {
                                       4));
   write("semicolons.csv", "1;2\n");
   write("commas.csv", "1,2,\n");
+  write("tabs.csv", "1\t2\n");
+  write("blank.csv", "\n\n");
+  write("many.csv", repeated(30, "1,a\n"));
+  write("picture.csv", "\x89PNG");
+  write("tiff.csv", "II*");
+  write("photo.csv", "\xff\xd8\xff");
+  write("sheet.csv", "PK\3\4");
+  write("grid.csv", "CDF");
+  write("page.csv", "<html>");
+  write("nowhere.geojson",
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","geometry":null},)"
+        R"({"type":"Feature","geometry":{"type":"Polygon","coordinates":[[[9.2005,47.5001],)"
+        R"([9.2006,47.5001],[9.2006,47.5002],[9.2005,47.5001]]]}}]})");
   write("oblong.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ndx 5\ndy 6\n1 2\n");
   fs::create_directory(folder / "folder.csv");
   fs::create_symlink(unreadable_file(), folder / "locked.csv");

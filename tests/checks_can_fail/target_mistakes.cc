@@ -91,6 +91,10 @@ std::vector<Mistake> mistakes_of_targets() {
        "target.regions[0].polygon.file: "},
       {kUniform, kUniform + " keep_outs { file: \"square.svg\" }", "target.keep_outs[0].file: "},
       {kUniform, kUniform + " keep_outs { file: \"many.svg\" }", "target.keep_outs[0].file: "},
+      {kUniform, kUniform + " keep_outs { file: \"bright.svg\" }", "target.keep_outs[0].file: "},
+      {"size_y_m: 50 }\ntarget { uniform_weight: 1",
+       "size_y_m: 100 } target { uniform_weight: 1 keep_outs { file: \"deep.svg\" }",
+       "deep.svg: librsvg cannot paint it within 20 s of processor time and 768 MiB"},
       {kUniform, kUniform + " keep_outs { file: \"crossing.svg\" }", "target.keep_outs[0].file: "},
       {kUniform, kUniform + " keep_outs { file: \"overlap.svg\" }", "target.keep_outs[0].file: "},
       {kUniform, kUniform + " keep_outs { file: \"outside.svg\" }", "target.keep_outs[0].file: "},
@@ -149,13 +153,13 @@ std::vector<Mistake> mistakes_of_maps() {
                    std::string("target.maps[0].") + name + ": this kind of map states"});
   }
   for (const char* bad :
-       {"none.csv",   "folder.csv", "locked.csv", "empty.csv",      "wide.csv",
-        "long.csv",   "ragged.csv", "zero.csv",   "words.csv",      "negative.csv",
-        "huge.csv",   "nan.csv",    "marked.csv", "wide_words.csv", "semicolons.csv",
-        "commas.csv", "oblong.asc", "key.asc",    "twice.asc",      "bare.asc",
-        "lacks.asc",  "both.asc",   "half.asc",   "flat.asc",       "short.asc",
-        "more.asc",   "text.png",   "cut.png",    "palette.png",    "colour.png",
-        "bits.png",   "laced.png"}) {
+       {"none.csv",    "folder.csv",     "locked.csv",     "empty.csv",    "wide.csv",  "long.csv",
+        "ragged.csv",  "zero.csv",       "words.csv",      "negative.csv", "huge.csv",  "nan.csv",
+        "marked.csv",  "wide_words.csv", "semicolons.csv", "tabs.csv",     "blank.csv", "many.csv",
+        "picture.csv", "tiff.csv",       "photo.csv",      "sheet.csv",    "grid.csv",  "page.csv",
+        "commas.csv",  "oblong.asc",     "key.asc",        "twice.asc",    "bare.asc",  "lacks.asc",
+        "both.asc",    "half.asc",       "flat.asc",       "short.asc",    "more.asc",  "text.png",
+        "cut.png",     "palette.png",    "colour.png",     "bits.png",     "laced.png"}) {
     all.push_back({kUniform, map_of(bad), at});
   }
   return all;
@@ -177,9 +181,12 @@ std::vector<Mistake> mistakes_of_grids() {
       of_grid("good.nc", "", "time_index: 2"),
       of_grid("good.nc", "", "time_index: 1 x_axis: \"lon\""),
       of_grid("good.nc", "", "time_index: 1 x_axis: \"y\" y_axis: \"y\""),
+      of_grid("text_range.nc", ""),
       of_grid("member.nc", ""),
       of_grid("flat.nc", ""),
       of_grid("plane.nc", ""),
+      {kUniform, "voxels { file: \"good.nc\" variable: \"chl\" time_index: 1 }",
+       "target.voxels[0]: "},
       of_grid("billion.nc", ""),
       of_grid("long.nc", ""),
       of_grid("uneven.nc", ""),

@@ -106,6 +106,9 @@ TEST_F(Geodata, KmlThatCouldLoseAShapeIsRefused) {
     write("a.kml", kml(good + placemark));
     EXPECT_TRUE(has(problems(region("a.kml")), words)) << placemark;
   }
+  write("a.kml", kml("<Placemark><Point/></Placemark><ScreenOverlay/>" + good));
+  EXPECT_TRUE(has(problems(region("a.kml")), "line 3: <Point>: is no polygon"));
+  EXPECT_TRUE(has(problems(region("a.kml")), "line 3: <ScreenOverlay>: is no polygon"));
   write("a.kml", kml(""));
   EXPECT_TRUE(has(problems(region("a.kml")), "line 2: <kml>: has no polygon"));
   write("a.kml", "PK\3\4");
@@ -141,12 +144,19 @@ TEST_F(Geodata, LayersThatCouldLoseAShapeAreRefused) {
                       {kEast_m, kNorth_m}};
   write_shapefile(folder_.path() / "a.shp", box, 5, false);
   EXPECT_TRUE(has(problems(region("a.shp")), "layer a: does not say where on the earth it lies"));
+  write("a.prj", "LOCAL_CS[\"lab\",UNIT[\"metre\",1]]");
+  EXPECT_TRUE(
+      has(problems(region("a.shp")),
+          "layer a: is in a local system, which has no place on the earth (write vertices"));
   write_shapefile(folder_.path() / "a.shp", box, 3);
   EXPECT_TRUE(has(problems(region("a.shp")), "layer a, feature 0: is a LINESTRING, not a polygon"));
   write_shapefile(folder_.path() / "a.shp", {});
   EXPECT_TRUE(has(problems(region("a.shp")), "layer a, feature 0: has no geometry"));
   write_shapefile(folder_.path() / "a.shp", {{1e9, 1e9}, {1e9, 2e9}, {2e9, 2e9}, {1e9, 1e9}});
   EXPECT_TRUE(has(problems(region("a.shp")), "a place that is nowhere on the earth"));
+  write_shapefile(folder_.path() / "a.shp", {}, 5, true, 2);
+  EXPECT_TRUE(has(problems(region("a.shp")), "layer a, feature 1: has no geometry"));
+  EXPECT_TRUE(has(problems(region("a.shp")), "layer a, feature 0: has no geometry"));
   // The second one ends early.
   write_shapefile(folder_.path() / "a.shp", box, 5, true, 2);
   std::filesystem::resize_file(folder_.path() / "a.shp", 300);
@@ -223,6 +233,8 @@ TEST_F(Geodata, GeoTiffThatIsNoDensityHereIsRefused) {
                   "a.tif, column 0, row 0: -9999 is no density"));
   EXPECT_TRUE(has(said(with([](TinyTiff& t) { t.system = 0; })),
                   "does not say where on the earth it lies"));
+  EXPECT_TRUE(has(said(with([](TinyTiff& t) { t.system = kLocal; })),
+                  "is in a local system, which has no place on the earth (write it as a grid"));
   EXPECT_TRUE(has(said(with([](TinyTiff& t) { t.bands = 2; })), "has 2 bands"));
   EXPECT_TRUE(has(said(with([](TinyTiff& t) { t.upper_left_m.x() += 9000; })),
                   "has no cell in the domain"));

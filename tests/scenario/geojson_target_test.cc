@@ -145,12 +145,13 @@ TEST_F(GeoJsonTarget, CutsKeepOutsFromAnyKindOfFile) {
 }
 
 TEST_F(GeoJsonTarget, RefusesWhatIsNoPolygonWithItsMember) {
-  expect("{", "is no JSON: ");
-  expect("[1]", "is no GeoJSON object with a type (keep Polygon and MultiPolygon features only)");
+  expect("{", "line 1, column 2: is no JSON: ");
+  expect("[1]",
+         "is no GeoJSON object with a type (keep features of the types Polygon and MultiPolygon)");
   expect(R"({"type":"FeatureCollection","features":[]})", "has no polygon (draw one");
   expect(R"({"type":"FeatureCollection"})", "has no list \"features\"");
   expect(collection({polygon(box_ring(10, 10, 30)), R"({"type":"LineString","coordinates":[]})"}),
-         "features[1].geometry: is a LineString, not a polygon");
+         "features[1].geometry: has the type LineString, which is no polygon");
   expect(collection({polygon("[[9,47],[9,48],[10,48]]")}),
          "features[0].geometry.coordinates[0]: has fewer than four positions");
   expect(collection({polygon("[[9,47],[9,48],[10,48],[9,47.1]]")}),

@@ -119,6 +119,7 @@ TEST_F(OtherPeoplesFiles, BoxesAreWhereEveryProgramShowsThem) {
       "<rect x='10' y='5' width='6' height='10'/><rect x='16' y='5' width='4' height='10'/>",
       "<a href='https://example.org'>" + box + "</a>",
       "<text display='none'>Room</text><title>Floor</title>" + box,
+      "<style>.w{fill:#333}</style><g style='display:none'><text>Room</text></g>" + box,
       "<g xmlns:i='http://www.inkscape.org/namespaces/inkscape' i:label='a'>" + box +
           "<i:grid/></g>",
   };
@@ -185,26 +186,28 @@ TEST_F(OtherPeoplesFiles, ShapesAreWhereEveryProgramShowsThem) {
 TEST_F(OtherPeoplesFiles, ThinWallsAreClosed) {
   const std::string circle = R"(<circle cx="35" cy="25" r="1"/>)";
   const std::string paper = R"(<rect width="40" height="30" fill="#fff"/>)";
-  Places solid, wedge;
+  Places solid, point, straight;
   for (int i = 0; i <= 997; ++i) {
     const double at = 5.01 + 19.98 * i / 997.0;
     solid.emplace_back(at, 10.00013);
     solid.emplace_back(10.00013, at);
+    straight.insert(straight.end(), solid.end() - 2, solid.end());
     solid.emplace_back(at, at + 1);
-    if (i < 300) wedge.push_back(solid.back());
+    if (i < 300) point.push_back(solid.back());
   }
-  const auto with_wedge = [&](const std::string& edges, const std::string& page) {
-    return page_of("<g shape-rendering='" + edges + "'>" + page + circle +
+  const std::string wedge = "<path d='M4.98 6L25 26v.04z'/>";
+  const auto hairs_of = [&](const std::string& edges, const std::string& more) {
+    return page_of("<g shape-rendering='" + edges + "'>" + more + circle +
                    "<rect x='5' y='10' width='20' height='.01'/>"
-                   "<rect y='5' x='10' height='20' width='.01'/>"
-                   "<path d='M4.98 6L25 26v.04z'/></g>");
+                   "<rect y='5' x='10' height='20' width='.01'/></g>");
   };
   Places filled = solid;
   std::erase_if(filled, [&](const Eigen::Vector2d& at) {
-    return std::ranges::find(wedge, at) != wedge.end();
+    return std::ranges::find(point, at) != point.end();
   });
   for (const std::string& page : {std::string(), paper}) {
-    expect_walls(with_wedge("auto", page), filled, {{20, 5}});
+    expect_walls(hairs_of("auto", page.empty() ? wedge : page), page.empty() ? filled : straight,
+                 {{20, 5}});
     const std::string lines = " d='M5 10.00013h20M10.00013 5v20M5 6l20 20'/>";
     expect_walls(page_of(page + "<path fill='none' stroke='#f00' stroke-width='.01'" + lines),
                  solid, {{15, 11}, {15, 20}});
@@ -213,7 +216,9 @@ TEST_F(OtherPeoplesFiles, ThinWallsAreClosed) {
                          "d='M0 10.00013h20M5.00013 5v20M0 6l20 20'/>"),
                  solid, {{15, 11}});
   }
-  expect_walls(with_wedge("crispEdges", ""), filled, {{20, 5}});
+  expect_walls(hairs_of("crispEdges", wedge), filled, {{20, 5}});
+  // Its point is as bright as paper.
+  expect_refused(hairs_of("auto", paper + wedge), "m that is too thin and bright to be solid");
   // These may lie between the rows in which a painting takes samples.
   std::string hairs;
   Places of_hairs;
@@ -239,16 +244,87 @@ TEST_F(OtherPeoplesFiles, ThinWallsAreClosed) {
                  "has a vector-effect, which is not painted");
 }
 
+// In a painting, a thin line is brighter than its colour; white may lose it.
+TEST_F(OtherPeoplesFiles, BrightWallsAreSolidOrRefused) {
+  const std::string paper = R"(<rect width="40" height="30" fill="#fff"/>)";
+  const std::string circle = R"(<circle cx="35" cy="25" r="1"/>)";
+  const auto line = [&](const std::string& colour, const std::string& width) {
+    return "<path d='M5 10h20' stroke='" + colour + "' stroke-width='" + width + "'/>" + circle;
+  };
+  const Places on = {{6, 10}, {24, 10}};
+  for (const char* colour : {"yellow", "#eee", "#00ffff", "rgb(240,240,240)"}) {
+    expect_walls(page_of(paper + line(colour, ".3")), on, {{15, 12}});
+    expect_walls(page_of(line(colour, ".02")), on, {{15, 12}});
+  }
+  expect_refused(page_of(paper + line("yellow", ".02")),
+                 "shows something at x 5.01, y 19.99 m that is too thin and bright to be solid");
+  expect_refused(page_of("<style>.w{stroke:#eee;stroke-width:.02}</style>" + paper +
+                         "<path class='w' d='M5 10h20'/>" + circle),
+                 "too thin and bright");
+  expect_refused(page_of(paper +
+                         "<g opacity='.04'><rect x='5' y='10' width='20' height='.02' "
+                         "rx='.001'/></g>" +
+                         circle),
+                 "too thin and bright");
+  expect_refused(page_of(paper + "<ellipse cx='20' cy='15.003' rx='9' ry='.0003'/>" + circle),
+                 "too thin and bright");
+  // Areas that are nearly white are no walls, nor are the edges of anything.
+  expect_walls(page_of("<rect width='40' height='30' fill='ivory'/>" + circle), {{35, 25}},
+               {{15, 10}});
+  expect_walls(page_of(paper + "<path d='M5 5l8 .5-8 .5z' fill='#222'/>" + circle), {{6, 5.5}},
+               {{15, 10}});
+}
+
+TEST_F(OtherPeoplesFiles, SymbolsAreCutAtTheirEdges) {
+  const std::string symbol =
+      "<symbol id='r' viewBox='0 0 10 10'><rect x='-5' width='30' height='10'/></symbol>";
+  for (const std::string style : {"", "style='overflow:visible'"})
+    expect_walls(
+        page_of(symbol + "<use href='#r' " + style + " x='10' y='5' width='10' height='10'/>"),
+        kBox, kAround);
+}
+
+TEST_F(OtherPeoplesFiles, AllProblemsOfAFileAreNamedAtOnce) {
+  const auto all_of = [&](const std::string& svg) {
+    const Loaded loaded = walls_of(page_of(svg), "");
+    return loaded ? std::string() : joined(loaded.error());
+  };
+  const std::string three = all_of(
+      "<text>a</text>\n<g widht='3'><image/></g>\n<path d='M1 1 X2'/><rect fill='url(#a)'/>");
+  for (const char* one :
+       {"line 2: <text>: is not read", "line 3: <g>: has the attribute widht, which is none of SVG",
+        "line 3: <image>: is not read", "line 4: <path>: d has the unknown command X",
+        "line 4: <rect>: fill refers to #a, which is not there"})
+    EXPECT_TRUE(has(three, one));
+  std::string texts;
+  for (int i = 0; i < 30; ++i) texts += "<text>a</text>\n";
+  const std::string many = all_of(texts);
+  EXPECT_TRUE(has(many, "line 21: <text>"));
+  EXPECT_FALSE(has(many, "line 22: <text>"));
+  EXPECT_TRUE(has(many, "has more problems than these 20 (repair these first)"));
+  write("a.csv", "1,a\n3,4\nb,-6\n");
+  const std::string rows = problems(
+      "maps { file: \"a.csv\" origin_x_m: 0 origin_y_m: 0 "
+      "size_x_m: 100 size_y_m: 50 }");
+  EXPECT_TRUE(has(rows, "a.csv, line 1: a is not a number"));
+  EXPECT_TRUE(has(rows, "a.csv, line 3: b is not a number"));
+  write("a.asc", "ncols 1\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 9\n1\n-2\n0x\n");
+  const std::string cells = problems("maps { file: \"a.asc\" }");
+  EXPECT_TRUE(has(cells, "a.asc, line 7: -2 is negative"));
+  EXPECT_TRUE(has(cells, "a.asc, line 8: 0x is not a number"));
+}
+
 TEST_F(OtherPeoplesFiles, DrawingsThatCouldLoseAWallAreRefused) {
   const std::string box = R"(<rect x="10" y="5" width="10" height="10"/>)";
   for (const auto& [content, words] : std::vector<std::pair<std::string, std::string>>{
            {"<text>Room</text>", "line 2: <text>: is not read (delete it, hide it"},
+           {"<style>g{display:inline}</style><text display=\"none\"/>", "<text>: is not read"},
            {"<image href=\"a.png\"/>", "line 2: <image>: is not read"},
            {"<foreignObject/>", "line 2: <foreignObject>: is not read"},
            {"<script/>", "line 2: <script>: is not read"},
            {"<wall/>", "line 2: <wall>: is no element that is painted"},
            {"<g clip-path=\"url(#c)\"><rect/></g>",
-            "line 2: <g>: refers to #c, which is not there"},
+            "line 2: <g>: clip-path refers to #c, which is not there"},
            {"<use href=\"b.svg#a\"/>", "line 2: <use>: refers to another file"},
            {"<g id=\"a\"><use href=\"#a\"/></g>", "line 2: <use>: refers to itself through #a"},
            {"<path d=\"M1 1 L2 2 Q\"/>", "line 2: <path>: d has no finite number"},
@@ -263,8 +339,25 @@ TEST_F(OtherPeoplesFiles, DrawingsThatCouldLoseAWallAreRefused) {
            {"<style>rect:hover { fill: none }</style>", "has the selector \"rect:hover\""},
            {"<style media=\"print\"/>", "is no style sheet for every display"},
            {"<g systemLanguage=\"de\"/>", "makes it show on some machines only"},
-           {"<pattern id=\"p\"/><rect fill=\"url(#p)\"/>", "<rect>: has a pattern"},
+           {"<pattern id=\"p\"/><rect fill=\"url(#p)\"/>",
+            "<rect>: fill refers to #p, which is a pattern and is not painted"},
            {"<g onclick=\"a()\"/>", "onclick runs a script"},
+           {"<path stroke=\"blak\"/>", "stroke is \"blak\", which is not painted"},
+           {"<g fill=\"none\"><rect fill=\"initial\"/></g>", "fill is \"initial\""},
+           {"<path stroke-width=\"1,5\"/>", "stroke-width is in ,5, which is not read"},
+           {"<g opacity=\"half\"/>", "opacity is \"half\""},
+           {"<g fill-rule=\"even\"/>", "fill-rule is \"even\""},
+           {"<g color=\"none\"/>", "color is \"none\""},
+           {"<rect style=\"STROKE:black\"/>", "has the property STROKE, which is not painted"},
+           {"<rect widht=\"9\"/>", "has the attribute widht, which is none of SVG"},
+           {"<rect x=\"1em\"/>", "x is in em, which is not read"},
+           {"<rect id=\"r\" fill=\"url(#r)\"/>", "#r, which is a <rect> and is not painted"},
+           {"<clipPath id=\"r\"/><use href=\"#r\"/>", "href refers to #r, which is a <clipPath>"},
+           {"<svg id=\"r\"/><use href=\"#r\" width=\"9\"/>", "#r, which is a <svg>"},
+           {"<linearGradient id=\"g\"/>", "<linearGradient>: has no stops, and paints nothing"},
+           {"<symbol overflow=\"visible\"/>", "is a symbol that overflows"},
+           {"<style>g{overflow:visible}</style><symbol/>", "lets symbols overflow"},
+           {"<g style=\"background:#000\"/>", "background is \"#000\", and backgrounds"},
            {"<rect width=\"40\" height=\"30\" rx=\"1\"/>", "more than 90 % of it is solid"},
            {"<circle cx=\"90\" cy=\"5\" r=\"1\"/>", "shows nothing that is solid"},
        })
@@ -285,6 +378,21 @@ TEST_F(OtherPeoplesFiles, TablesAreReadOrNamed) {
   const Coefficients plain = mu(table("1,2\n3,4\n"));
   EXPECT_EQ(mu(table("1, 2\r\n3, 4\r\n\r\n")), plain);
   EXPECT_TRUE(has(problems(table("1;2\n3;4\n")), "line 1: semicolons separate the numbers"));
+  for (const char* blank : {"\t", " "})
+    EXPECT_TRUE(has(problems(table("1" + std::string(blank) + "2\n")),
+                    "line 1: blanks or tabs separate the numbers (write commas: tr"));
+  for (const auto& [begin, is] : std::vector<std::pair<std::string, std::string>>{
+           {"\x89PNG", "a PNG picture (let its name end in .png)"},
+           {"II*", "a TIFF picture (let its name end in .tif)"},
+           {"\xff\xd8\xff", "a JPEG picture (convert in.jpg"},
+           {"PK\3\4", "a ZIP archive, such as a spreadsheet (save the table as CSV)"},
+           {"CDF", "a NetCDF or HDF5 file (write voxels {"},
+           {"\x89HDF", "a NetCDF or HDF5 file (write voxels {"},
+           {"SQLite format 3", "a document or a database, not a map"},
+           {"<html>", "a document or a database, not a map"},
+           {"{}", "a document or a database, not a map"},
+           {std::string("1\0,\0", 4), "in UTF-16"}})
+    EXPECT_TRUE(has(problems(table(begin + "\n")), "a.csv is " + is));
   EXPECT_TRUE(has(problems(table("1,2,\n3,4,\n")), "every line ends in a comma"));
   EXPECT_TRUE(has(problems(table("1,2, \n3,4,\t\r\n")), "every line ends in a comma"));
   EXPECT_EQ(mu(table("1,\n3,4\n")), mu(table("1,0\n3,4\n")));
@@ -321,9 +429,22 @@ TEST_F(OtherPeoplesFiles, PlacesOnTheEarthAreReadOrNamed) {
   const std::string end = "[9.2005,47.5001]]]}";
   const Coefficients plain = mu(region(collection(triangle + end)));
   EXPECT_EQ(mu(region(collection(triangle + "[9.2009,47.5003]," + end))), plain);
-  EXPECT_EQ(mu(region(collection(triangle + end,
-                                 R"({"type":"Feature","properties":{},"geometry":null},)"))),
-            plain);
+  for (const char* empty : {"null", R"({"type":"Polygon","coordinates":[]})",
+                            R"({"type":"MultiPolygon","coordinates":[]})"}) {
+    const Scenario left = good(of_target(region(collection(
+        triangle + end, R"({"type":"Feature","geometry":)" + std::string(empty) + "},"))));
+    EXPECT_EQ(left.mission().target_coefficients, plain);
+    EXPECT_TRUE(has(joined(left.warnings()), "has no place, and is left out (delete it there"));
+  }
+  EXPECT_TRUE(has(problems(region("\xff\xfe{")), "is in UTF-16, and GeoJSON is UTF-8"));
+  const std::string comma = problems(region("{\"type\":[1,]}"));
+  EXPECT_TRUE(has(comma, "a.geojson: line 1, column 12: is no JSON: "));
+  EXPECT_TRUE(has(comma, "(remove the comma before it)"));
+  EXPECT_TRUE(has(problems(region("{\xe2\x80\x9ctype\xe2\x80\x9d:1}")), "(write straight quotes)"));
+  const std::string two = problems(region(collection(
+      triangle + "[9.2006,47.5003]]]}", R"({"type":"Feature","geometry":{"type":"Point"}},)")));
+  EXPECT_TRUE(has(two, "features[0].geometry: has the type Point, which is no polygon"));
+  EXPECT_TRUE(has(two, "features[1].geometry.coordinates[0]: is not closed"));
   EXPECT_TRUE(has(problems(region("<?xml version=\"1.0\"?><kml/>")), "is XML such as KML"));
 }
 

@@ -105,7 +105,8 @@ TEST(Space, RefusesEachMistakeOnceWithItsLine) {
       "vertices { x_m: 10 y_m: 10 } vertices { x_m: 40 y_m: 10 } vertices { x_m: 40 y_m: 40 } } }";
   const std::vector<MistakeInSpace> mistakes = {
       {"size_z_m: 40", "size_z_m: 0", "f:2:37: domain.size_z_m: 0 is below the limit 0.001"},
-      {"origin_z_m: -40", "origin_z_m: -4.1e6", "f:2:50: domain.origin_z_m: -4100000 is below"},
+      {"origin_z_m: -40", "origin_z_m: -4.1e6",
+       "f:2:50: domain.origin_z_m: -4100000 is more than 4000000 m"},
       {" z_m: -5", "",
        "f:6:10: agents.starts[0].z_m: is missing (add z_m, in the domain, -40 to 0"},
       {"z_m: -5", "z_m: 1", "f:6:35: agents.starts[0].z_m: 1 is outside the domain"},

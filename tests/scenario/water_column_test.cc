@@ -119,6 +119,60 @@ TEST_F(WaterColumnTest, HasItsAxesByName) {
             std::string::npos);
 }
 
+/// One layer of the column, without an axis z.
+WaterColumn plane() {
+  WaterColumn column;
+  NetcdfVariable& values = column.at("chl");
+  values.dimensions = {"time", "y", "x"};
+  values.values.assign(values.values.begin() + 4 * kColumnX * kColumnY,
+                       values.values.begin() + 5 * kColumnX * kColumnY);
+  values.values.insert(values.values.begin(), kColumnX * kColumnY, -999);
+  return column;
+}
+std::string plane_scenario() {
+  std::string text = water_column_scenario();
+  for (const std::string part : {" origin_z_m: -60 size_z_m: 60", " modes_z: 6"})
+    text.erase(text.find(part), part.size());
+  return text;
+}
+
+TEST_F(WaterColumnTest, OfOneLayerIsTheTargetOfAPlane) {
+  const auto in_plane = [&](const WaterColumn& column) {
+    column.write(folder_.path() / "column.nc");
+    return Scenario::parse(plane_scenario(), (folder_.path() / "a.textproto").string());
+  };
+  const Mission mission = good(in_plane(plane())).mission();
+  TargetDensity cells;
+  for (std::uint32_t j = 0; j < kColumnY; ++j) {
+    for (std::uint32_t i = 0; i < kColumnX; ++i) {
+      const double x = 100.0 * i, y = 100.0 * j, mass = chlorophyll(i, j, 0);
+      const Polygon cell{{{x, y}, {x + 100, y}, {x + 100, y + 100}, {x, y + 100}}, {}};
+      if (mass > 0) cells.regions.push_back({mass, cell, {}});
+    }
+  }
+  const Coefficients expected = target_coefficients(cells, mission.domain, mission.basis).values;
+  EXPECT_LE((mission.target_coefficients - expected).cwiseAbs().maxCoeff(), 1e-13);
+  WaterColumn single = plane();  // with a depth, which does not matter
+  single.dimensions[1].second = 1;
+  single.at("chl").dimensions = {"time", "depth", "y", "x"};
+  EXPECT_EQ(good(in_plane(single)).mission().target_coefficients, mission.target_coefficients);
+  WaterColumn listed = plane();  // several numbers for nothing
+  auto& chl = listed.at("chl");
+  for (double& value : chl.values) value = value == -999 ? -998 : value;
+  chl.attributes.emplace_back("missing_value", std::vector<double>{-7, -998});
+  EXPECT_EQ(good(in_plane(listed)).mission().target_coefficients, mission.target_coefficients);
+  EXPECT_TRUE(has(problems_of(in_plane({})),
+                  "chl has 4 layers, and the domain is a plane (write origin_z_m and size_z_m of "
+                  "the domain, or keep one layer: ncks -d depth,0"));
+  EXPECT_TRUE(has(said_of_column(plane()),
+                  "chl is a plane without an axis z, and the domain is a "
+                  "box (remove size_z_m of the domain"));
+  WaterColumn away = plane();
+  for (double& y : away.at("y").values) y += 10000;
+  const std::string lost = problems_of(in_plane(away));
+  EXPECT_TRUE(has(lost, "y 10000 to 10600 m, the domain x 0 to 800 m, y 0 to 600 m (move"));
+}
+
 TEST_F(WaterColumnTest, ReadsBackWhatItPrints) {
   const Scenario scenario = good(loaded({}));
   EXPECT_EQ(plan_of(good(Scenario::parse(scenario.print(), "/elsewhere/again"))),
@@ -145,6 +199,15 @@ TEST_F(WaterColumnTest, RefusesEachMistakeWithItsRemedy) {
       {[](WaterColumn& c) { c.rename("depth", "member"); },
        "has the axis member, which is none of x, y, z and time"},
       {[](WaterColumn& c) { c.at("chl").values[300] = -1; }, "is negative"},
+      {[](WaterColumn& c) { c.at("chl").attributes.emplace_back("valid_range", "0 100"); },
+       "chl: its attribute valid_range has not the numbers that are due"},
+      {[](WaterColumn& c) { c.at("chl").attributes.emplace_back("valid_range", 100.0); },
+       "its attribute valid_range has not"},
+      {[](WaterColumn& c) { c.at("chl").attributes.emplace_back("valid_max", "100"); },
+       "its attribute valid_max has not"},
+      {[](WaterColumn& c) { c.at("chl").attributes[0].second = "0.01"; },
+       "its attribute scale_factor has not"},
+      {[](WaterColumn& c) { c.rename("y", "lat"); }, "lat has no units"},
       {[](WaterColumn& c) {
          c.at("chl").type = NetcdfType::kDouble;
          c.at("chl").values[300] = std::nan("");

@@ -31,6 +31,9 @@ class LittleEndian {
   std::string bytes;
 };
 
+/// A local system, for TinyTiff.
+inline constexpr std::uint16_t kLocal = 32767;
+
 struct TinyTiff {
   int columns = 40, rows = 30;
   double cell_m = 1;
@@ -86,7 +89,10 @@ struct TinyTiff {
     if (system > 0) {
       doubles(33550, {cell_m, cell_m, 0});
       doubles(33922, {0, 0, 0, upper_left_m.x(), upper_left_m.y(), 0});
-      const std::uint16_t model = in_degrees ? 2 : 1, key = in_degrees ? 2048 : 3072;
+      const std::uint16_t model = system == kLocal ? kLocal
+                                  : in_degrees     ? 2
+                                                   : 1,
+                          key = in_degrees ? 2048 : 3072;
       shorts(34735, {1, 1, 0, 3, 1024, 0, 1, model, 1025, 0, 1, 1, key, 0, 1, system});
     }
     if (!metadata.empty()) tag(42112, 2, metadata.size() + 1, metadata + '\0');
