@@ -220,6 +220,7 @@ ergocast_test(NAME geo_tests LABELS unit
 ergocast_test(NAME scenario_tests LABELS unit
   SOURCES
     scenario/assign_test.cc
+    scenario/cases_test.cc
     scenario/free_domain_test.cc
     scenario/geodata_test.cc
     scenario/geojson_target_test.cc
