@@ -24,7 +24,9 @@ inline void read_map(Input input, OpenedMap (*open)(const std::filesystem::path&
   std::vector<double> row(static_cast<std::size_t>(map.columns()));
   const int rows = std::min(map.rows(), 1 + (1 << 20) / map.columns());
   for (int i = 0; i < rows; ++i) {
-    if (map.next_row(row)) return;
+    const auto problem = map.next_row(row);
+    if (problem && !problem->ends_row) return;
+    if (problem) continue;
     for (const double value : row) ERGOCAST_REQUIRE(value >= 0 && value <= kMaxMapValue);
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the first binary inputs of the corpora: fuzz-seeds DIRECTORY. Run it again when the format
-// of a message or of the plan has changed, or the program's version, which is in the plan.
+// Writes the first inputs of corpora, most of them binary: fuzz-seeds DIRECTORY. Run it again when
+// the format of a message or of the plan has changed, or the program's version, which is in the
+// plan.
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "scenario/scenario.h"
 #include "tests/fuzz/small_team.h"
 #include "tests/lcmtypes/sample_messages.h"
+#include "tests/scenario/water_column.h"
 #include "tests/support/grey_png.h"
 
 namespace ergocast::fuzz {
@@ -170,6 +172,37 @@ void pictures(const Seeds& seeds) {
   test::write_png(seeds.file("map_png", "colours"), 5, 4, {.color = PNG_COLOR_TYPE_RGB}, slope);
 }
 
+void grids(const Seeds& seeds) {
+  test::WaterColumn().write(seeds.file("netcdf", "column"));
+  test::NetcdfWriter(seeds.file("netcdf", "plane"), {{"y", 2}, {"x", 3}},
+                     {{"x", {"x"}, {5, 15, 25}, {{"units", "m"}, {"axis", "X"}}},
+                      {"y", {"y"}, {15, 5}, {{"units", "km"}}},
+                      {"v",
+                       {"y", "x"},
+                       {1, -1, 3, -4, 5, 9999},
+                       {{"_Unsigned", "true"},
+                        {"scale_factor", 0.5},
+                        {"missing_value", std::vector<double>{-1, 9999}},
+                        {"valid_range", std::vector<double>{0, 1e4}}},
+                       test::NetcdfType::kShort}});
+}
+
+void places(const Seeds& seeds) {
+  const std::string field =
+      "<Placemark><name>Field</name><Polygon><tessellate>1</"
+      "tessellate><outerBoundaryIs><LinearRing>"
+      "<coordinates>9.167,48.786,412 9.168,48.786,412 9.168,48.787,412 9.167,48.786,412"
+      "</coordinates></LinearRing></outerBoundaryIs><innerBoundaryIs><LinearRing><coordinates>"
+      "9.1676,48.7862 9.1678,48.7862 9.1678,48.7864</coordinates></LinearRing></innerBoundaryIs>"
+      "</Polygon></Placemark>";
+  const std::string head =
+      "<?xml version='1.0'?>\n<kml xmlns='http://www.opengis.net/kml/2.2'><Document>";
+  seeds.add("kml", "field", head + "<Folder>" + field + "</Folder></Document></kml>\n");
+  seeds.add("kml", "point",
+            head + "<Placemark><MultiGeometry><Point><coordinates>9,48</coordinates></Point>" +
+                "</MultiGeometry></Placemark></Document></kml>\n");
+}
+
 }  // namespace
 }  // namespace ergocast::fuzz
 
@@ -185,4 +218,6 @@ int main(int argc, char** argv) {
   ergocast::fuzz::relays(seeds);
   ergocast::fuzz::plans(seeds);
   ergocast::fuzz::pictures(seeds);
+  ergocast::fuzz::grids(seeds);
+  ergocast::fuzz::places(seeds);
 }

@@ -2,16 +2,13 @@
 // An SVG drawing: refused with a problem, left to be painted, or rings of finite corners.
 #include "target/geo/svg.h"
 
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/geo_target.h"
 
 namespace ergocast::fuzz {
 
 FUZZ_TARGET(svg) {
   const auto parsed = parse_svg(text_of(input));
-  if (!parsed) {
-    ERGOCAST_REQUIRE(!parsed.error().what.empty() && !parsed.error().remedy.empty());
-    return;
-  }
+  if (!parsed) return require_words(parsed.error());
   const auto& drawing = *parsed;
   ERGOCAST_REQUIRE(drawing.size.minCoeff() > 0 && !drawing.to_paint.empty());
   ERGOCAST_REQUIRE(drawing.shapes.empty() == !drawing.paint_because.empty());
