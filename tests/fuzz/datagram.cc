@@ -10,7 +10,7 @@
 #include "core/law/coverage_table.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
-#include "tests/fuzz/datagrams.h"
+#include "tests/fuzz/support/datagrams.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

@@ -8,9 +8,9 @@
 #include "cli/team/team_text.h"
 #include "lcmtypes/codec.h"
 #include "plan/plan.h"
-#include "tests/fuzz/small_team.h"
+#include "tests/fuzz/support/small_team.h"
+#include "tests/fuzz/support/turns.h"
 #include "tests/fuzz/target.h"
-#include "tests/fuzz/turns.h"
 #include "tests/support/team.h"
 
 namespace ergocast::fuzz {

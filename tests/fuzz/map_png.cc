@@ -4,8 +4,8 @@
 #include <zlib.h>
 
 #include "target/maps/png_map.h"
-#include "tests/fuzz/datagrams.h"
 #include "tests/fuzz/map_target.h"
+#include "tests/fuzz/support/datagrams.h"
 
 namespace ergocast::fuzz {
 namespace {

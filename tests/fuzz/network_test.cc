@@ -8,7 +8,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "runtime/process/key_file.h"
-#include "tests/fuzz/adversary.h"
+#include "tests/fuzz/support/adversary.h"
 #include "tests/process/support/mission.h"
 
 namespace ergocast::test {

@@ -4,7 +4,7 @@
 // Input: a length of 2 bytes, high one first, then a datagram, and so on. Tags are made valid.
 #include "cli/doctor/bus_listener.h"
 #include "cli/doctor/print.h"
-#include "tests/fuzz/datagrams.h"
+#include "tests/fuzz/support/datagrams.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

@@ -15,7 +15,7 @@
 #include "plan/plan.h"
 #include "relay/packets.h"
 #include "scenario/scenario.h"
-#include "tests/fuzz/small_team.h"
+#include "tests/fuzz/support/small_team.h"
 #include "tests/lcmtypes/sample_messages.h"
 #include "tests/scenario/water_column.h"
 #include "tests/support/grey_png.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A running team that also receives an attacker's messages: no process crashes or sends a message
 // that others would refuse. The first byte of the input is Features.
-#include "tests/fuzz/small_team.h"
+#include "tests/fuzz/support/small_team.h"
+#include "tests/fuzz/support/turns.h"
 #include "tests/fuzz/target.h"
-#include "tests/fuzz/turns.h"
 
 namespace ergocast::fuzz {
 

@@ -144,7 +144,8 @@ TEST(Conversion, KnowsEveryFieldOfAScenario) {
   std::set<std::string> known = Names(Mission()).all;
   known.insert({"name", "description", "seed", "law.contraction_center", "law.contraction_x_m",
                 "law.contraction_y_m", "law.contraction_z_m", "time.duration_s",
-                "agents.random_count", "origin.latitude_deg", "origin.longitude_deg"});
+                "agents.random_count", "agents.footprint_sigma_m", "agents.quality",
+                "origin.latitude_deg", "origin.longitude_deg"});
   EXPECT_EQ(names_in(*proto::Scenario::descriptor(), ""), known);
 }
 

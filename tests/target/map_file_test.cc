@@ -145,8 +145,7 @@ TEST_F(Maps, CsvIsReadLineByLine) {
 }
 
 TEST_F(Maps, CsvThatIsNoneIsRefusedWithItsLine) {
-  expect_said(written("a.csv", "1,2\n\n3,4,5\n"),
-              ", line 3 has 3 numbers, the first one has 2");
+  expect_said(written("a.csv", "1,2\n\n3,4,5\n"), ", line 3 has 3 numbers, the first one has 2");
   expect_said(written("a.csv", "1,2\n3\n"), ", line 2 has 1 numbers");
   expect_said(written("a.csv", "1,2\n3,-4\n"), ", line 2: -4 is negative");
   expect_said(written("a.csv", "1,nan\n"), ", line 1: nan is not a finite number");

@@ -35,7 +35,7 @@ std::vector<std::string> text_of(const CellGrid& cells) {
   std::vector<std::string> rows;
   for (int y = cells.rows() - 1; y >= 0; --y) {
     std::string& row = rows.emplace_back();
-    for (int x = 0; x < cells.columns(); ++x) row += ".#?"[cells.at(x, y)];
+    for (int x = 0; x < cells.columns(); ++x) row += ".#?x"[cells.at(x, y)];
   }
   return rows;
 }
@@ -268,7 +268,7 @@ TEST(Specks, UnknownCellsAtTheEdgeStay) {
 TEST(Specks, SmallPocketsOfFreeCellsAreClosed) {
   CellGrid cells = grid_of({"#######", "#..#.##", "#..##.#", "#######"});
   close_pockets(cells, 2);
-  EXPECT_EQ(text_of(cells), (std::vector<std::string>{"#######", "#..#?##", "#..##?#", "#######"}));
+  EXPECT_EQ(text_of(cells), (std::vector<std::string>{"#######", "#..#x##", "#..##x#", "#######"}));
   EXPECT_EQ(count_free(cells), 4U);
 }
 

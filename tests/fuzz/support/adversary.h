@@ -10,7 +10,7 @@
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/bus/lcm_url.h"
 #include "runtime/bus/socket.h"
-#include "tests/fuzz/datagrams.h"
+#include "tests/fuzz/support/datagrams.h"
 
 namespace ergocast::fuzz {
 

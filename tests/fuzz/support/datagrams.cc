@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Replaces numbers at the places of fields by extreme ones, and computes the tag again.
-#include "tests/fuzz/datagrams.h"
+#include "tests/fuzz/support/datagrams.h"
 
 #include <xxhash.h>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts an input into turns by their lengths, and mutates whole turns as well as bytes within
 // them.
-#include "tests/fuzz/turns.h"
+#include "tests/fuzz/support/turns.h"
 
 #include <algorithm>
 #include <cstring>
 
 #include "lcmtypes/codec.h"
-#include "tests/fuzz/datagrams.h"
+#include "tests/fuzz/support/datagrams.h"
 
 namespace ergocast::fuzz {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Records datagrams, makes one to four changes in a copy, and sends the copy in LCM's format.
-#include "tests/fuzz/adversary.h"
+#include "tests/fuzz/support/adversary.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two agents, coordinator, world and logger exchange messages by virtual time, and all tables
 // are checked afterwards.
-#include "tests/fuzz/small_team.h"
+#include "tests/fuzz/support/small_team.h"
 
 #include <cmath>
 
