@@ -34,9 +34,9 @@ std::optional<MapProblem> of_another_kind(const fs::path& file, std::string_view
   const auto is = [&](std::string_view mark, std::string_view ends = "") {
     return begin.starts_with(mark) && ends.find(end) == ends.npos;
   };
-  if (is("\x89PNG", ".png .pgm"))
+  if (is("\x89PNG", ".png.pgm"))
     return MapProblem{name + " is a PNG picture", "let its name end in .png"};
-  if (is("II*", ".tif .tiff") || is("MM", ".tif .tiff"))
+  if (is("II*", ".tif.tiff") || is("MM", ".tif.tiff"))
     return MapProblem{name + " is a TIFF picture", "let its name end in .tif"};
   if (is("\xff\xd8\xff"))
     return MapProblem{name + " is a JPEG picture", "convert in.jpg -colorspace Gray out.png"};
@@ -44,7 +44,7 @@ std::optional<MapProblem> of_another_kind(const fs::path& file, std::string_view
     return MapProblem{name + " is a ZIP archive, such as a spreadsheet", "save the table as CSV"};
   if (is("CDF", ".nc") || is("\x89HDF", ".nc"))
     return MapProblem{name + " is a NetCDF or HDF5 file", "write voxels { file: … variable: … }"};
-  if (is("%PDF") || is("SQLite") || is("<", ".tif .tiff") || is("{", ".yaml .yml"))
+  if (is("%PDF") || is("SQLite") || is("<", ".tif.tiff") || is("{", ".yaml.yml"))
     return MapProblem{name + " is a document or a database, not a map",
                       "export the map itself from where it was made"};
   return {};

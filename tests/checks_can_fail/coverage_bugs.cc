@@ -21,7 +21,6 @@ WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi"
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
-WRAPPED(void, report, "_ZN8ergocast7Efforts6reportERKNS_6AuthorEli", Efforts*, const Author&, Tick, std::int32_t)
 WRAPPED(bool, merge_looks, "_ZN8ergocast7Efforts5mergeERKNS_6AuthorEmNS_10EffortTileEl", Efforts*, const Author&, std::size_t, EffortTile, Tick)
 // clang-format on
 
@@ -220,11 +219,6 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table,
 }
 
 // ---- looks ----
-
-void bug_report(Efforts* self, const Author& author, Tick counted, std::int32_t cell) {
-  real_report(self, author, counted, cell);
-  if (bug("a report counts twice")) real_report(self, author, counted + 1, cell);
-}
 
 bool bug_merge_looks(Efforts* self, const Author& author, std::size_t tile, EffortTile theirs,
                      Tick sent) {

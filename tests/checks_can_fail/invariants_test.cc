@@ -129,8 +129,6 @@ const char* const kStations =
 const char* const kObjects = "world { objects { count: 5 } }\nsensor { radius_m: 20 }";
 
 const char* const kSearch = "law { kind: SEARCH }\nsensor { radius_m: 5 }";
-const char* const kSearchWithFalseAlarms =
-    "law { kind: SEARCH }\nsensor { radius_m: 5 false_alarms_per_s: 0.2 }";
 const char* const kEndsWhenFound =
     "world { objects { count: 5 end_when_found: 3 } }\nsensor { radius_m: 8 }";
 
@@ -177,7 +175,6 @@ const Plant kPlants[] = {
     {Invariant::kLooksAreTrue, "a tile is added to the one before", "", kSearch},
     {Invariant::kLooksAreTrue, "an old tile replaces a newer one", kLateBlocks, kSearch},
     {Invariant::kLooksAreTrue, "a relayed row is the relayer's", "", kSearch, "", "--lockstep"},
-    {Invariant::kLooksAreTrue, "a report counts twice", "", kSearchWithFalseAlarms},
     {Invariant::kFindsAreRecorded, "a find is recorded a tick late", "", kObjects, "",
      "--lockstep"},
     {Invariant::kFindsAreRecorded, "no find is recorded", "", kObjects, "", "--lockstep"},

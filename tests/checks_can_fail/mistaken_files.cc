@@ -167,7 +167,7 @@ void write_mistaken_files(const fs::path& folder) {
   write("dot.svg", page + "<rect x='1.9' y='.9' width='.01' height='.01' fill='white'/></svg>");
   write("bright.svg", page +
                           "<path fill='#fff' d='M0 0h2v1h-2z'/><circle r='.1'/><path "
-                          "stroke='yellow' stroke-width='.001' d='M.5 .5003h1'/></svg>");
+                          "stroke='yellow' stroke-width='.0005' d='M.5 .5003h1'/></svg>");
   // Each group is a picture of its own.
   write("deep.svg", "<svg viewBox='0 0 1 1'>" + repeated(60, "<g opacity='.9'>") +
                         "<circle r='.1'/>" + repeated(60, "</g>") + "</svg>");
