@@ -216,9 +216,8 @@ add_dependencies(all_process reference-facts)
 add_test(NAME mcap_reference_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/report/export/mcap_test.sh
   $<TARGET_FILE:ergocast> ${CMAKE_BINARY_DIR}/mcap_reader)
 set_tests_properties(mcap_reference_reader PROPERTIES LABELS process TIMEOUT 300)
-add_executable(mavlink-lines EXCLUDE_FROM_ALL bridges/mavlink/lines.cc)
+add_executable(mavlink-lines bridges/mavlink/lines.cc)
 target_link_libraries(mavlink-lines PRIVATE ergocast_mavlink nlohmann_json::nlohmann_json ergocast::warnings)
-add_dependencies(all_process mavlink-lines)
 ergocast_script_test(mavlink_reference process bridges/mavlink/reference_test.sh
   $<TARGET_FILE:mavlink-lines> ${CMAKE_BINARY_DIR}/node_mavlink)
 # It fetches node-mavlink, which the tests with mock autopilots need.

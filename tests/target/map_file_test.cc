@@ -218,7 +218,7 @@ TEST_F(Maps, AsciiGridThatIsNoneIsRefused) {
                                      std::string(cell) + "\n1"),
                 ": its header gives no extent");
   }
-  expect_said(written("a.asc", "\x89PNG\r\n\x1a\n"), ", line 1: no key");
+  expect_said(written("a.asc", "\x89PNG\r\n\x1a\n"), " is a PNG picture");
 }
 
 // ---- any ----
