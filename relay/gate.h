@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks each datagram before a relay queues it, and tells what it may replace.
+// Checks each datagram before a relay queues it, and finds what it may replace.
 #pragma once
 
 #include <array>

@@ -30,7 +30,7 @@ Hub::Hub(const Settings& settings, const MessageAuthenticator& authenticator)
       jar_(settings.secret),
       carrier_(authenticator, settings.others) {}
 
-void Hub::hear(Bus bus, std::span<const std::byte> datagram, Instant now) {
+void Hub::take_local(Bus bus, std::span<const std::byte> datagram, Instant now) {
   const auto admitted = carrier_.from_group(bus, datagram, now);
   if (!admitted) return;
   if (members_.empty()) return void(++carrier_.no_path);
@@ -106,7 +106,7 @@ void Hub::on(const Join& join, const Address& from, Instant now, Outbox& out) {
   } else if (join.count > known->second.count) {
     Member& member = known->second;  // the site did not get our answers
     member.count = join.count;
-    member.heard = now;
+    member.last_received = now;
     member.ours = member.theirs = {};
     member.received_by_ping = 0;
   }
@@ -121,7 +121,7 @@ void Hub::on(const Ping& ping, const Address& from, Instant now, Outbox& out) {
   Member& member = at->second;
   if (ping.count <= member.count) return;
   member.count = ping.count;
-  member.heard = now;
+  member.last_received = now;
   member.theirs = ping.counts;
   member.received_by_ping = member.ours.packets_received;
   member.round_trip_s = ping.round_trip_s;
@@ -151,7 +151,7 @@ void Hub::advance(Instant now, Outbox& out) {
   for (auto at = members_.begin(); at != members_.end();) {
     const auto next = std::next(at);
     Member& member = at->second;
-    if (now >= member.heard + kSilence) {
+    if (now >= member.last_received + kSilence) {
       remove(at);
     } else {
       while (auto packet = member.sender.next_packet(now)) {
@@ -166,7 +166,7 @@ void Hub::advance(Instant now, Outbox& out) {
 Instant Hub::next_wakeup() const {
   Instant next = Instant::max();
   for (const auto& [address, member] : members_) {
-    next = std::min({next, member.heard + kSilence, member.sender.next_wakeup()});
+    next = std::min({next, member.last_received + kSilence, member.sender.next_wakeup()});
   }
   return next;
 }

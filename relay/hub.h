@@ -36,7 +36,7 @@ class Hub {
   Hub(const Settings& settings, const MessageAuthenticator& authenticator);
 
   /// A datagram of the local group.
-  void hear(Bus bus, std::span<const std::byte> datagram, Instant now);
+  void take_local(Bus bus, std::span<const std::byte> datagram, Instant now);
   /// A packet of any sender.
   void receive(std::span<const std::byte> packet, const Address& from, Instant now, Outbox& out);
   void advance(Instant now, Outbox& out);
@@ -50,10 +50,14 @@ class Hub {
  private:
   struct Member {
     Member(const Join& join, std::int64_t most_bytes_per_s, Instant now)
-        : site(join.site), count(join.count), heard(now), joined(now), sender(most_bytes_per_s) {}
+        : site(join.site),
+          count(join.count),
+          last_received(now),
+          joined(now),
+          sender(most_bytes_per_s) {}
     SiteId site;
     std::int64_t count;  // of its newest Join or Ping
-    Instant heard, joined;
+    Instant last_received, joined;
     Sender sender;
     FlowCounts ours, theirs;            // theirs as of the newest Ping
     std::int64_t received_by_ping = 0;  // of ours.packets_received, when that Ping came

@@ -52,8 +52,8 @@ class Process {
   Process(StopSignals& signals, Endpoint endpoint, std::unique_ptr<LocalGroup> group)
       : signals_(signals), endpoint_(std::move(endpoint)), group_(std::move(group)) {}
 
-  /// Runs until a signal arrives. A participant has hear(), receive(), advance(), next_wakeup() and
-  /// counts().
+  /// Runs until a signal arrives. A participant has take_local(), receive(), advance(),
+  /// next_wakeup() and counts().
   /// @param each_turn  called in every turn
   void run(auto& participant, int more_fd, const std::function<void(Instant)>& each_turn);
 
@@ -74,8 +74,9 @@ void Process::wait(Instant until, int more_fd) const {
   if (group_) {
     for (const int fd : group_->fds()) ready.push_back({fd, POLLIN, 0});
   }
-  const auto left = std::clamp<std::chrono::nanoseconds>(until - now(), 0s, 1s);
-  const timespec timeout{0, static_cast<long>(std::min(left.count(), 999999999L))};
+  constexpr std::chrono::nanoseconds kLongestWait(999'999'999);
+  const std::chrono::nanoseconds left = until - now();
+  const timespec timeout{0, static_cast<long>(std::clamp(left, {}, kLongestWait).count())};
   ppoll(ready.data(), ready.size(), &timeout, nullptr);
 }
 
@@ -91,7 +92,7 @@ void Process::send(Outbox& out) {
 void Process::read(auto& participant, Outbox& out) {
   if (group_) {
     group_->receive(kMostPerTurn, [&](Bus bus, std::span<const std::byte> datagram) {
-      participant.hear(bus, datagram, now());
+      participant.take_local(bus, datagram, now());
     });
   }
   for (std::size_t i = 0; i < kMostPerTurn; ++i) {

@@ -23,7 +23,7 @@ std::optional<std::size_t> Site::joined() const {
   return flow_ && flow_->joined() ? std::optional(flow_hub_) : std::nullopt;
 }
 
-void Site::hear(Bus bus, std::span<const std::byte> datagram, Instant now) {
+void Site::take_local(Bus bus, std::span<const std::byte> datagram, Instant now) {
   const auto admitted = carrier_.from_group(bus, datagram, now);
   if (!admitted) return;
   // What waited while the site is cut off would be old when the path is back. The team's own

@@ -37,7 +37,7 @@ class Site {
   Site& operator=(const Site&) = delete;
 
   /// A datagram of the local group.
-  void hear(Bus bus, std::span<const std::byte> datagram, Instant now);
+  void take_local(Bus bus, std::span<const std::byte> datagram, Instant now);
   /// A packet of any sender.
   void receive(std::span<const std::byte> packet, const Address& from, Instant now, Outbox& out);
 

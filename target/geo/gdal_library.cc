@@ -28,7 +28,10 @@ void note_error(int level, int /*number*/, const char* message) {
 
 std::string GdalLibrary::reported() {
   constexpr std::size_t kMost = 200;
-  if (first_error.size() > kMost) first_error = first_error.substr(0, kMost) + " …";
+  if (first_error.size() > kMost) {
+    first_error.resize(kMost);
+    first_error += " …";
+  }
   return first_error.empty() ? "" : ": " + first_error;
 }
 

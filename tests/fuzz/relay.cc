@@ -42,7 +42,7 @@ class Network {
     std::vector<std::byte> packet(bytes.begin(), bytes.end());
     if ((what & kRepaired) != 0 && !packet.empty()) packet = seal_.close(packet);
     if ((what & kToGroup) != 0) {
-      site_.hear(Bus::kSwarm, packet, now_);
+      site_.take_local(Bus::kSwarm, packet, now_);
     } else if ((what & kToSite) != 0) {
       site_.receive(packet, from, now_, up_);
     } else {

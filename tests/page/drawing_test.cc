@@ -33,8 +33,8 @@ TEST_F(DrawnTargetInABrowser, IsMovedComparedAndSent) {
   draw_polygon({{-200, 100}, {-80, 100}, {-80, 200}, {-200, 200}});
   EXPECT_EQ(drawn(".parts.length"), 2);
   EXPECT_TRUE(becomes("drawnText",
-                      "by now: [\\d.].* against this target, .* against the present one. "
-                      "[\\d.]+\\u00a0% of its mass is elsewhere"));
+                      "so far: [\\d.].* against this target, .* against the present one. "
+                      "[\\d.]+\\u00a0% of the mass is elsewhere"));
   EXPECT_FALSE(visible("#commandBox"));
   screenshot("drawing");
   // The page has computed the modes that the team then gets.
@@ -146,7 +146,7 @@ TEST_F(DrawnTargetInABrowser, InABoxHasHeightsAndIsCompared) {
   draw_polygon({{-100, 50}, {-20, 50}, {-20, 150}, {-100, 150}});
   type("lowZ", "200");
   type("highZ", "400");
-  EXPECT_TRUE(becomes("drawnText", "[\\d.]+\\u00a0% of its mass is elsewhere"))
+  EXPECT_TRUE(becomes("drawnText", "[\\d.]+\\u00a0% of the mass is elsewhere"))
       << text("drawnText");
   screenshot("drawing_box");
   js("window.preview = [...ergocast.S.drawing.mu]");

@@ -73,10 +73,10 @@ TEST_F(Relays, AnEchoIsNotCarriedBackHoweverLateItComes) {
   network.send(2, sent);
   ASSERT_EQ(network.arrived(-3).size(), 1U);
   network.pass(20s);
-  late.hear(Bus::kSwarm, sent, network.now);
+  late.take_local(Bus::kSwarm, sent, network.now);
   network.settle();
   EXPECT_EQ(network.arrived(2).size(), 0U);
-  late.hear(Bus::kSwarm, sent, network.now);
+  late.take_local(Bus::kSwarm, sent, network.now);
   network.settle();
   EXPECT_EQ(network.arrived(2).size(), 1U) << "a repeat by somebody else";
 }
@@ -157,14 +157,14 @@ TEST_F(Relays, APeerPutsWhatSitesSendIntoItsOwnGroup) {
     network.now += 500ms;
   }
   ASSERT_TRUE(site.joined());
-  site.hear(Bus::kWorld, datagram_of(status(1), key(1)), network.now);
+  site.take_local(Bus::kWorld, datagram_of(status(1), key(1)), network.now);
   site.advance(network.now, up);
   for (const Packet& packet : up.packets) {
     peer.receive(packet.bytes, address(2), network.now, down);
   }
   ASSERT_EQ(down.group.size(), 1U);
   EXPECT_EQ(down.group[0].bus, Bus::kWorld);
-  peer.hear(Bus::kWorld, datagram_of(status(1), key(1)), network.now + 5s);
+  peer.take_local(Bus::kWorld, datagram_of(status(1), key(1)), network.now + 5s);
   Outbox back;
   peer.advance(network.now, back);
   EXPECT_TRUE(back.packets.empty()) << "an echo";

@@ -90,7 +90,7 @@ class SmallNetwork {
   /// A program of the team sends it into a group.
   void send(int group, const Datagram& datagram, Bus bus = Bus::kSwarm) {
     for (const Place& one : sites_) {
-      if (one.group == group) one.site->hear(bus, datagram, now);
+      if (one.group == group) one.site->take_local(bus, datagram, now);
     }
     settle();
   }
@@ -156,7 +156,8 @@ class SmallNetwork {
     for (const GroupDatagram& datagram : out.group) {
       arrived_[group].push_back(datagram.bytes);
       for (Place& one : sites_) {
-        if (one.group == group && group >= 0) one.site->hear(datagram.bus, datagram.bytes, now);
+        if (one.group == group && group >= 0)
+          one.site->take_local(datagram.bus, datagram.bytes, now);
       }
     }
     return !out.packets.empty() || !out.group.empty();

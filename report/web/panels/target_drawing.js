@@ -39,7 +39,8 @@ function describe() {
   put(
     $('drawnText'),
     `φ² of the coverage so far: ${readable(against)} against this target, ${readable(present)} against ` +
-      `the present one. ${share(Math.round(moved * 100) / 100)} of the mass is elsewhere than in the present target.`,
+      `the present one. ${share(Math.round(moved * 100) / 100)} of the mass is elsewhere ` +
+      'than in the present target.',
   );
 }
 
