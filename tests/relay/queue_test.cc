@@ -135,7 +135,8 @@ TEST(SenderOfAFlow, KeepsItsRate) {
   Sender sender(10000);
   Instant now{100s};
   std::size_t bytes = 0;
-  for (std::int64_t i = 0; i < 10000; ++i, now += 1ms) {
+  constexpr std::chrono::milliseconds kTurn(1);
+  for (std::int64_t i = 0; i < 10000; ++i, now += kTurn) {
     const Datagram datagram = datagram_of(status(i, static_cast<AgentId>(i % 50)), key(1));
     sender.add(*gate.admit(Bus::kSwarm, datagram), Bus::kSwarm, datagram);
     while (const auto packet = sender.next_packet(now)) bytes += packet->size() + 28;
