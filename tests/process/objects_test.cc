@@ -114,6 +114,7 @@ TEST_F(FindingObjects, ConfirmThemWhenSensorsHaveFalseAlarms) {
   // A detection alone is no find.
   std::vector<std::string> certain = set;
   certain[7] = "sensor.false_alarms_per_s=0";
+  std::filesystem::remove_all(folder_ / "simulated");
   const auto detected = simulated(certain);
   EXPECT_LE(detected["finds"][0]["tick"], objects["finds"][0]["tick"]);
 }
