@@ -26,12 +26,11 @@
 namespace ergocast::relay {
 namespace {
 
-using namespace std::chrono_literals;
 
 /// Limit (Network): datagrams of a bus, and packets, that a relay reads in a turn. Beyond it: the
 /// next turn reads on.
 constexpr std::size_t kMostPerTurn = 256;
-constexpr auto kReportPeriod = 1min;
+constexpr std::chrono::seconds kReportPeriod(60), kLookPeriod(1), kWaitingPeriod(10);
 
 struct Options {
   LcmUrl url;
@@ -111,7 +110,7 @@ void Process::run(auto& participant, int more_fd, const std::function<void(Insta
     participant.advance(now(), out);
     send(out);
     if (now() >= next_look) {
-      next_look = now() + 1s;
+      next_look = now() + kLookPeriod;
       if (group_ && group_->renew_membership())
         spdlog::warn("listening on another network interface from now on");
     }
@@ -144,7 +143,7 @@ class JoinedLog {
   explicit JoinedLog(const Options& options) : options_(options) {}
   void look(const Site& site, Instant now) {
     if (site.joined() == logged_ && (logged_ || now < next_)) return;
-    next_ = now + 10s;
+    next_ = now + kWaitingPeriod;
     if (site.joined()) {
       spdlog::info("joined the hub {} at {}", name_of(options_.to[*site.joined()]),
                    relay::to_text(site.flow()->hub()));
