@@ -55,7 +55,9 @@ class LayerReader {
     if (gdal_.OGR_L_GetGeomType(layer) == kTable) return;
     const std::string name = std::string("layer ") + gdal_.OGR_L_GetName(layer);
     to_earth_ = nullptr;
-    while (const Handle feature = gdal_.OGR_L_GetNextFeature(layer)) {
+    while (!problems_.full() && places_ <= kMostPlaces) {
+      const Handle feature = gdal_.OGR_L_GetNextFeature(layer);
+      if (feature == nullptr) return;
       if (to_earth_ == nullptr) enter(layer, name);
       const std::string member = name + ", feature " + std::to_string(gdal_.OGR_F_GetFID(feature));
       try {

@@ -44,7 +44,7 @@ class Walk {
     if (root.is_object() && root.contains("crs")) reference_system(root["crs"]);
     if (type_of(root) == "FeatureCollection") {
       const Json& features = list(root, "features", "");
-      for (std::size_t i = 0; i < features.size(); ++i)
+      for (std::size_t i = 0; i < features.size() && !problems.full(); ++i)
         apart([&] { object(features[i], indexed("features", i)); });
     } else {
       object(root, "");

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "target/geo/xml_places.h"
 #include "text/read_number.h"
 
 namespace ergocast {
@@ -51,7 +52,7 @@ std::string_view kml_name(const pugi::xml_node& node) {
 
 class KmlWalk {
  public:
-  explicit KmlWalk(std::string_view text) : text_(text) {}
+  explicit KmlWalk(std::string_view text) : places_(text) {}
 
   std::vector<GeoPolygon> polygons(const pugi::xml_document& document) {
     const pugi::xml_node root = document.document_element();
@@ -64,9 +65,7 @@ class KmlWalk {
 
  private:
   [[noreturn]] void fail(const pugi::xml_node& node, std::string what, std::string remedy) const {
-    const auto offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, node.offset_debug()));
-    const std::string place = line_of(text_, offset) + ": <" + node.name() + ">";
-    throw BadKml{{place, std::move(what), std::move(remedy)}};
+    throw BadKml{{places_.of(node), std::move(what), std::move(remedy)}};
   }
 
   void container(const pugi::xml_node& node, int depth) {
@@ -74,6 +73,7 @@ class KmlWalk {
     const auto seen = [&] { return polygons_.size() + failures_; };
     const std::size_t before = seen();
     for (const pugi::xml_node& child : node.children()) {
+      if (problems_.full()) return;
       if (child.type() != pugi::node_element || kUnplaced.contains(kml_name(child))) continue;
       try {
         part(child, depth);
@@ -94,7 +94,7 @@ class KmlWalk {
 
   void polygon(const pugi::xml_node& node) {
     GeoPolygon& polygon = polygons_.emplace_back();
-    polygon.member = line_of(text_, static_cast<std::size_t>(node.offset_debug())) + ": <Polygon>";
+    polygon.member = places_.of(node);
     std::vector<std::vector<GeoPlace>> outlines;
     for (const pugi::xml_node& child : node.children()) {
       if (child.type() != pugi::node_element || kUnplaced.contains(kml_name(child))) continue;
@@ -173,7 +173,7 @@ class KmlWalk {
     return {values[1], values[0]};
   }
 
-  std::string_view text_;
+  const XmlPlaces places_;
   std::vector<GeoPolygon> polygons_;
   PolygonFileProblems problems_;
   std::size_t failures_ = 0;

@@ -29,6 +29,8 @@ struct PolygonFileProblem {
 class PolygonFileProblems {
  public:
   bool empty() const { return list_.empty(); }
+  /// Whether further problems change nothing, so that reading can end.
+  bool full() const { return list_.size() > kMostFileProblems; }
   /// Takes in a problem and its others; beyond the limit, only that there are more.
   void add(PolygonFileProblem problem);
   /// The first one, with the others in it.

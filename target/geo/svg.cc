@@ -153,6 +153,7 @@ class SvgWalk {
     for (pugi::xml_node child = node.first_child(); child;) {
       const pugi::xml_node next = child.next_sibling();
       const std::size_t declared = names_.enter(child);
+      if (problems_.full()) return;
       try {
         if (shows(child, outer)) {
           element(child, outer, depth);
@@ -236,7 +237,9 @@ class SvgWalk {
     }
     const bool gradient = name == "linearGradient" || name == "radialGradient";
     const bool linked = node.attribute("href") || node.attribute("xlink:href");
-    if (gradient && !linked && !node.first_child())
+    const bool stops =
+        node.find_child([](const pugi::xml_node& child) { return local_name(child) == "stop"; });
+    if (gradient && !linked && !stops)
       places_.fail(node, "has no stops, and paints nothing", "draw it anew, or delete it");
   }
 

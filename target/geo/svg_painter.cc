@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "target/geo/bounded_child.h"
+#include "target/geo/svg_hairs.h"
 #include "target/geo/svg_luminance.h"
 #include "target/maps/symbol.h"
 
@@ -84,16 +85,15 @@ bool is_solid(std::uint32_t pixel, bool solid_white) {
   return solid_white || luminance(part(16), part(8), part(0)) < kSolidLuminance;
 }
 
-/// Paint on white paper that is neither solid nor white, as the edge of something is; in 8 bits,
-/// white may differ by 2.
-bool is_faint(std::uint32_t pixel) {
-  constexpr double kNearlyWhite = 0.99;
+/// How dark a pixel is: kSolidDarkness, or of one that hides the page, how far it is from white to
+/// solid.
+std::uint8_t darkness(std::uint32_t pixel, bool solid_white) {
+  if (is_solid(pixel, solid_white)) return kSolidDarkness;
+  if (pixel >> 24 != 255) return 0;
   const auto part = [&](unsigned shift) { return (pixel >> shift & 255) / 255.0; };
-  return pixel >> 24 == 255 && luminance(part(16), part(8), part(0)) < kNearlyWhite;
+  const double off_white = 1 - luminance(part(16), part(8), part(0));
+  return static_cast<std::uint8_t>(kMostFaint * std::min(1.0, off_white / (1 - kSolidLuminance)));
 }
-
-/// What a cell is in the child's answer.
-enum Cell : char { kFree, kSolid, kFaint };
 
 std::string answer(Outcome outcome, const std::string& rest) {
   return static_cast<char>(outcome) + rest;
@@ -104,7 +104,7 @@ std::string answer(Outcome outcome, const std::string& rest) {
 class Painter {
  public:
   explicit Painter(const Paint& paint)
-      : paint_(paint), cells_(static_cast<std::size_t>(paint.columns * paint.rows), kFree) {}
+      : paint_(paint), cells_(static_cast<std::size_t>(paint.columns * paint.rows), '\0') {}
 
   std::string paint() {
     if (!rsvg_.load()) return answer(Outcome::kNoLibrary, "");
@@ -135,11 +135,8 @@ class Painter {
     for (int y = 0; done && pixels != nullptr && y < height; ++y) {
       std::memcpy(row.data(), pixels + stride * y, 4 * row.size());
       for (int x = 0; x < width; ++x) {
-        const std::uint32_t pixel = row[static_cast<std::size_t>(x)];
-        const Cell cell = is_solid(pixel, paint_.solid_white) ? kSolid
-                          : is_faint(pixel)                   ? kFaint
-                                                              : kFree;
-        turned ? mark(y, x, cell) : mark(x, y, cell);
+        const std::uint8_t dark = darkness(row[static_cast<std::size_t>(x)], paint_.solid_white);
+        turned ? mark(y, x, dark) : mark(x, y, dark);
       }
     }
     rsvg_.cairo_destroy(cairo);
@@ -148,11 +145,11 @@ class Painter {
   }
 
   /// A pixel, from the upper left corner.
-  void mark(int x, int y, Cell cell) {
+  void mark(int x, int y, std::uint8_t dark) {
     const auto row = static_cast<std::size_t>(paint_.rows - 1 - y);
-    char& marked =
+    char& cell =
         cells_[row * static_cast<std::size_t>(paint_.columns) + static_cast<std::size_t>(x)];
-    if (cell == kSolid || marked == kFree) marked = cell;
+    cell = static_cast<char>(std::max(dark, static_cast<std::uint8_t>(cell)));
   }
 
   const Paint& paint_;
@@ -160,41 +157,6 @@ class Painter {
   RsvgLibrary rsvg_{};
   RsvgLibrary::Error* error_ = nullptr;
   void* handle_ = nullptr;
-};
-
-/// Finds faint cells that are neither at the edge of something solid nor in a faint area.
-class Hairs {
- public:
-  explicit Hairs(const CellGrid& cells) : cells_(cells) {}
-
-  std::optional<std::pair<int, int>> first() const {
-    for (int row = 0; row < cells_.rows(); ++row)
-      for (int column = 0; column < cells_.columns(); ++column)
-        if (is(kFaint, column, row) && is_hair(column, row)) return std::pair(column, row);
-    return std::nullopt;
-  }
-
- private:
-  bool is(Cell cell, int column, int row) const {
-    return cells_.has(column, row) && cells_.at(column, row) == cell;
-  }
-  template <class Test>
-  static bool any_around(int column, int row, int reach, Test test) {
-    for (int y = row - reach; y <= row + reach; ++y)
-      for (int x = column - reach; x <= column + reach; ++x)
-        if (test(x, y)) return true;
-    return false;
-  }
-  bool is_area(int column, int row) const {
-    return !any_around(column, row, 1, [&](int x, int y) { return !is(kFaint, x, y); });
-  }
-  bool is_hair(int column, int row) const {
-    constexpr int kTip = 4;  // of something solid that ends in a point
-    return !any_around(column, row, kTip, [&](int x, int y) { return is(kSolid, x, y); }) &&
-           !any_around(column, row, 1, [&](int x, int y) { return is_area(x, y); });
-  }
-
-  const CellGrid& cells_;
 };
 
 tl::unexpected<PolygonFileProblem> refuse(std::string what, std::string remedy) {
@@ -231,8 +193,8 @@ Result<PaintedDrawing, PolygonFileProblem> paint_svg(const std::string& svg,
   }
   CellGrid& cells = painted.solid;
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<std::uint8_t>(rest[i]);
-  painted.hair = Hairs(cells).first();
-  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = cells[i] == kSolid ? 1 : 0;
+  painted.hair = first_hair(cells);
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = cells[i] == kSolidDarkness ? 1 : 0;
   return painted;
 }
 

@@ -24,8 +24,7 @@ inline constexpr int kPaintedCells = 2048;
 struct PaintedDrawing {
   CellGrid solid;  ///< 1: some of the cell is painted, and darker than kSolidLuminance
   double cell;     ///< the side, in units of the viewBox
-  /// Column and row of something that is too thin to be as dark as it is meant: a bright line on
-  /// white paper.
+  /// Column and row of a line that is too thin to be as dark as it is meant (svg_hairs.h).
   std::optional<std::pair<int, int>> hair = std::nullopt;
 };
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the elements of a drawing stand in its text, and problems that name the place.
+// Problems of a drawing that name the element.
 #pragma once
 
-#include <pugixml.hpp>
 #include <string>
-#include <string_view>
+#include <utility>
 
 #include "target/geo/polygon_file.h"
 #include "target/geo/svg_syntax.h"
+#include "target/geo/xml_places.h"
 
 namespace ergocast {
 
@@ -16,16 +16,14 @@ struct BadSvg {
   PolygonFileProblem problem;
 };
 
-class SvgPlaces {
+class SvgPlaces : public XmlPlaces {
  public:
-  /// @param text  of the whole drawing; it outlives this object
-  explicit SvgPlaces(std::string_view text) : text_(text) {}
-
-  /// "line 12: <path>"
-  std::string of(const pugi::xml_node& node) const;
+  using XmlPlaces::XmlPlaces;
 
   /// Throws BadSvg. An empty node stands for the whole drawing.
-  [[noreturn]] void fail(const pugi::xml_node& node, std::string what, std::string remedy) const;
+  [[noreturn]] void fail(const pugi::xml_node& node, std::string what, std::string remedy) const {
+    throw BadSvg{{node ? of(node) : "", std::move(what), std::move(remedy)}};
+  }
 
   /// What `read` makes of an attribute; a syntax error becomes a problem of the element.
   template <class Read>
@@ -36,11 +34,6 @@ class SvgPlaces {
       fail(node, attribute + ' ' + error.what(), error.remedy);
     }
   }
-
- private:
-  std::string_view text_;
-  // The elements come in the order of the text: what was counted before is not counted again.
-  mutable std::size_t counted_ = 0, breaks_ = 0;
 };
 
 }  // namespace ergocast

@@ -3,6 +3,7 @@
 #include "target/geo/svg_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -40,6 +41,8 @@ const Words kColours = {
     // No colours, but paint.
     "currentcolor", "inherit", "transparent"};
 const Words kNoColours = {"none", "context-fill", "context-stroke"};
+const Words kLengthProperties = {"cx", "cy",           "height", "r", "rx",
+                                 "ry", "stroke-width", "width",  "x", "y"};
 
 const Words kAttributes = {"alignment-baseline",
                            "baseProfile",
@@ -119,6 +122,31 @@ std::string lower_word(std::string_view text) {
                        remedy);
 }
 
+/// A finite number, which may have a percent sign.
+bool is_number(std::string_view text, bool percent) {
+  if (text.ends_with('%') != percent) return false;
+  if (percent) text.remove_suffix(1);
+  const auto value = read_number<double>(text);
+  return value && std::isfinite(*value);
+}
+
+/// rgb(0, 0, 0), rgb(0%, 0%, 0%), hsl(0, 0%, 0%), and with opacity rgba() and hsla().
+bool is_colour_function(std::string_view name, std::string_view list) {
+  const bool hue = name.starts_with("hsl"), opacity = name.ends_with('a');
+  if (name != "rgb" && name != "rgba" && name != "hsl" && name != "hsla") return false;
+  const bool percent = !hue && list.substr(0, list.find(',')).find('%') != list.npos;
+  for (int argument = 0;; ++argument) {
+    const std::size_t comma = list.find(',');
+    std::string_view one = list.substr(0, comma);
+    one.remove_prefix(std::min(one.size(), one.find_first_not_of(' ')));
+    one = one.substr(0, one.find_last_not_of(' ') + 1);
+    const bool due = argument > 0 && hue ? argument < 3 : percent && argument < 3;
+    if (!is_number(one, due) && !(argument == 3 && is_number(one, true))) return false;
+    if (comma == list.npos) return argument == (opacity ? 3 : 2);
+    list.remove_prefix(comma + 1);
+  }
+}
+
 bool is_colour(std::string_view value) {
   if (value.starts_with('#')) {
     const std::string_view digits = value.substr(1);
@@ -129,9 +157,8 @@ bool is_colour(std::string_view value) {
   const std::string low = lower_word(value);
   const std::size_t open = low.find('(');
   if (open == low.npos) return kColours.contains(low);
-  const std::string name = low.substr(0, open);
-  return low.find(')') == low.size() - 1 &&
-         (name == "rgb" || name == "rgba" || name == "hsl" || name == "hsla");
+  if (low.find(')') != low.size() - 1) return false;
+  return is_colour_function(low.substr(0, open), low.substr(open + 1, low.size() - open - 2));
 }
 
 /// A colour, a reference and perhaps a colour, or none.
@@ -147,9 +174,7 @@ bool is_paint(std::string_view value) {
 }
 
 bool is_share(std::string_view value) {
-  if (value == "inherit") return true;
-  if (value.ends_with('%')) value.remove_suffix(1);
-  return read_number<double>(value).has_value();
+  return value == "inherit" || is_number(value, value.ends_with('%'));
 }
 
 }  // namespace
@@ -162,15 +187,15 @@ void check_svg_word(std::string_view property, std::string_view value) {
     reject_word(property, value, "write a colour of CSS, such as #333 or black, or none");
   if ((property == "color" || property == "stop-color") && !is_colour(value))
     reject_word(property, value, "write a colour of CSS, such as #333 or black");
-  if ((property.ends_with("opacity")) && !is_share(value))
+  if (property.ends_with("opacity") && !is_share(value))
     reject_word(property, value, "write a number from 0 to 1");
   if (property.ends_with("-rule") && low != "nonzero" && low != "evenodd" && low != "inherit")
     reject_word(property, value, "write nonzero or evenodd");
-  if (property != "stroke-width" || low == "inherit") return;
+  if (!kLengthProperties.contains(property) || low == "inherit" || low == "auto") return;
   try {
     svg_length(value);
   } catch (const SvgSyntaxError& error) {
-    throw SvgSyntaxError("stroke-width " + std::string(error.what()), error.remedy);
+    throw SvgSyntaxError(std::string(property) + ' ' + error.what(), error.remedy);
   }
 }
 

@@ -6,8 +6,8 @@
 
 namespace ergocast {
 
-/// Checks the value of a property whose misreading could lose a shape: colours, widths, opacities,
-/// fill rules. Others pass.
+/// Checks the value of a property whose misreading could lose a shape: colours, lengths,
+/// opacities, fill rules. Others pass.
 /// @throws SvgSyntaxError
 void check_svg_word(std::string_view property, std::string_view value);
 

@@ -268,6 +268,14 @@ TEST_F(OtherPeoplesFiles, BrightWallsAreSolidOrRefused) {
                  "too thin and bright");
   expect_refused(page_of(paper + "<ellipse cx='20' cy='15.003' rx='9' ry='.0003'/>" + circle),
                  "too thin and bright");
+  // On paper that is not quite white, and beside a wall.
+  const std::string cream = R"(<rect width="40" height="30" fill="#fffdd0"/>)";
+  expect_refused(page_of(cream + line("yellow", ".02")), "too thin and bright");
+  expect_refused(page_of(paper + line("yellow", ".02") +
+                         "<path d='M5 10.06h20' stroke='#000' stroke-width='.02'/>"),
+                 "too thin and bright");
+  expect_walls(page_of(cream + "<path d='M5 5h9L5 8z' fill='#fffbb0'/>" + circle), {{35, 25}},
+               {{8, 6}});
   // Areas that are nearly white are no walls, nor are the edges of anything.
   expect_walls(page_of("<rect width='40' height='30' fill='ivory'/>" + circle), {{35, 25}},
                {{15, 10}});
@@ -345,6 +353,13 @@ TEST_F(OtherPeoplesFiles, DrawingsThatCouldLoseAWallAreRefused) {
            {"<path stroke=\"blak\"/>", "stroke is \"blak\", which is not painted"},
            {"<g fill=\"none\"><rect fill=\"initial\"/></g>", "fill is \"initial\""},
            {"<path stroke-width=\"1,5\"/>", "stroke-width is in ,5, which is not read"},
+           {"<path stroke=\"rgb(51,51)\"/>", "stroke is \"rgb(51,51)\", which is not painted"},
+           {"<path stroke=\"rgb(20%,20,20)\"/>", "stroke is \"rgb(20%,20,20)\""},
+           {"<path fill=\"hsl(0,0,20)\"/>", "fill is \"hsl(0,0,20)\""},
+           {"<rect style=\"width:1O;height:10\"/>", "width is in O, which is not read"},
+           {"<style>circle{r:5foo}</style>", "r is in foo, which is not read"},
+           {"<linearGradient id=\"g\"><title/></linearGradient>",
+            "has no stops, and paints nothing"},
            {"<g opacity=\"half\"/>", "opacity is \"half\""},
            {"<g fill-rule=\"even\"/>", "fill-rule is \"even\""},
            {"<g color=\"none\"/>", "color is \"none\""},
