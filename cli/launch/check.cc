@@ -49,7 +49,7 @@ void tell_margins(const Mission& mission) {
 }
 
 /// What bodies can reach of a map, and what it shows that is closed.
-void tell_rooms(const MapRooms& map) {
+void print_rooms(const MapRooms& map) {
   const auto place = [](const MapRooms::Room& room) {
     char text[100];
     std::snprintf(text, sizeof text, "%.4g m^2 around x %.4g, y %.4g m", room.area_m2,
@@ -94,7 +94,7 @@ int check(const CheckOptions& options) {
               along_z.c_str(), kind, static_cast<long long>(mission.timing.tick_count),
               mission.timing.dt_s, plan_hash(plan).c_str(), plan.size());
   tell_margins(mission);
-  for (const MapRooms& map : scenario->map_rooms()) tell_rooms(map);
+  for (const MapRooms& map : scenario->map_rooms()) print_rooms(map);
   if (options.picture.empty()) return kExitDone;
   if (const auto problem = write_file(options.picture, picture_of(*scenario)))
     return report_error(kExitBadInput, *problem);
@@ -107,11 +107,13 @@ void add_check(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("check", "Name every problem of a scenario");
   auto options = std::make_shared<CheckOptions>();
   add_scenario_argument(*command, options->scenario);
-  command->add_flag("--print", options->print, "Show the scenario with all defaults filled in");
+  auto* const print =
+      command->add_flag("--print", options->print, "Show the scenario with all defaults filled in");
   command
       ->add_option("--picture", options->picture,
                    "Draw domain, walls and starts, and hatched what is closed of maps, as SVG")
-      ->type_name("FILE.svg");
+      ->type_name("FILE.svg")
+      ->excludes(print);
   add_override_options(*command, options->overrides);
   command->callback([&action, options] { action = [options] { return check(*options); }; });
 }

@@ -271,14 +271,11 @@ class PolygonFileReader {
     if (!few_enough(vertices, field,
                     "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson"))
       return std::nullopt;
+    note_without_place(polygons, field);
     std::vector<PlacedPolygon> placed;
     PolygonFileProblems problems;
     for (const GeoPolygon& polygon : polygons) {
-      if (polygon.rings.empty()) {
-        findings_.note(field, file_ + ": " + polygon.member + ": has no place, and is left out",
-                       "delete it there, or draw it");
-        continue;
-      }
+      if (polygon.rings.empty()) continue;
       auto local = local_polygon(polygon);
       if (!local) problems.add(std::move(local.error()));
       if (local) placed.push_back(std::move(*local));
@@ -286,6 +283,17 @@ class PolygonFileReader {
     if (problems.empty()) return placed;
     refuse(field, problems.all());
     return std::nullopt;
+  }
+
+  void note_without_place(const std::vector<GeoPolygon>& polygons, const std::string& field) {
+    const auto has_none = [](const GeoPolygon& one) { return one.rings.empty(); };
+    const auto first = std::ranges::find_if(polygons, has_none);
+    if (first == polygons.end()) return;
+    const auto others = std::count_if(first + 1, polygons.end(), has_none);
+    findings_.note(field,
+                   file_ + ": " + first->member + ": has no place, and is left out" +
+                       (others > 0 ? ", as are " + std::to_string(others) + " others" : ""),
+                   "delete it there, or draw it");
   }
 
   Result<PlacedPolygon, PolygonFileProblem> local_polygon(const GeoPolygon& polygon) const {

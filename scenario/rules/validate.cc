@@ -166,8 +166,10 @@ class Validator {
     problem(path,
             shortest(origin_m) + " is more than " + shortest(limit_m) +
                 " m from 0, too far for a domain of " + shortest(size_m) + " m",
-            "count from its corner; if these are coordinates of a map, such as UTM, write the "
-            "corner as origin { latitude_deg: … longitude_deg: … }");
+            path.ends_with("z_m")
+                ? "count heights from the lowest"
+                : "count from its corner; if these are coordinates of a map, such as UTM, write "
+                  "the corner as origin { latitude_deg: … longitude_deg: … }");
   }
 
   void basis() {
