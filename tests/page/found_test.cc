@@ -211,9 +211,7 @@ TEST_F(FoundInABrowser, ARunningTeamShowsItsFinds) {
   expect_no_errors();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 }
 
 TEST_F(FoundInABrowser, ARunningTeamHasTheProbabilityOfItsRecord) {
@@ -260,9 +258,7 @@ TEST_F(FoundInABrowser, ARunningTeamHasTheProbabilityOfItsRecord) {
             1e-12);
   EXPECT_LT(worst(), kTolerance);
   expect_no_errors();
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 }
 
 }  // namespace

@@ -38,6 +38,12 @@ class PageInABrowser : public RunningMission {
   }
   void expect_no_errors() { EXPECT_EQ(browser_->errors(), std::vector<std::string>()); }
   nlohmann::json js(const std::string& script) { return browser_->run(script); }
+  /// Ends the page of a mission that has ended.
+  void close_page_of(Child& mission) {
+    ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
+    mission.send(SIGINT);
+    EXPECT_EQ(wait_for(mission), 0);
+  }
   std::string text(const std::string& id) {
     return js("return document.getElementById('" + id + "').textContent");
   }

@@ -43,9 +43,7 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
   EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 0.02);
   screenshot("live_recorded");
   expect_no_errors();
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 
   // Opened from disk, the record also shows the incidents and the agents' knowledge over time.
   show_report();
@@ -87,9 +85,7 @@ TEST_F(PageInABrowser, ALateBrowserGetsTheWholeCurveOfAFreeDomain) {
   expect_no_errors();
   mission.send(SIGINT);
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 }
 
 TEST_F(PageInABrowser, ALateBrowserShowsHowTheAgentsWereBefore) {
@@ -124,9 +120,7 @@ TEST_F(PageInABrowser, ALateBrowserShowsHowTheAgentsWereBefore) {
   EXPECT_EQ(js(text_at), 1);
   expect_no_errors();
   mission.send(SIGINT);
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 }
 
 TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {
@@ -143,9 +137,7 @@ TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {
   mission.send(SIGINT);
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
   EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 0.02);  // for the whole mission
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 }
 
 // A φ² of the positions that arrived would be another one.
@@ -170,9 +162,7 @@ TEST_F(PageInABrowser, ShowsWhatTheAgentsReportIfPositionsWereLost) {
       "return Math.abs(run.metricAt(run.end) / facts.state.ergodic_metric - 1) < 0.01"));
   expect_no_errors();
   mission.send(SIGINT);
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 }
 
 TEST_F(PageInABrowser, AnotherSitesPageGetsNothing) {

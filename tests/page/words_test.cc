@@ -94,9 +94,7 @@ TEST_F(WordsInABrowser, ALiveTeamPausesAndRests) {
   EXPECT_TRUE(
       js("const { run } = ergocast.S, [from, until] = run.holds[0], dt = run.mission.dt_s;"
          "return Math.abs(run.counted((from + until) / 2 * dt) - from * dt) < 1e-6"));
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 }
 
 // An agent that stands still misses every tick, on machines of any speed.
@@ -127,9 +125,7 @@ TEST_F(WordsInABrowser, LateCommandsAreAWarning) {
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
   EXPECT_TRUE(browser_->becomes(
       "return /% of all commands came/.test(document.getElementById('overload').textContent)"));
-  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); })) << printed();
-  mission.send(SIGINT);
-  EXPECT_EQ(wait_for(mission), 0);
+  close_page_of(mission);
 }
 
 }  // namespace
