@@ -2,12 +2,12 @@
 // A way out of dead ends: an agent that walls hold up keeps a hand on the wall for a while.
 //
 // The law pulls along straight lines, which walls can end. Modes of the free domain lead around
-// walls, but not around those that are smaller than a cell of their grid, such as two posts with a
-// gap that bodies do not pass. Every kWindow_s an agent looks back. It
-// is in a dead end if it has moved less than a fifth as far as it wanted, and a wall was in its way
-// for half of the time. Then it goes along the wall for 4 s, on a random side; the next time for 8
-// s, and so on up to 120 s. After 30 s and twice as long a time without a dead end it begins at 4 s
-// again. At an edge of the domain it turns round.
+// walls. They do not lead around posts that are smaller than a cell of their grid.
+//
+// Every kWindow_s an agent looks back. It is in a dead end if it has moved less than a fifth as far
+// as it wanted, and a wall was in its way for half of the time. Then it goes along the wall for 4
+// s, on a random side; the next time for 8 s, and so on up to 120 s. After 30 s and twice as long a
+// time without a dead end it begins at 4 s again. At an edge of the domain it turns round.
 //
 // This changes the velocity that the filter (core/motion/separation.h) is asked for, not what the
 // filter allows.

@@ -240,8 +240,8 @@ Rings round_room(int corners, double radius_m) {
   return {{{50, 50}, {250, 50}, {250, 250}, {50, 250}}, room};
 }
 
-/// A plan may come from anyone who knows the key. Bodies that follow walls under it keep out, and
-/// each step looks at a bounded number of edges.
+/// A plan may come from anyone who knows the key. Bodies that follow walls under it keep out. If
+/// each edge at hand were held against all others, this would take minutes.
 TEST(WallFilter, KeepsFollowersOutWhateverThePlansWallsAre) {
   const std::vector<Rings> plans = {{spiral(kMaxWallVertices, 8)},
                                     {spiral(4000, 6.2)},
