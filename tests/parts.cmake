@@ -227,7 +227,8 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/map_target_test.cc
     scenario/map_walls_test.cc
     scenario/new_target_test.cc
-    scenario/other_peoples_files_test.cc
+    scenario/other_peoples_data_test.cc
+    scenario/other_peoples_drawings_test.cc
     scenario/plan_proto_test.cc
     scenario/scenario_to_plan_test.cc
     scenario/polygon_flaw_test.cc
