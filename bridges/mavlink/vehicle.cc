@@ -24,15 +24,16 @@ constexpr double kHeightError_m = 2;
 constexpr double kFastestClimb_mps = 1, kClimbGain_per_s = 0.5;
 /// How often it asks an autopilot that refuses.
 constexpr int kMostRequests = 5;
-/// How long it waits for what an autopilot has accepted, before it asks again [s].
-constexpr int kPatience = 5;
+/// In how many heartbeats the state must show an order that was accepted. Else a pilot has changed
+/// it again.
+constexpr std::int64_t kSeenHeartbeats = 3;
 /// PX4 enters OFFBOARD only after setpoints have arrived for a while.
 constexpr std::int64_t kSetpointsBeforeOffboard = 20;
 
 constexpr std::uint8_t kCompanion = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
 constexpr std::uint8_t kOnboardController = 18, kNoAutopilot = 8, kStandby = 3, kActive = 4;
 constexpr std::uint8_t kArmed = 128;
-constexpr std::uint8_t kInAir = 2;
+constexpr std::uint8_t kOnGround = 1, kInAir = 2;
 
 constexpr std::uint16_t kTakeOff = 22, kSetMode = 176, kArm = 400, kSetInterval = 511,
                         kRequestMessage = 512;
@@ -105,9 +106,12 @@ void Vehicle::take_heartbeat(const Received& received, const Heartbeat& heartbea
   }
   heard_at_ = now;
   ++heartbeats_;
+  const bool was_external = in_external_mode(), was_armed = armed_;
   mode_ = heartbeat.custom_mode;
   if (make_ == Make::kPx4) mode_ = mode_ >> 16 & 0xFF;
   armed_ = (heartbeat.base_mode & kArmed) != 0;
+  const bool left = was_external && !in_external_mode(), disarmed = was_armed && !armed_;
+  if (running_ && (left || disarmed)) taken_over_ = true;
 }
 
 void Vehicle::adopt(const Source& from, const Heartbeat& heartbeat) {
@@ -159,11 +163,13 @@ void Vehicle::on(const Statustext& text, Instant) {
 }
 
 void Vehicle::on(const CommandAck& ack, Instant) {
+  const Source me = source();
+  if (ack.target_system != 0 && ack.target_system != me.system) return;
+  if (ack.target_component != 0 && ack.target_component != me.component) return;
   if (ack.command != requested_ || requests_ == 0) return;
   constexpr std::uint8_t kAccepted = 0, kInProgress = 5;
   if (ack.result == kAccepted || ack.result == kInProgress) {
-    requests_ = 0;
-    patience_ = kPatience;
+    if (!accepted_at_heartbeat_) accepted_at_heartbeat_ = heartbeats_;
     return;
   }
   const std::string what = ack.command == kSetMode ? external_mode()
@@ -244,13 +250,8 @@ std::string Vehicle::why_not(Instant now) const {
   return why_wrong_height(now);
 }
 
-/// Notes each change, and whether the pilot has taken the vehicle: it has left the mode, or is
-/// disarmed.
-void Vehicle::watch_pilot(Instant now) {
-  const bool external = known() && in_external_mode(), engaged = external && armed_;
-  if (running_ && ((was_external_ && !external) || (was_engaged_ && !engaged))) taken_over_ = true;
-  was_external_ = external;
-  was_engaged_ = engaged;
+/// Notes each change of why the vehicle does not follow.
+void Vehicle::note_change(Instant now) {
   const std::string why = why_not(now);
   if (why == last_why_) return;
   note(last_why_.empty() && running_, why.empty() ? "follows its agent" : why);
@@ -312,7 +313,7 @@ Eigen::Vector3d Vehicle::setpoint_mps(Instant now) const {
 void Vehicle::advance(Instant now, std::vector<Packet>& out) {
   if (known() && running_ && fatal_.empty()) fatal_ = why_not_its_mission();
   if (!fatal_.empty()) return;
-  watch_pilot(now);
+  note_change(now);
   if (now >= next_second_) {
     next_second_ = now + std::chrono::seconds(1);
     each_second(now, out);
@@ -369,25 +370,41 @@ void Vehicle::ask_for_messages(std::vector<Packet>& out) const {
   if (!local) out.emplace_back(command(kRequestMessage, static_cast<float>(GpsGlobalOrigin::kId)));
 }
 
-/// The next step of mode, arming and take-off, once a second.
-void Vehicle::take_command(std::vector<Packet>& out) {
-  if (make_ == Make::kPx4 && setpoints_ < kSetpointsBeforeOffboard) return;
-  std::optional<CommandLong> next;
+/// The next step of mode, arming and take-off. A multicopter gets orders only on the ground, a
+/// rover only while it is disarmed.
+std::optional<CommandLong> Vehicle::next_order() const {
+  const bool rests = body_ == Body::kRover ? !armed_ : landed_state_ == kOnGround;
+  if (!rests) return std::nullopt;
   if (!in_external_mode()) {
     constexpr float kCustomMode = 1;
     const std::uint32_t mode = make_ == Make::kPx4      ? kPx4Offboard
                                : body_ == Body::kCopter ? kCopterGuided
                                                         : kRoverGuided;
-    next = command(kSetMode, kCustomMode, static_cast<float>(mode));
-  } else if (!armed_) {
-    next = command(kArm, 1);
-  } else if (!in_the_air() && landed_state_ && make_ == Make::kArduPilot) {
-    next = command(kTakeOff, 0, 0, static_cast<float>(options_.altitude_m.value_or(5)));
+    return command(kSetMode, kCustomMode, static_cast<float>(mode));
   }
-  if (!next) return requests_ = 0, void();
-  if (next->command != requested_) requests_ = patience_ = 0;
+  if (!armed_) return command(kArm, 1);
+  if (make_ == Make::kPx4) return std::nullopt;
+  return command(kTakeOff, 0, 0, static_cast<float>(options_.altitude_m.value_or(5)));
+}
+
+/// Once a second. A vehicle that already flies in another mode is a pilot's or a failsafe's.
+void Vehicle::take_command(std::vector<Packet>& out) {
+  if (make_ == Make::kPx4 && setpoints_ < kSetpointsBeforeOffboard) return;
+  const std::optional<CommandLong> next = next_order();
+  if (!next) {
+    const bool landed_known = body_ == Body::kRover || landed_state_;
+    if (armed_ && !in_external_mode() && landed_known) taken_over_ = true;
+    return;
+  }
+  if (next->command != requested_) {
+    requests_ = 0;
+    accepted_at_heartbeat_.reset();
+  }
   requested_ = next->command;
-  if (patience_ > 0) return --patience_, void();
+  if (accepted_at_heartbeat_) {
+    if (heartbeats_ - *accepted_at_heartbeat_ >= kSeenHeartbeats) taken_over_ = true;
+    return;
+  }
   if (++requests_ > kMostRequests) {
     if (requests_ == kMostRequests + 1)
       note(true, "has asked " + std::to_string(kMostRequests) +

@@ -108,9 +108,10 @@ class Vehicle {
   std::string why_not_its_mission() const;
   Eigen::Vector3d setpoint_mps(Instant now) const;
   double climb_mps(Instant now) const;
-  void watch_pilot(Instant now);
+  void note_change(Instant now);
   void each_second(Instant now, std::vector<Packet>& out);
   void ask_for_messages(std::vector<Packet>& out) const;
+  std::optional<CommandLong> next_order() const;
   void take_command(std::vector<Packet>& out);
   CommandLong command(std::uint16_t number, float one, float two = 0, float seven = 0) const;
 
@@ -137,11 +138,10 @@ class Vehicle {
   std::int64_t setpoints_ = 0;
   Instant next_setpoint_{}, next_second_{};
 
-  bool was_external_ = false, was_engaged_ = false;  // at the last turn
-  bool taken_over_ = false;                          // by the pilot, or a failsafe
-  int patience_ = 0;                                 // turns until an accepted request is repeated
-  int requests_ = 0;                                 // for the same step of taking command
+  bool taken_over_ = false;  // by the pilot, or a failsafe
+  int requests_ = 0;         // for the same step of taking command
   std::uint16_t requested_ = 0;
+  std::optional<std::int64_t> accepted_at_heartbeat_;  // that step
   std::string last_why_ = "-", fatal_;
   std::vector<Note> notes_;
 };

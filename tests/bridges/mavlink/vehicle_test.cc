@@ -80,6 +80,20 @@ class Flight {
     }
     return all;
   }
+  auto orders(std::uint16_t command) const {
+    return std::ranges::count(sent_of<CommandLong>(), command, &CommandLong::command);
+  }
+  /// To choose the mode, to arm and to take off.
+  auto orders() const { return orders(176) + orders(400) + orders(22); }
+  /// The autopilot's answer to a command.
+  void answer(std::uint16_t command, std::uint8_t result, std::uint8_t to_system = 0) {
+    CommandAck ack;
+    ack.command = command;
+    ack.result = result;
+    ack.target_system = to_system;
+    hear(ack);
+    turn();
+  }
   /// North, east and up of the newest setpoint.
   Eigen::Vector3d setpoint() const {
     const auto all = sent_of<SetPositionTargetLocalNed>();
@@ -421,33 +435,120 @@ TEST(MavlinkVehicle, TakesCommandOnlyIfToldToAndLeavesItToThePilotIfItIsRefused)
   flight.landed.landed_state = 1;
   flight.at.relative_alt = 0;
   flight.pass(6);
-  const auto orders = [&](std::uint16_t command) {
-    return std::ranges::count(flight.sent_of<CommandLong>(), command, &CommandLong::command);
-  };
-  EXPECT_EQ(orders(176) + orders(400) + orders(22), 0) << "the mission does not run yet";
+  EXPECT_EQ(flight.orders(), 0) << "the mission does not run yet";
   flight.begin();
   flight.pass(20);
-  EXPECT_EQ(orders(176), 5);
-  CommandAck denied;
-  denied.command = 176;
-  denied.result = 2;
-  flight.hear(denied);
-  flight.turn();
+  EXPECT_EQ(flight.orders(176), 5);
+  flight.answer(176, 2);
   EXPECT_TRUE(flight.said("the autopilot refuses OFFBOARD: DENIED")) << flight.log;
   EXPECT_TRUE(flight.said("leaves it to the pilot"));
   flight.heartbeat.custom_mode = kOffboard;
   flight.pass(1.5);
-  EXPECT_EQ(orders(400), 1);
-  CommandAck accepted;
-  accepted.command = 400;
-  flight.hear(accepted);
-  flight.pass(5);
-  EXPECT_EQ(orders(400), 1) << "what was accepted is not asked again at once";
-  flight.pass(1);
-  EXPECT_EQ(orders(400), 2);
+  EXPECT_EQ(flight.orders(400), 1);
+  flight.answer(400, 0);
   flight.heartbeat.base_mode = 128;
   flight.pass(2);
   EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << "PX4 takes off by climbing";
+}
+
+/// On the ground and disarmed, outside of the driver's mode.
+Flight parked(std::uint8_t make = kPx4) {
+  VehicleOptions with_command = options();
+  with_command.take_command = true;
+  Flight flight(with_command, make);
+  flight.heartbeat.custom_mode = make == kPx4 ? kPosctl : kLoiter;
+  flight.heartbeat.base_mode = 0;
+  flight.landed.landed_state = 1;
+  flight.at.relative_alt = 0;
+  return flight;
+}
+
+TEST(MavlinkVehicle, IsThePilotsIfAnAcceptedOrderIsNotSeen) {
+  for (const std::uint8_t make : {kPx4, kArduPilot}) {
+    for (const std::uint16_t order : {176, 400, 22}) {
+      if (order == 22 && make == kPx4) continue;
+      Flight flight = parked(make);
+      if (order != 176) flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
+      if (order == 22) flight.heartbeat.base_mode = 128;
+      flight.pass(6);
+      flight.begin();
+      flight.pass(1);
+      ASSERT_EQ(flight.orders(order), 1) << flight.log;
+      flight.answer(order, 0);
+      flight.pass(30);
+      EXPECT_EQ(flight.orders(), 1) << order << ": a pilot has disarmed it, or changed its mode";
+      if (order != 22) EXPECT_TRUE(flight.said("has taken over")) << flight.log;
+    }
+  }
+}
+
+TEST(MavlinkVehicle, IsThePilotsIfItIsDisarmedInAnyMode) {
+  Flight flight = parked();
+  flight.heartbeat.base_mode = 128;
+  flight.pass(6);
+  flight.begin();
+  flight.pass(1);
+  EXPECT_EQ(flight.orders(176), 1) << "it is on the ground";
+  flight.heartbeat.base_mode = 0;
+  flight.hear(flight.heartbeat);
+  flight.sent.clear();
+  flight.pass(2);
+  flight.heartbeat.custom_mode = kOffboard;
+  flight.pass(10);
+  EXPECT_EQ(flight.orders(), 0) << flight.log;
+}
+
+TEST(MavlinkVehicle, IsNotTakenFromAPilotOrAFailsafeWhileItFlies) {
+  for (const int state : {2, 3, 4}) {
+    Flight flight = parked();
+    flight.heartbeat.base_mode = 128;
+    flight.landed.landed_state = static_cast<std::uint8_t>(state);
+    flight.pass(6);
+    flight.begin();
+    flight.pass(10);
+    EXPECT_EQ(flight.orders(), 0) << "the driver has begun anew during a return";
+    EXPECT_TRUE(flight.said("has taken over (POSCTL)")) << flight.log;
+    flight.landed.landed_state = 1;
+    flight.heartbeat.base_mode = 0;
+    flight.pass(10);
+    EXPECT_EQ(flight.orders(), 0) << "it has landed";
+  }
+  Flight rover = parked(kArduPilot);
+  rover.heartbeat.type = 10;
+  rover.heartbeat.base_mode = 128;
+  rover.knows_landed = false;
+  rover.pass(6);
+  rover.begin();
+  rover.pass(10);
+  EXPECT_EQ(rover.orders(), 0) << rover.log;
+}
+
+TEST(MavlinkVehicle, IsOrderedToTakeOffOnlyOnTheGround) {
+  Flight flight = parked(kArduPilot);
+  flight.heartbeat.custom_mode = kGuided;
+  flight.heartbeat.base_mode = 128;
+  flight.landed.landed_state = 3;
+  flight.pass(6);
+  flight.begin();
+  flight.pass(5);
+  EXPECT_EQ(flight.orders(22), 0) << "it takes off already";
+  flight.landed.landed_state = 1;
+  flight.pass(2);
+  EXPECT_GT(flight.orders(22), 0);
+}
+
+TEST(MavlinkVehicle, IgnoresAnswersToOtherStations) {
+  Flight flight = parked();
+  flight.pass(6);
+  flight.begin();
+  flight.pass(1);
+  flight.answer(176, 2, 255);
+  EXPECT_FALSE(flight.said("refuses")) << flight.log;
+  flight.answer(176, 0, 255);
+  flight.pass(2);
+  EXPECT_GT(flight.orders(176), 1) << "a ground station's order was accepted, and not its own";
+  flight.answer(176, 2, 1);
+  EXPECT_TRUE(flight.said("refuses")) << flight.log;
 }
 
 TEST(MavlinkVehicle, StandsForASecondAtTheEnd) {
