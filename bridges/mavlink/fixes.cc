@@ -58,6 +58,7 @@ void Fixes::take(const GpsGlobalOrigin& at) {
 bool Fixes::note_time(std::uint32_t boot_ms) {
   if (boot_ms < newest_ms_) {
     if (newest_ms_ - boot_ms < kOvertaken_ms) return false;
+    restarted_ = true;
     clock_.forget();
     newest_.reset();
     last_m_.reset();

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "bridges/mavlink/clock_bond.h"
 #include "bridges/mavlink/messages.h"
@@ -48,6 +49,8 @@ class Fixes {
   void take(const LocalPositionNed& at);
   void take(const GpsGlobalOrigin& at);
   ClockBond& clock() { return clock_; }
+  /// Whether the autopilot has started anew since the last call.
+  bool take_restart() { return std::exchange(restarted_, false); }
 
   /// The newest trusted position; nothing if there is none that is young enough.
   std::optional<Fix> at(Instant now) const;
@@ -61,7 +64,7 @@ class Fixes {
 
   std::optional<EarthPlace> origin_;
   std::optional<Eigen::Vector3d> local_origin_m_;  // stated, or from GPS_GLOBAL_ORIGIN
-  bool has_global_ = false;
+  bool has_global_ = false, restarted_ = false;
   double speed_limit_mps_ = 100;
   ClockBond clock_;
   std::optional<Fix> newest_;

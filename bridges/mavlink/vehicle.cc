@@ -15,6 +15,8 @@ constexpr auto kSetpointPeriod = 100ms;
 /// Limit (MAVLink): time without a heartbeat of the autopilot [s]. Beyond it: the vehicle is told
 /// to stand, and its position is not sent.
 constexpr double kLinkLost_s = 3;
+/// The vehicle stands if the autopilot has not reported for so long whether it is in the air.
+constexpr auto kOldestLandedState = 3s;
 /// For how many of the autopilot's heartbeats it listens for another driver.
 constexpr std::int64_t kListenedHeartbeats = 3;
 /// How many setpoints of 0 it sends at the end, and at most where the vehicle does not stand yet.
@@ -144,6 +146,20 @@ void Vehicle::meet_driver(const Heartbeat& other) {
   }
 }
 
+void Vehicle::on(const ExtendedSysState& state, Instant now) {
+  landed_state_.reset();
+  if (state.landed_state != 0) landed_state_ = state.landed_state;  // MAV_LANDED_STATE_UNDEFINED
+  landed_at_ = now;
+  if (landed_state_) last_in_air_ = landed_state_ == kInAir;
+}
+
+/// Forgets what is too old, or was before a restart of the autopilot.
+void Vehicle::forget_landed_state(Instant now) {
+  const bool restarted = fixes_.take_restart();
+  if (restarted) last_in_air_ = false;
+  if (restarted || now - landed_at_ > kOldestLandedState) landed_state_.reset();
+}
+
 /// Each tenth is told once, from 50 % on.
 void Vehicle::on(const SysStatus& status, Instant) {
   constexpr int kFirstTold_percent = 50, kLow_percent = 20;
@@ -239,12 +255,18 @@ bool Vehicle::stands(Instant now) const {
   return fix && fix->velocity_mps.norm() < kStanding_mps;
 }
 
-std::string Vehicle::why_not(Instant now) const {
+/// Why it must not move, whatever the pilot does.
+std::string Vehicle::why_unfit(Instant now) const {
   if (!known()) return "no autopilot is heard on the link";
   if (now - heard_at_ > seconds(kLinkLost_s)) return "the link is lost: no heartbeat for 3 s";
   if (!listened()) return "listens whether another driver is there";
   if (const std::string problem = fixes_.problem(now); !problem.empty()) return problem;
   if (!running_) return finishing_ ? "the mission is over" : "waits for the mission";
+  return "";
+}
+
+std::string Vehicle::why_not(Instant now) const {
+  if (const std::string unfit = why_unfit(now); !unfit.empty()) return unfit;
   if (const std::string waits = why_it_waits_for_the_pilot(); !waits.empty()) return waits;
   if (const std::string place = why_wrong_place(now); !place.empty()) return place;
   return why_wrong_height(now);
@@ -290,17 +312,20 @@ void Vehicle::finish() {
 
 bool Vehicle::obeys_setpoints() const {
   if (!known() || !listened()) return false;
-  return make_ == Make::kPx4 || (in_external_mode() && armed_ && in_the_air());
+  const bool in_air = body_ == Body::kRover || last_in_air_;
+  return make_ == Make::kPx4 || (in_external_mode() && armed_ && in_air);
 }
 
 /// In a plane a multicopter holds its height, also while it stands. PX4 takes off by climbing.
 double Vehicle::climb_mps(Instant now) const {
-  const auto fix = fixes_.at(now);
-  if (!fix || !running_ || body_ == Body::kRover || !in_external_mode() || !armed_) return 0;
-  if (!in_the_air())
-    return options_.take_command && landed_state_ && make_ == Make::kPx4 ? kFastestClimb_mps : 0;
-  return std::clamp(kClimbGain_per_s * (*options_.altitude_m - fix->height_m), -kFastestClimb_mps,
-                    kFastestClimb_mps);
+  if (body_ == Body::kRover || !in_external_mode() || !armed_) return 0;
+  if (!why_unfit(now).empty() || !why_wrong_place(now).empty()) return 0;
+  const double missing_m = options_.altitude_m.value_or(0) - fixes_.at(now)->height_m;
+  if (in_the_air())
+    return std::clamp(kClimbGain_per_s * missing_m, -kFastestClimb_mps, kFastestClimb_mps);
+  const bool takes_off = options_.take_command && !taken_over_ && landed_state_ &&
+                         make_ == Make::kPx4 && missing_m > 0;
+  return takes_off ? kFastestClimb_mps : 0;
 }
 
 Eigen::Vector3d Vehicle::setpoint_mps(Instant now) const {
@@ -313,6 +338,7 @@ Eigen::Vector3d Vehicle::setpoint_mps(Instant now) const {
 void Vehicle::advance(Instant now, std::vector<Packet>& out) {
   if (known() && running_ && fatal_.empty()) fatal_ = why_not_its_mission();
   if (!fatal_.empty()) return;
+  forget_landed_state(now);
   note_change(now);
   if (now >= next_second_) {
     next_second_ = now + std::chrono::seconds(1);

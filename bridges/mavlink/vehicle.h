@@ -86,13 +86,14 @@ class Vehicle {
   void on(const LocalPositionNed& at, Instant) { fixes_.take(at); }
   void on(const GpsGlobalOrigin& at, Instant) { fixes_.take(at); }
   void on(const Timesync& answer, Instant) { fixes_.clock().take(answer); }
-  void on(const ExtendedSysState& state, Instant) { landed_state_ = state.landed_state; }
+  void on(const ExtendedSysState& state, Instant now);
   void on(const SysStatus& status, Instant now);
   void on(const Statustext& text, Instant now);
   void on(const CommandAck& ack, Instant now);
   void take_heartbeat(const Received& received, const Heartbeat& heartbeat, Instant now);
   void adopt(const Source& from, const Heartbeat& heartbeat);
   void meet_driver(const Heartbeat& other);
+  void forget_landed_state(Instant now);
   void note(bool warning, std::string text) { notes_.push_back({warning, std::move(text)}); }
 
   bool known() const { return autopilot_.component != 0; }
@@ -105,6 +106,7 @@ class Vehicle {
   std::string why_it_waits_for_the_pilot() const;
   std::string why_wrong_place(Instant now) const;
   std::string why_wrong_height(Instant now) const;
+  std::string why_unfit(Instant now) const;
   std::string why_not_its_mission() const;
   Eigen::Vector3d setpoint_mps(Instant now) const;
   double climb_mps(Instant now) const;
@@ -126,6 +128,8 @@ class Vehicle {
   std::int64_t heartbeats_ = 0;
   Instant heard_at_{};
   std::optional<std::uint8_t> landed_state_;
+  Instant landed_at_{};       // when it arrived
+  bool last_in_air_ = false;  // by the newest message that knows, however old
   std::set<std::uint8_t> strangers_;
   bool warned_of_driver_ = false;
   int battery_told_percent_ = 100;

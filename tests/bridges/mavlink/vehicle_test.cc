@@ -537,6 +537,90 @@ TEST(MavlinkVehicle, IsOrderedToTakeOffOnlyOnTheGround) {
   EXPECT_GT(flight.orders(22), 0);
 }
 
+/// A PX4 that takes off by climbing at 1 m/s.
+Flight taking_off() {
+  Flight flight = parked();
+  flight.heartbeat.custom_mode = kOffboard;
+  flight.heartbeat.base_mode = 128;
+  flight.pass(6);
+  flight.begin();
+  flight.pass(1);
+  EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << flight.log;
+  return flight;
+}
+
+TEST(MavlinkVehicle, TakesOffNoHigherThanItsHeightAndOnlyWithALinkAndNoPilot) {
+  Flight high = taking_off();
+  high.at.relative_alt = 20'500;
+  high.pass(0.2);
+  EXPECT_TRUE(high.stands()) << "the autopilot has not noticed that it is in the air";
+  Flight lost = taking_off();
+  lost.beats = false;
+  lost.pass(4.2);
+  EXPECT_TRUE(lost.stands());
+  Flight piloted = taking_off();
+  piloted.heartbeat.base_mode = 0;
+  piloted.hear(piloted.heartbeat);
+  piloted.heartbeat.base_mode = 128;
+  piloted.pass(3);
+  EXPECT_TRUE(piloted.stands()) << "the pilot has disarmed and armed it";
+}
+
+TEST(MavlinkVehicle, HoldsNoHeightWhileItMustNotMove) {
+  const auto climbing = [](int lat = 0) {
+    Flight flight;
+    flight.at.relative_alt = 10'000;
+    flight.at.lat += lat;
+    flight.pass(4);
+    flight.begin();
+    flight.pass(1);
+    return flight;
+  };
+  Flight flight = climbing();
+  EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << flight.log;
+  flight.beats = false;
+  flight.pass(4.2);
+  EXPECT_TRUE(flight.said("the link is lost")) << flight.log;
+  EXPECT_TRUE(flight.stands());
+  EXPECT_TRUE(climbing(-10'000).stands()) << "it is at a wrong place";
+}
+
+TEST(MavlinkVehicle, IsInTheAirOnlyByANewMessageOfTheSameAutopilot) {
+  for (const std::uint8_t make : {kPx4, kArduPilot}) {
+    Flight flight(options(), make);
+    flight.pass(4);
+    flight.begin();
+    flight.pass(1);
+    ASSERT_TRUE(flight.follows());
+    flight.knows_landed = false;
+    flight.sent.clear();
+    flight.pass(2.9);
+    EXPECT_TRUE(flight.follows());
+    flight.pass(1.5);
+    EXPECT_TRUE(flight.stands());
+    EXPECT_TRUE(flight.said("does not send EXTENDED_SYS_STATE")) << flight.log;
+    EXPECT_GT(flight.orders(511), 0) << "it asks again";
+    flight.hear(flight.landed);
+    flight.pass(0.1);
+    EXPECT_TRUE(flight.follows());
+    ExtendedSysState undefined;
+    flight.hear(undefined);
+    flight.pass(0.1);
+    EXPECT_TRUE(flight.stands()) << "MAV_LANDED_STATE_UNDEFINED";
+  }
+  Flight anew;
+  anew.pass(5);
+  anew.begin();
+  anew.knows_landed = false;
+  GlobalPositionInt restarted = anew.at;
+  restarted.time_boot_ms = 0;
+  anew.hear(restarted);
+  anew.pass(1.5);
+  EXPECT_TRUE(anew.vehicle.fix(anew.now));
+  EXPECT_TRUE(anew.stands()) << anew.log;
+  EXPECT_TRUE(anew.said("does not send EXTENDED_SYS_STATE")) << anew.log;
+}
+
 TEST(MavlinkVehicle, IgnoresAnswersToOtherStations) {
   Flight flight = parked();
   flight.pass(6);
