@@ -259,7 +259,9 @@ ergocast_test(NAME mavlink_tests LABELS unit
   SOURCES
     bridges/mavlink/codec_test.cc
     bridges/mavlink/driver_test.cc
+    bridges/mavlink/fixes_test.cc
     bridges/mavlink/places_test.cc
+    bridges/mavlink/take_command_test.cc
     bridges/mavlink/vehicle_test.cc
   LIBS ergocast_mavlink ergocast::geo)
 

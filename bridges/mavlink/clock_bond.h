@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "bridges/mavlink/messages.h"
@@ -24,6 +25,7 @@ class ClockBond {
   /// The question to send now.
   Timesync ask(Instant now) {
     asked_[next_asked_++ % asked_.size()] = now;
+    while (!answers_.empty() && now - answers_.front().asked > kOldest) answers_.pop_front();
     Timesync question;
     question.ts1 = now.time_since_epoch().count();
     return question;
@@ -33,28 +35,33 @@ class ClockBond {
   void take(const Timesync& answer) {
     const Instant asked{Instant::duration(answer.ts1)};
     if (answer.tc1 <= 0 || std::ranges::find(asked_, asked) == asked_.end()) return;
-    offsets_[count_++ % offsets_.size()] = asked.time_since_epoch() - Instant::duration(answer.tc1);
+    answers_.push_back({asked, asked.time_since_epoch() - Instant::duration(answer.tc1)});
+    if (answers_.size() > kMostAnswers) answers_.pop_front();
   }
 
   /// A moment that is not after the one at which the autopilot's clock was `boot_ms`; nothing
-  /// before the first answer.
+  /// without an answer of the last 20 s.
   std::optional<Instant> not_before(std::uint32_t boot_ms) const {
-    if (count_ == 0) return std::nullopt;
-    const auto end =
-        offsets_.begin() + static_cast<std::ptrdiff_t>(std::min(count_, offsets_.size()));
-    const auto best = *std::max_element(offsets_.begin(), end);
+    if (answers_.empty()) return std::nullopt;
+    const auto best = std::ranges::max_element(answers_, {}, &Answer::offset)->offset;
     return Instant(best + std::chrono::milliseconds(boot_ms) - kDrift);
   }
 
   /// The autopilot's clock has begun anew.
-  void forget() { count_ = 0; }
+  void forget() { answers_.clear(); }
 
  private:
-  /// The drift of two clocks in the time between ten answers.
+  struct Answer {
+    Instant asked;
+    Instant::duration offset;  ///< of our clock
+  };
+  static constexpr std::size_t kMostAnswers = 10;
+  static constexpr auto kOldest = std::chrono::seconds(20);
+  /// The drift of two clocks in that time.
   static constexpr auto kDrift = std::chrono::milliseconds(2);
   std::array<Instant, 8> asked_{};
-  std::array<Instant::duration, 10> offsets_{};
-  std::size_t next_asked_ = 0, count_ = 0;
+  std::size_t next_asked_ = 0;
+  std::deque<Answer> answers_;
 };
 
 }  // namespace ergocast::mavlink

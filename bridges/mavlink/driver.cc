@@ -60,7 +60,10 @@ void Driver::begin(Tick tick, Instant now) {
   begun_ = now;
   next_tick_ = now + kOtherDriver;
   const double limit_mps = motion_of(mission, id_).speed_limit_mps;
-  vehicle_.begin(mission.domain, limit_mps > 0 ? limit_mps : mission.law.u_max_mps);
+  // The separation assumes that a vehicle follows a command at most so late after its position.
+  const double oldest_fix_s = mission.separation.response_s + mission.timing.dt_s;
+  vehicle_.begin(mission.domain, limit_mps > 0 ? limit_mps : mission.law.u_max_mps,
+                 keeps_distance(mission) ? oldest_fix_s : kOldestFix_s);
 }
 
 /// The reason why it cannot take part.

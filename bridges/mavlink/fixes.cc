@@ -10,6 +10,8 @@ namespace {
 
 /// A clock that is behind by more has begun anew; less is a message that was overtaken [ms].
 constexpr std::uint32_t kOvertaken_ms = 5000;
+/// So far the bound of clock_bond.h may be ahead of the clock, because clocks drift.
+constexpr auto kFuture = std::chrono::milliseconds(10);
 
 std::string metres(double value) {
   char text[32];
@@ -17,12 +19,19 @@ std::string metres(double value) {
   return text;
 }
 
+std::string short_seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g s", value);
+  return text;
+}
+
 }  // namespace
 
 void Fixes::take(const GlobalPositionInt& at) {
   if (!origin_) return;  // the stated local origin counts
-  has_global_ = true;
+  sends_global_ = true;
   if (at.lat == 0 && at.lon == 0) {
+    if (!has_global_ && local_origin_m_) return;  // LOCAL_POSITION_NED counts
     newest_.reset();
     problem_ = "the autopilot has no position on the earth yet (latitude and longitude are 0)";
     return;
@@ -31,11 +40,13 @@ void Fixes::take(const GlobalPositionInt& at) {
   fix.velocity_mps = velocity_mps_of(at);
   fix.height_m = at.relative_alt * 1e-3;
   take(at.time_boot_ms, local_m(*origin_, place_of(at)), fix);
+  has_global_ = true;
 }
 
 void Fixes::take(const LocalPositionNed& at) {
-  if (has_global_) return;
+  if (has_global_ || !note_time(at.time_boot_ms)) return;
   if (!local_origin_m_) {
+    if (sends_global_) return;
     problem_ =
         "LOCAL_POSITION_NED counts from the vehicle's own start, which is not known: a vehicle "
         "with "
@@ -62,6 +73,8 @@ bool Fixes::note_time(std::uint32_t boot_ms) {
     clock_.forget();
     newest_.reset();
     last_m_.reset();
+    has_global_ = sends_global_ = false;
+    if (origin_) local_origin_m_.reset();  // not a stated one
     unsteady_ = "the autopilot has started anew: waits until its positions are steady";
     steady_since_ms_ = boot_ms;
   }
@@ -101,15 +114,21 @@ void Fixes::take(std::uint32_t boot_ms, const std::optional<Eigen::Vector3d>& po
   newest_ = fix;
 }
 
+bool Fixes::is_of_the_future(Instant now) const {
+  return newest_ && newest_->not_before > now + kFuture;
+}
+
 std::optional<Fix> Fixes::at(Instant now) const {
-  const bool young = newest_ && now - newest_->not_before <= seconds(kOldestFix_s);
-  return young && unsteady_.empty() ? newest_ : std::nullopt;
+  if (!newest_ || !unsteady_.empty()) return std::nullopt;
+  const bool young = now - newest_->not_before <= seconds(oldest_s_);
+  return young && !is_of_the_future(now) ? newest_ : std::nullopt;
 }
 
 std::string Fixes::problem(Instant now) const {
   if (at(now)) return "";
   if (!unsteady_.empty()) return unsteady_;
-  return newest_ ? "the newest position is older than 0.5 s" : problem_;
+  if (is_of_the_future(now)) return "the time of the newest position is in the future";
+  return newest_ ? "the newest position is older than " + short_seconds(oldest_s_) : problem_;
 }
 
 }  // namespace ergocast::mavlink

@@ -9,6 +9,7 @@
 #include <ergocast/core/base/ids.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -42,8 +43,12 @@ class Fixes {
         const std::optional<Eigen::Vector3d>& local_origin_m)
       : origin_(origin), local_origin_m_(local_origin_m) {}
 
-  /// The greatest speed of the vehicle by the mission; a much longer way is a jump.
-  void set_speed_limit(double mps) { speed_limit_mps_ = mps; }
+  /// The greatest speed of the vehicle by the mission, because a much longer way is a jump. And the
+  /// age from which positions are too old for it; kOldestFix_s counts, too.
+  void set_limits(double speed_limit_mps, double oldest_s) {
+    speed_limit_mps_ = speed_limit_mps;
+    oldest_s_ = std::min(oldest_s, kOldestFix_s);
+  }
 
   void take(const GlobalPositionInt& at);
   void take(const LocalPositionNed& at);
@@ -59,13 +64,15 @@ class Fixes {
 
  private:
   void take(std::uint32_t boot_ms, const std::optional<Eigen::Vector3d>& position_m, Fix fix);
+  bool is_of_the_future(Instant now) const;
   bool note_time(std::uint32_t boot_ms);
   void note_way(std::uint32_t boot_ms, const Eigen::Vector3d& position_m);
 
   std::optional<EarthPlace> origin_;
-  std::optional<Eigen::Vector3d> local_origin_m_;  // stated, or from GPS_GLOBAL_ORIGIN
-  bool has_global_ = false, restarted_ = false;
-  double speed_limit_mps_ = 100;
+  std::optional<Eigen::Vector3d> local_origin_m_;   // stated, or from GPS_GLOBAL_ORIGIN
+  bool sends_global_ = false, has_global_ = false;  // has: a place, not 0
+  bool restarted_ = false;
+  double speed_limit_mps_ = 100, oldest_s_ = kOldestFix_s;
   ClockBond clock_;
   std::optional<Fix> newest_;
   std::optional<Eigen::Vector3d> last_m_;  // the last position that was a number

@@ -135,11 +135,11 @@ void Vehicle::adopt(const Source& from, const Heartbeat& heartbeat) {
                   (body_ == Body::kCopter ? "a multicopter" : "a rover"));
 }
 
-/// The driver that already sends setpoints goes on. If two begin together, the one with the greater
-/// identity stops.
+/// The driver that already sends setpoints goes on. If both do, or none yet, the one with the
+/// greater identity stops.
 void Vehicle::meet_driver(const Heartbeat& other) {
-  const bool we_began = listened();
-  if (!we_began && (other.system_status == kActive || other.custom_mode < identity_)) {
+  const bool we_began = listened(), it_began = other.system_status == kActive;
+  if (we_began == it_began ? other.custom_mode < identity_ : it_began) {
     fatal_ = "another driver is on this vehicle: end that one first";
   } else if (!std::exchange(warned_of_driver_, true)) {
     note(true, "another driver has come to this vehicle, and has to end");
@@ -250,6 +250,10 @@ std::string Vehicle::why_wrong_height(Instant now) const {
   return "goes to its height first";
 }
 
+std::optional<Fix> Vehicle::fix(Instant now) const {
+  return now - heard_at_ > seconds(kLinkLost_s) ? std::nullopt : fixes_.at(now);
+}
+
 bool Vehicle::stands(Instant now) const {
   const auto fix = fixes_.at(now);
   return fix && fix->velocity_mps.norm() < kStanding_mps;
@@ -282,11 +286,11 @@ void Vehicle::note_change(Instant now) {
 
 // ---- what it is ordered ----
 
-void Vehicle::begin(const Box& domain, double speed_limit_mps) {
-  running_ = true;
+void Vehicle::begin(const Box& domain, double speed_limit_mps, double oldest_fix_s) {
+  running_ = begun_ = true;
   domain_ = domain;
   planar_ = domain.planar();
-  fixes_.set_speed_limit(speed_limit_mps);
+  fixes_.set_limits(speed_limit_mps, oldest_fix_s);
 }
 
 std::string Vehicle::why_not_its_mission() const {
@@ -313,7 +317,7 @@ void Vehicle::finish() {
 bool Vehicle::obeys_setpoints() const {
   if (!known() || !listened()) return false;
   const bool in_air = body_ == Body::kRover || last_in_air_;
-  return make_ == Make::kPx4 || (in_external_mode() && armed_ && in_air);
+  return make_ == Make::kPx4 || (begun_ && in_external_mode() && armed_ && in_air);
 }
 
 /// In a plane a multicopter holds its height, also while it stands. PX4 takes off by climbing.
@@ -396,11 +400,11 @@ void Vehicle::ask_for_messages(std::vector<Packet>& out) const {
   if (!local) out.emplace_back(command(kRequestMessage, static_cast<float>(GpsGlobalOrigin::kId)));
 }
 
-/// The next step of mode, arming and take-off. A multicopter gets orders only on the ground, a
-/// rover only while it is disarmed.
+/// The next step of mode, arming and take-off. A multicopter gets orders only on the ground. An
+/// armed vehicle in another mode is a pilot's, and so is a rover that is armed.
 std::optional<CommandLong> Vehicle::next_order() const {
   const bool rests = body_ == Body::kRover ? !armed_ : landed_state_ == kOnGround;
-  if (!rests) return std::nullopt;
+  if (!rests || (armed_ && !in_external_mode())) return std::nullopt;
   if (!in_external_mode()) {
     constexpr float kCustomMode = 1;
     const std::uint32_t mode = make_ == Make::kPx4      ? kPx4Offboard
@@ -413,7 +417,7 @@ std::optional<CommandLong> Vehicle::next_order() const {
   return command(kTakeOff, 0, 0, static_cast<float>(options_.altitude_m.value_or(5)));
 }
 
-/// Once a second. A vehicle that already flies in another mode is a pilot's or a failsafe's.
+/// Once a second. A vehicle that is already armed in another mode is a pilot's or a failsafe's.
 void Vehicle::take_command(std::vector<Packet>& out) {
   if (make_ == Make::kPx4 && setpoints_ < kSetpointsBeforeOffboard) return;
   const std::optional<CommandLong> next = next_order();

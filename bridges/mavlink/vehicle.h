@@ -7,8 +7,8 @@
 //
 // Setpoints are sent every 0.1 s, whatever the mission's tick is, and at once when they change. PX4
 // gets them in every mode, because it enters OFFBOARD only while they arrive, and ignores them in
-// all other modes. ArduPilot gets them only in GUIDED and in the air, where they cannot disturb a
-// take-off.
+// all other modes. ArduPilot gets them only in GUIDED, in the air and from the mission's begin on,
+// so they disturb neither a take-off nor a pilot in GUIDED before that.
 //
 // No socket, thread or clock.
 #pragma once
@@ -62,7 +62,8 @@ class Vehicle {
   Source source() const;
 
   /// The mission runs: from now on the vehicle may follow.
-  void begin(const Box& domain, double speed_limit_mps);
+  /// @param oldest_fix_s  the age from which positions are too old for this mission
+  void begin(const Box& domain, double speed_limit_mps, double oldest_fix_s = kOldestFix_s);
   /// The velocity that the agent wants; 0: stand.
   void fly(const Eigen::Vector3d& velocity_mps);
   /// The mission is over: zero velocity until it stands, for 1 s to 10 s, then done().
@@ -70,7 +71,7 @@ class Vehicle {
   bool done() const { return done_; }
 
   /// The newest position, if it can be trusted.
-  std::optional<Fix> fix(Instant now) const { return fixes_.at(now); }
+  std::optional<Fix> fix(Instant now) const;
   /// Whether the newest position says that it stands, but for the noise of a vehicle that does.
   bool stands(Instant now) const;
   /// Why the vehicle does not follow its agent; empty if it does.
@@ -136,7 +137,7 @@ class Vehicle {
   std::string last_text_;
 
   Box domain_;
-  bool running_ = false, planar_ = true, finishing_ = false, done_ = false;
+  bool begun_ = false, running_ = false, planar_ = true, finishing_ = false, done_ = false;
   Eigen::Vector3d wanted_mps_{0, 0, 0};
   int last_setpoints_ = 0;  // since the mission was over
   std::int64_t setpoints_ = 0;

@@ -197,6 +197,26 @@ TEST(MavlinkDriver, KeepsItsVehicleOutOfWalls) {
   EXPECT_LT(flight.east_mps, 2.1) << "0.2 m are left for 0.1 s";
 }
 
+TEST(MavlinkDriver, UsesNoPositionThatIsOlderThanTheSeparationAssumes) {
+  Mission mission = mission_of();
+  mission.separation.distance_m = 30;
+  mission.separation.lease_s = 3;
+  mission.separation.response_s = 0.15;
+  DrivenFlight flight(mission);
+  flight.delay = 200ms;
+  flight.pass(2s);
+  ASSERT_FALSE(flight.states.empty()) << flight.driver->reason();
+  flight.delay = 300ms;
+  flight.pass(200ms);
+  flight.states.clear();
+  flight.pass(1s);
+  EXPECT_TRUE(flight.states.empty()) << "a vehicle follows within 0.15 s, and a tick has 0.1 s";
+  DrivenFlight alone(mission_of());
+  alone.delay = 300ms;
+  alone.pass(2s);
+  EXPECT_FALSE(alone.states.empty());
+}
+
 TEST(MavlinkDriver, RefusesMissionsThatVehiclesCannotFollow) {
   const auto reason = [](const Mission& mission) {
     DrivenFlight flight(mission);

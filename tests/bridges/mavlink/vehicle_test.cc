@@ -1,120 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the driver sends to an autopilot, by a clock of the test's own.
-#include "bridges/mavlink/vehicle.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
+// When a vehicle follows its agent, and when it stands.
+#include "tests/bridges/mavlink/vehicle_flight.h"
 
 namespace ergocast::mavlink {
 namespace {
-
-using namespace std::chrono_literals;
-
-constexpr std::uint8_t kPx4 = 12, kArduPilot = 3;
-constexpr std::uint32_t kOffboard = 6 << 16, kPosctl = 3 << 16, kGuided = 4, kLoiter = 5;
-
-VehicleOptions options() {
-  VehicleOptions options;
-  options.origin = EarthPlace{47.6535, 9.175, 400};
-  options.altitude_m = 20;
-  return options;
-}
-
-/// A vehicle at 20 m above its home, with the messages that its autopilot sends: positions each
-/// 0.1 s, a heartbeat each second. It executes no command.
-class Flight {
- public:
-  explicit Flight(const VehicleOptions& options = mavlink::options(), std::uint8_t make = kPx4)
-      : vehicle(options, 1000) {
-    heartbeat.type = 2;
-    heartbeat.autopilot = make;
-    heartbeat.base_mode = 128;
-    heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
-    at.lat = 476535000;
-    at.lon = 91750000;
-    at.alt = 420000;
-    at.relative_alt = 20000;
-    landed.landed_state = 2;
-  }
-
-  void hear(const Packet& packet, Source from = {1, 1}) { vehicle.receive({from, packet}, now); }
-  void pass(double seconds_passed) {
-    for (int i = 0; i < std::lround(seconds_passed * 10); ++i) {
-      now += 100ms;
-      const auto ms = (now - kPowerOn) / std::chrono::milliseconds(1);
-      at.time_boot_ms = near.time_boot_ms = static_cast<std::uint32_t>(ms);
-      if (ms % 1000 == 0 && beats) hear(heartbeat);
-      if (ms % 500 == 0 && knows_landed) hear(landed);
-      if (positions) hear(at);
-      if (local) hear(near);
-      turn();
-    }
-  }
-  void turn() {
-    std::vector<Packet> out;
-    vehicle.advance(now, out);
-    for (const Packet& packet : out) {
-      sent.push_back(packet);
-      if (const auto* question = std::get_if<Timesync>(&packet); question && answers) {
-        Timesync answer = *question;
-        answer.tc1 = (now - kPowerOn).count();
-        hear(answer);
-      }
-    }
-    for (const Note& note : vehicle.take_notes()) log += note.text + "\n";
-  }
-  void begin(bool planar = true) {
-    Box domain;
-    domain.size_m = {100, 80, planar ? 0.0 : 100.0};
-    vehicle.begin(domain, 5);
-    vehicle.fly({3, 4, 0});
-  }
-  template <class M>
-  std::vector<M> sent_of() const {
-    std::vector<M> all;
-    for (const Packet& packet : sent) {
-      if (const auto* m = std::get_if<M>(&packet)) all.push_back(*m);
-    }
-    return all;
-  }
-  auto orders(std::uint16_t command) const {
-    return std::ranges::count(sent_of<CommandLong>(), command, &CommandLong::command);
-  }
-  /// To choose the mode, to arm and to take off.
-  auto orders() const { return orders(176) + orders(400) + orders(22); }
-  /// The autopilot's answer to a command.
-  void answer(std::uint16_t command, std::uint8_t result, std::uint8_t to_system = 0) {
-    CommandAck ack;
-    ack.command = command;
-    ack.result = result;
-    ack.target_system = to_system;
-    hear(ack);
-    turn();
-  }
-  /// North, east and up of the newest setpoint.
-  Eigen::Vector3d setpoint() const {
-    const auto all = sent_of<SetPositionTargetLocalNed>();
-    if (all.empty()) return Eigen::Vector3d::Constant(-1);
-    return {all.back().vx, all.back().vy, -all.back().vz};
-  }
-  bool stands() const { return setpoint().isZero(0); }
-  bool follows() const { return setpoint() == Eigen::Vector3d(4, 3, 0); }
-  bool said(const std::string& part) const { return log.find(part) != std::string::npos; }
-
-  const Instant kPowerOn{100s};
-  Vehicle vehicle;
-  Instant now = kPowerOn;
-  Heartbeat heartbeat;
-  GlobalPositionInt at;
-  LocalPositionNed near;
-  ExtendedSysState landed;
-  bool beats = true, positions = true, local = false, answers = true, knows_landed = true;
-  std::vector<Packet> sent;
-  std::string log;
-};
 
 TEST(MavlinkVehicle, FollowsItsAgentOnceItMayAndNoGapIsLongerThanATenthOfASecond) {
   Flight flight;
@@ -228,22 +117,7 @@ TEST(MavlinkVehicle, StandsWhileTheLinkOrThePositionIsLost) {
   flight.pass(4.2);
   EXPECT_TRUE(flight.stands());
   EXPECT_TRUE(flight.said("the link is lost"));
-}
-
-TEST(MavlinkVehicle, StandsAfterAJumpUntilPositionsAreSteady) {
-  Flight flight;
-  flight.pass(4);
-  flight.begin();
-  flight.pass(1);
-  flight.at.lat += 4500;  // 50 m
-  flight.pass(0.1);
-  EXPECT_TRUE(flight.stands());
   EXPECT_FALSE(flight.vehicle.fix(flight.now)) << "the others stand, too";
-  EXPECT_TRUE(flight.said("the position jumped by 50 m")) << flight.log;
-  flight.pass(2.8);
-  EXPECT_TRUE(flight.stands());
-  flight.pass(0.3);
-  EXPECT_TRUE(flight.follows()) << flight.log;
 }
 
 TEST(MavlinkVehicle, StandsFarOutsideOfTheDomain) {
@@ -276,68 +150,6 @@ TEST(MavlinkVehicle, TellsOfItsBatteryEachTenth) {
   EXPECT_EQ(flight.log,
             "the battery has 50 %\nthe battery has 40 %\nthe battery has 12 %\n"
             "the battery has 10 %\n");
-}
-
-TEST(MavlinkVehicle, IgnoresPositionsThatWereOvertakenAndForgetsThoseBeforeARestart) {
-  Flight flight;
-  flight.pass(5);
-  const auto before = flight.vehicle.fix(flight.now);
-  GlobalPositionInt old = flight.at;
-  old.time_boot_ms -= 200;
-  old.lat += 100;
-  flight.hear(old);
-  EXPECT_EQ(flight.vehicle.fix(flight.now)->position_m, before->position_m);
-  flight.pass(5);
-  GlobalPositionInt anew = flight.at;
-  anew.time_boot_ms = 50;
-  flight.hear(anew);
-  EXPECT_FALSE(flight.vehicle.fix(flight.now));
-  EXPECT_NE(flight.vehicle.why_not(flight.now).find("started anew"), std::string::npos);
-}
-
-TEST(MavlinkVehicle, TakesLocalPositionsOnlyWithAKnownOrigin) {
-  Flight flight;
-  flight.positions = false;
-  flight.local = true;
-  flight.near.x = 10;
-  flight.near.z = -20;
-  flight.pass(5);
-  EXPECT_FALSE(flight.vehicle.fix(flight.now)) << "two vehicles would both be at 0";
-  EXPECT_TRUE(flight.said("counts from the vehicle's own start")) << flight.log;
-  GpsGlobalOrigin start;
-  start.latitude = 476535000 + 900;  // 10 m north of the scenario's
-  start.longitude = 91750000;
-  start.altitude = 400000;
-  flight.hear(start);
-  flight.pass(0.2);
-  ASSERT_TRUE(flight.vehicle.fix(flight.now)) << flight.log;
-  EXPECT_NEAR(flight.vehicle.fix(flight.now)->position_m.y(), 20, 0.02);
-  flight.positions = true;
-  flight.pass(0.2);
-  ASSERT_TRUE(flight.vehicle.fix(flight.now)) << "GPS counts from now on";
-  EXPECT_NEAR(flight.vehicle.fix(flight.now)->position_m.y(), 0, 0.02);
-
-  VehicleOptions stated;
-  stated.local_origin_m = Eigen::Vector3d(100, 200, 0);
-  stated.altitude_m = 20;
-  Flight indoors(stated);
-  indoors.local = true;  // and GLOBAL_POSITION_INT, too
-  indoors.near.x = 10;
-  indoors.pass(5);
-  ASSERT_TRUE(indoors.vehicle.fix(indoors.now)) << indoors.log;
-  EXPECT_EQ(indoors.vehicle.fix(indoors.now)->position_m, Eigen::Vector3d(100, 210, 0));
-  indoors.near.x = std::numeric_limits<float>::quiet_NaN();
-  indoors.pass(0.1);
-  EXPECT_FALSE(indoors.vehicle.fix(indoors.now));
-  EXPECT_TRUE(indoors.said("is no number"));
-}
-
-TEST(MavlinkVehicle, HasNoPositionWhoseAgeIsNotKnown) {
-  Flight flight;
-  flight.answers = false;
-  flight.pass(5);
-  EXPECT_FALSE(flight.vehicle.fix(flight.now));
-  EXPECT_TRUE(flight.said("has not answered TIMESYNC"));
 }
 
 TEST(MavlinkVehicle, ThatIsNoMulticopterOrRoverOrHasAnotherAutopilotIsRefused) {
@@ -413,157 +225,13 @@ TEST(MavlinkVehicle, HasOneDriver) {
   driving.turn();
   EXPECT_EQ(driving.vehicle.fatal(), "");
   EXPECT_TRUE(driving.said("another driver has come"));
-}
-
-TEST(MavlinkVehicle, OrdersNothingUnlessToldTo) {
-  Flight flight;
-  flight.heartbeat.custom_mode = kPosctl;
-  flight.heartbeat.base_mode = 0;
-  flight.pass(4);
-  flight.begin();
-  flight.pass(20);
-  for (const CommandLong& command : flight.sent_of<CommandLong>())
-    EXPECT_TRUE(command.command == 511 || command.command == 512) << command.command;
-}
-
-TEST(MavlinkVehicle, TakesCommandOnlyIfToldToAndLeavesItToThePilotIfItIsRefused) {
-  VehicleOptions with_command = options();
-  with_command.take_command = true;
-  Flight flight(with_command);
-  flight.heartbeat.custom_mode = kPosctl;
-  flight.heartbeat.base_mode = 0;
-  flight.landed.landed_state = 1;
-  flight.at.relative_alt = 0;
-  flight.pass(6);
-  EXPECT_EQ(flight.orders(), 0) << "the mission does not run yet";
-  flight.begin();
-  flight.pass(20);
-  EXPECT_EQ(flight.orders(176), 5);
-  flight.answer(176, 2);
-  EXPECT_TRUE(flight.said("the autopilot refuses OFFBOARD: DENIED")) << flight.log;
-  EXPECT_TRUE(flight.said("leaves it to the pilot"));
-  flight.heartbeat.custom_mode = kOffboard;
-  flight.pass(1.5);
-  EXPECT_EQ(flight.orders(400), 1);
-  flight.answer(400, 0);
-  flight.heartbeat.base_mode = 128;
-  flight.pass(2);
-  EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << "PX4 takes off by climbing";
-}
-
-/// On the ground and disarmed, outside of the driver's mode.
-Flight parked(std::uint8_t make = kPx4) {
-  VehicleOptions with_command = options();
-  with_command.take_command = true;
-  Flight flight(with_command, make);
-  flight.heartbeat.custom_mode = make == kPx4 ? kPosctl : kLoiter;
-  flight.heartbeat.base_mode = 0;
-  flight.landed.landed_state = 1;
-  flight.at.relative_alt = 0;
-  return flight;
-}
-
-TEST(MavlinkVehicle, IsThePilotsIfAnAcceptedOrderIsNotSeen) {
-  for (const std::uint8_t make : {kPx4, kArduPilot}) {
-    for (const std::uint16_t order : {176, 400, 22}) {
-      if (order == 22 && make == kPx4) continue;
-      Flight flight = parked(make);
-      if (order != 176) flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
-      if (order == 22) flight.heartbeat.base_mode = 128;
-      flight.pass(6);
-      flight.begin();
-      flight.pass(1);
-      ASSERT_EQ(flight.orders(order), 1) << flight.log;
-      flight.answer(order, 0);
-      flight.pass(30);
-      EXPECT_EQ(flight.orders(), 1) << order << ": a pilot has disarmed it, or changed its mode";
-      if (order != 22) EXPECT_TRUE(flight.said("has taken over")) << flight.log;
-    }
-  }
-}
-
-TEST(MavlinkVehicle, IsThePilotsIfItIsDisarmedInAnyMode) {
-  Flight flight = parked();
-  flight.heartbeat.base_mode = 128;
-  flight.pass(6);
-  flight.begin();
-  flight.pass(1);
-  EXPECT_EQ(flight.orders(176), 1) << "it is on the ground";
-  flight.heartbeat.base_mode = 0;
-  flight.hear(flight.heartbeat);
-  flight.sent.clear();
-  flight.pass(2);
-  flight.heartbeat.custom_mode = kOffboard;
-  flight.pass(10);
-  EXPECT_EQ(flight.orders(), 0) << flight.log;
-}
-
-TEST(MavlinkVehicle, IsNotTakenFromAPilotOrAFailsafeWhileItFlies) {
-  for (const int state : {2, 3, 4}) {
-    Flight flight = parked();
-    flight.heartbeat.base_mode = 128;
-    flight.landed.landed_state = static_cast<std::uint8_t>(state);
-    flight.pass(6);
-    flight.begin();
-    flight.pass(10);
-    EXPECT_EQ(flight.orders(), 0) << "the driver has begun anew during a return";
-    EXPECT_TRUE(flight.said("has taken over (POSCTL)")) << flight.log;
-    flight.landed.landed_state = 1;
-    flight.heartbeat.base_mode = 0;
-    flight.pass(10);
-    EXPECT_EQ(flight.orders(), 0) << "it has landed";
-  }
-  Flight rover = parked(kArduPilot);
-  rover.heartbeat.type = 10;
-  rover.heartbeat.base_mode = 128;
-  rover.knows_landed = false;
-  rover.pass(6);
-  rover.begin();
-  rover.pass(10);
-  EXPECT_EQ(rover.orders(), 0) << rover.log;
-}
-
-TEST(MavlinkVehicle, IsOrderedToTakeOffOnlyOnTheGround) {
-  Flight flight = parked(kArduPilot);
-  flight.heartbeat.custom_mode = kGuided;
-  flight.heartbeat.base_mode = 128;
-  flight.landed.landed_state = 3;
-  flight.pass(6);
-  flight.begin();
-  flight.pass(5);
-  EXPECT_EQ(flight.orders(22), 0) << "it takes off already";
-  flight.landed.landed_state = 1;
-  flight.pass(2);
-  EXPECT_GT(flight.orders(22), 0);
-}
-
-/// A PX4 that takes off by climbing at 1 m/s.
-Flight taking_off() {
-  Flight flight = parked();
-  flight.heartbeat.custom_mode = kOffboard;
-  flight.heartbeat.base_mode = 128;
-  flight.pass(6);
-  flight.begin();
-  flight.pass(1);
-  EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << flight.log;
-  return flight;
-}
-
-TEST(MavlinkVehicle, TakesOffNoHigherThanItsHeightAndOnlyWithALinkAndNoPilot) {
-  Flight high = taking_off();
-  high.at.relative_alt = 20'500;
-  high.pass(0.2);
-  EXPECT_TRUE(high.stands()) << "the autopilot has not noticed that it is in the air";
-  Flight lost = taking_off();
-  lost.beats = false;
-  lost.pass(4.2);
-  EXPECT_TRUE(lost.stands());
-  Flight piloted = taking_off();
-  piloted.heartbeat.base_mode = 0;
-  piloted.hear(piloted.heartbeat);
-  piloted.heartbeat.base_mode = 128;
-  piloted.pass(3);
-  EXPECT_TRUE(piloted.stands()) << "the pilot has disarmed and armed it";
+  other.custom_mode = 999;
+  other.system_status = 3;
+  driving.hear(other, {1, 191});
+  EXPECT_EQ(driving.vehicle.fatal(), "") << "that one has not begun";
+  other.system_status = 4;
+  driving.hear(other, {1, 191});
+  EXPECT_NE(driving.vehicle.fatal(), "") << "both drive: the greater identity ends";
 }
 
 TEST(MavlinkVehicle, HoldsNoHeightWhileItMustNotMove) {
@@ -621,18 +289,14 @@ TEST(MavlinkVehicle, IsInTheAirOnlyByANewMessageOfTheSameAutopilot) {
   EXPECT_TRUE(anew.said("does not send EXTENDED_SYS_STATE")) << anew.log;
 }
 
-TEST(MavlinkVehicle, IgnoresAnswersToOtherStations) {
-  Flight flight = parked();
+TEST(MavlinkVehicle, IsLeftInPeaceInGuidedBeforeTheMission) {
+  Flight flight(options(), kArduPilot);
   flight.pass(6);
-  flight.begin();
+  EXPECT_TRUE(flight.sent_of<SetPositionTargetLocalNed>().empty()) << "it would brake a flight";
+  flight.vehicle.finish();
+  EXPECT_TRUE(flight.vehicle.done());
   flight.pass(1);
-  flight.answer(176, 2, 255);
-  EXPECT_FALSE(flight.said("refuses")) << flight.log;
-  flight.answer(176, 0, 255);
-  flight.pass(2);
-  EXPECT_GT(flight.orders(176), 1) << "a ground station's order was accepted, and not its own";
-  flight.answer(176, 2, 1);
-  EXPECT_TRUE(flight.said("refuses")) << flight.log;
+  EXPECT_TRUE(flight.sent_of<SetPositionTargetLocalNed>().empty());
 }
 
 TEST(MavlinkVehicle, StandsForASecondAtTheEnd) {

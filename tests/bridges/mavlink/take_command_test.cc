@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the driver orders an autopilot, and when it leaves it to the pilot.
+#include "tests/bridges/mavlink/vehicle_flight.h"
+
+namespace ergocast::mavlink {
+namespace {
+
+TEST(MavlinkVehicle, OrdersNothingUnlessToldTo) {
+  Flight flight;
+  flight.heartbeat.custom_mode = kPosctl;
+  flight.heartbeat.base_mode = 0;
+  flight.pass(4);
+  flight.begin();
+  flight.pass(20);
+  for (const CommandLong& command : flight.sent_of<CommandLong>())
+    EXPECT_TRUE(command.command == 511 || command.command == 512) << command.command;
+}
+
+TEST(MavlinkVehicle, TakesCommandOnlyIfToldToAndLeavesItToThePilotIfItIsRefused) {
+  VehicleOptions with_command = options();
+  with_command.take_command = true;
+  Flight flight(with_command);
+  flight.heartbeat.custom_mode = kPosctl;
+  flight.heartbeat.base_mode = 0;
+  flight.landed.landed_state = 1;
+  flight.at.relative_alt = 0;
+  flight.pass(6);
+  EXPECT_EQ(flight.orders(), 0) << "the mission does not run yet";
+  flight.begin();
+  flight.pass(20);
+  EXPECT_EQ(flight.orders(176), 5);
+  flight.answer(176, 2);
+  EXPECT_TRUE(flight.said("the autopilot refuses OFFBOARD: DENIED")) << flight.log;
+  EXPECT_TRUE(flight.said("leaves it to the pilot"));
+  flight.heartbeat.custom_mode = kOffboard;
+  flight.pass(1.5);
+  EXPECT_EQ(flight.orders(400), 1);
+  flight.answer(400, 0);
+  flight.heartbeat.base_mode = 128;
+  flight.pass(2);
+  EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << "PX4 takes off by climbing";
+}
+
+/// On the ground and disarmed, outside of the driver's mode.
+Flight parked(std::uint8_t make = kPx4) {
+  VehicleOptions with_command = options();
+  with_command.take_command = true;
+  Flight flight(with_command, make);
+  flight.heartbeat.custom_mode = make == kPx4 ? kPosctl : kLoiter;
+  flight.heartbeat.base_mode = 0;
+  flight.landed.landed_state = 1;
+  flight.at.relative_alt = 0;
+  return flight;
+}
+
+TEST(MavlinkVehicle, IsThePilotsIfAnAcceptedOrderIsNotSeen) {
+  for (const std::uint8_t make : {kPx4, kArduPilot}) {
+    for (const std::uint16_t order : {176, 400, 22}) {
+      if (order == 22 && make == kPx4) continue;
+      Flight flight = parked(make);
+      if (order != 176) flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
+      if (order == 22) flight.heartbeat.base_mode = 128;
+      flight.pass(6);
+      flight.begin();
+      flight.pass(1);
+      ASSERT_EQ(flight.orders(order), 1) << flight.log;
+      flight.answer(order, 0);
+      flight.pass(30);
+      EXPECT_EQ(flight.orders(), 1) << order << ": a pilot has disarmed it, or changed its mode";
+      if (order != 22) EXPECT_TRUE(flight.said("has taken over")) << flight.log;
+    }
+  }
+}
+
+TEST(MavlinkVehicle, IsThePilotsIfItIsDisarmed) {
+  Flight flight = parked();
+  flight.heartbeat.custom_mode = kOffboard;
+  flight.heartbeat.base_mode = 128;
+  flight.pass(6);
+  flight.begin();
+  flight.pass(1);
+  flight.heartbeat.base_mode = 0;
+  flight.pass(10);
+  EXPECT_EQ(flight.orders(), 0) << flight.log;
+}
+
+TEST(MavlinkVehicle, IsNotTakenFromAPilotOrAFailsafeWhileItIsArmed) {
+  for (const int state : {1, 2, 3, 4}) {
+    Flight flight = parked();
+    flight.heartbeat.base_mode = 128;
+    flight.landed.landed_state = static_cast<std::uint8_t>(state);
+    flight.pass(6);
+    flight.begin();
+    flight.pass(10);
+    EXPECT_EQ(flight.orders(), 0) << "the driver has begun anew during a return";
+    EXPECT_TRUE(flight.said("has taken over (POSCTL)")) << flight.log;
+    flight.landed.landed_state = 1;
+    flight.heartbeat.base_mode = 0;
+    flight.pass(10);
+    EXPECT_EQ(flight.orders(), 0) << "it has landed";
+  }
+  Flight rover = parked(kArduPilot);
+  rover.heartbeat.type = 10;
+  rover.heartbeat.base_mode = 128;
+  rover.knows_landed = false;
+  rover.pass(6);
+  rover.begin();
+  rover.pass(10);
+  EXPECT_EQ(rover.orders(), 0) << rover.log;
+}
+
+TEST(MavlinkVehicle, IsOrderedToTakeOffOnlyOnTheGround) {
+  Flight flight = parked(kArduPilot);
+  flight.heartbeat.custom_mode = kGuided;
+  flight.heartbeat.base_mode = 128;
+  flight.landed.landed_state = 3;
+  flight.pass(6);
+  flight.begin();
+  flight.pass(5);
+  EXPECT_EQ(flight.orders(22), 0) << "it takes off already";
+  flight.landed.landed_state = 1;
+  flight.pass(2);
+  EXPECT_GT(flight.orders(22), 0);
+}
+
+/// A PX4 that takes off by climbing at 1 m/s.
+Flight taking_off() {
+  Flight flight = parked();
+  flight.heartbeat.custom_mode = kOffboard;
+  flight.heartbeat.base_mode = 128;
+  flight.pass(6);
+  flight.begin();
+  flight.pass(1);
+  EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << flight.log;
+  return flight;
+}
+
+TEST(MavlinkVehicle, TakesOffNoHigherThanItsHeightAndOnlyWithALinkAndNoPilot) {
+  Flight high = taking_off();
+  high.at.relative_alt = 20'500;
+  high.pass(0.2);
+  EXPECT_TRUE(high.stands()) << "the autopilot has not noticed that it is in the air";
+  Flight lost = taking_off();
+  lost.beats = false;
+  lost.pass(4.2);
+  EXPECT_TRUE(lost.stands());
+  Flight piloted = taking_off();
+  piloted.heartbeat.base_mode = 0;
+  piloted.hear(piloted.heartbeat);
+  piloted.heartbeat.base_mode = 128;
+  piloted.pass(3);
+  EXPECT_TRUE(piloted.stands()) << "the pilot has disarmed and armed it";
+}
+
+TEST(MavlinkVehicle, IgnoresAnswersToOtherStations) {
+  Flight flight = parked();
+  flight.pass(6);
+  flight.begin();
+  flight.pass(1);
+  flight.answer(176, 2, 255);
+  EXPECT_FALSE(flight.said("refuses")) << flight.log;
+  flight.answer(176, 0, 255);
+  flight.pass(2);
+  EXPECT_GT(flight.orders(176), 1) << "a ground station's order was accepted, and not its own";
+  flight.answer(176, 2, 1);
+  EXPECT_TRUE(flight.said("refuses")) << flight.log;
+}
+
+}  // namespace
+}  // namespace ergocast::mavlink
