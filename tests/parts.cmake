@@ -260,6 +260,7 @@ ergocast_test(NAME mavlink_tests LABELS unit
     bridges/mavlink/codec_test.cc
     bridges/mavlink/driver_test.cc
     bridges/mavlink/fixes_test.cc
+    bridges/mavlink/link_test.cc
     bridges/mavlink/places_test.cc
     bridges/mavlink/take_command_test.cc
     bridges/mavlink/vehicle_test.cc

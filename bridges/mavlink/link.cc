@@ -4,6 +4,8 @@
 
 #include <fcntl.h>
 #include <netdb.h>
+#include <netinet/tcp.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -23,6 +25,13 @@ using namespace std::chrono_literals;
 constexpr auto kRetry = 1s;
 /// A udpin link answers another address once the last one has been silent for so long.
 constexpr auto kPeerSilent = 3s;
+/// How many datagrams of others are skipped in one turn, so that a flood stops no setpoint.
+constexpr int kMostStrangers = 64;
+/// A frame is left out while more bytes wait to be sent: a setpoint that arrives late is an old
+/// one. For tcp; a serial line holds what it sends in 0.1 s.
+constexpr int kMostQueuedBytes = 512;
+/// A connection ends if what was sent is not acknowledged for so long [ms].
+constexpr unsigned kUnacknowledged_ms = 3000;
 
 class Fd {
  public:
@@ -81,7 +90,7 @@ class UdpLink final : public Link {
 
   std::vector<std::byte> read(Instant now) override {
     std::array<std::byte, 4096> in;
-    for (;;) {
+    for (int i = 0; i < kMostStrangers; ++i) {
       Address from;
       from.size = sizeof from.storage;
       const ssize_t size = recvfrom(fd_.get(), in.data(), in.size(), 0,
@@ -93,6 +102,7 @@ class UdpLink final : public Link {
       heard_at_ = now;
       return begin_of(in, size);
     }
+    return {};
   }
   void write(std::span<const std::byte> frame) override {
     if (peer_) sendto(fd_.get(), frame.data(), frame.size(), 0, peer_->get(), peer_->size);
@@ -108,7 +118,8 @@ class UdpLink final : public Link {
 /// A stream that may end and be opened again.
 class StreamLink : public Link {
  public:
-  explicit StreamLink(std::string name) : name_(std::move(name)) {}
+  StreamLink(std::string name, int most_queued_bytes)
+      : name_(std::move(name)), most_queued_bytes_(most_queued_bytes) {}
   int fd() const override { return fd_.get(); }
   bool has_datagrams() const override { return false; }
 
@@ -121,6 +132,8 @@ class StreamLink : public Link {
     return {};
   }
   void write(std::span<const std::byte> frame) override {
+    int queued_bytes = 0;
+    if (ioctl(fd_.get(), TIOCOUTQ, &queued_bytes) == 0 && queued_bytes > most_queued_bytes_) return;
     // A frame that is cut would spoil the next one, but the reader finds the one after that.
     if (fd_.get() >= 0 && ::write(fd_.get(), frame.data(), frame.size()) < 0 && errno == EPIPE)
       fd_ = Fd();
@@ -142,6 +155,7 @@ class StreamLink : public Link {
 
  private:
   std::string name_;
+  int most_queued_bytes_;
   Fd fd_;
   bool was_up_ = false;
   Instant next_try_{};
@@ -149,11 +163,16 @@ class StreamLink : public Link {
 
 class TcpLink final : public StreamLink {
  public:
-  TcpLink(const std::string& name, const Address& to) : StreamLink(name), to_(to) {}
+  TcpLink(const std::string& name, const Address& to)
+      : StreamLink(name, kMostQueuedBytes), to_(to) {}
 
  private:
   Fd open_again() override {
     Fd fd = new_socket(to_, SOCK_STREAM);
+    const int yes = 1;
+    setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    setsockopt(fd.get(), IPPROTO_TCP, TCP_USER_TIMEOUT, &kUnacknowledged_ms,
+               sizeof kUnacknowledged_ms);
     const bool begun =
         fd.get() >= 0 && (connect(fd.get(), to_.get(), to_.size) == 0 || errno == EINPROGRESS);
     return begun ? std::move(fd) : Fd();
@@ -175,14 +194,15 @@ std::optional<speed_t> speed_of(int baud) {
 
 class SerialLink final : public StreamLink {
  public:
-  SerialLink(const std::string& device, speed_t speed)
-      : StreamLink(device), device_(device), speed_(speed) {}
+  SerialLink(const std::string& device, int baud, speed_t speed)
+      : StreamLink(device, baud / 100), device_(device), speed_(speed) {}
 
  private:
   Fd open_again() override {
     Fd fd(::open(device_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
     termios line{};
     if (fd.get() < 0 || tcgetattr(fd.get(), &line) != 0) return Fd();
+    ioctl(fd.get(), TIOCEXCL);  // two programs on one line would take each other's bytes
     cfmakeraw(&line);
     line.c_cflag |= CLOCAL | CREAD;
     line.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS);
@@ -228,7 +248,7 @@ Result<std::unique_ptr<Link>> Link::open(std::string_view text) {
     const auto speed = speed_of(value);
     if (middle.empty()) return wrong;
     if (!speed) return failure("serial: " + number + " is no usual rate, such as 57600 or 921600");
-    return std::make_unique<SerialLink>(middle, *speed);
+    return std::make_unique<SerialLink>(middle, value, *speed);
   }
   if (value > 65535) return wrong;
   if (kind == "udpin") return udp_at(middle, number);
