@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <ctime>
 #include <string>
+#include <utility>
 
 #include "bridges/mavlink/buses.h"
 #include "bridges/mavlink/driver.h"
@@ -42,8 +43,14 @@ std::optional<std::uint64_t> signing_time() {
          static_cast<std::uint64_t>(time.tv_nsec / 10'000);
 }
 
-/// A line of the log. Characters that could control a terminal are shown as dots.
+/// A line of the log. Characters that could control a terminal are shown as dots. It is left out
+/// while the log takes no more, because setpoints must not wait for a reader.
 void say(AgentId id, const char* level, std::string text) {
+  static int left_out = 0;
+  pollfd log{STDERR_FILENO, POLLOUT, 0};
+  if (poll(&log, 1, 0) <= 0 || (log.revents & POLLOUT) == 0) return ++left_out, void();
+  if (const int lines = std::exchange(left_out, 0); lines > 0)
+    text += " (" + std::to_string(lines) + " lines before this one could not be written)";
   std::ranges::replace_if(
       text, [](unsigned char c) { return c < ' ' || c == 127; }, '.');
   char time[32];
@@ -67,6 +74,9 @@ int signals_to_wait_for() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);  // nohup ignores it
   sigprocmask(SIG_BLOCK, &set, nullptr);
   return signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
 }

@@ -2,13 +2,15 @@
 // A mock of an autopilot with its vehicle, written with node-mavlink, which shares no code with our driver:
 //
 //   autopilot.cjs FOLDER PORT [--system N] [--make px4|ardupilot] [--body copter|rover|wing]
-//                 [--at LAT,LON] [--to PORT]
+//                 [--at LAT,LON] [--to PORT] [--patience SECONDS]
 //
 // FOLDER has node_modules. It speaks MAVLink with all who send to UDP port PORT of this host, and with --to.
 // It passes frames between them, as routers do. A datagram that begins with "pilot " is a pilot's order; the
 // answer is the vehicle's state as JSON:
 //
 //   pilot state | arm | disarm | takeoff METRES | mode NAME | fly NORTH EAST | jump METRES | silent | land
+//
+// An order that ends in "#NUMBER" is obeyed once; its answer has the order. --patience replaces both time-outs.
 //
 // Motion and time-outs count steps of 20 ms, so they stand while this process gets no processor time. Only
 // messages have the time of a clock.
@@ -25,8 +27,8 @@ const HOME_ALTITUDE = 402.5;
 
 const STEP = 0.02; // s
 const RESPONSE = 0.3; // s, in which the velocity follows
-const OFFBOARD_TIMEOUT = 0.5 / STEP; // steps without a setpoint, as PX4 has them
-const GUIDED_TIMEOUT = 3 / STEP; // ArduPilot then stands
+const OFFBOARD_TIMEOUT = (options.patience ?? 0.5) / STEP; // steps without a setpoint, as PX4 has them
+const GUIDED_TIMEOUT = (options.patience ?? 3) / STEP; // ArduPilot then stands
 
 const MODES = px4
   ? { MANUAL: 1, POSCTL: 3, AUTO: 4, OFFBOARD: 6 }
@@ -222,8 +224,10 @@ const ORDERS = {
 
 function obeyPilot(text, from) {
   const [, order, ...rest] = text.trim().split(' ');
-  if (order !== 'state') heartbeatsSince = state.stood = 0;
-  if (order in ORDERS) ORDERS[order](...rest);
+  const repeated = text.includes('#') && text === state.order;
+  if (order !== 'state' && !repeated) heartbeatsSince = state.stood = 0;
+  if (order in ORDERS && !repeated) ORDERS[order](...rest);
+  state.order = text;
   socket.send(JSON.stringify(state), from.port, from.address);
 }
 
