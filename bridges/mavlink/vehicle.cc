@@ -99,6 +99,7 @@ void Vehicle::take_heartbeat(const Received& received, const Heartbeat& heartbea
   if (heartbeat.autopilot == kNoAutopilot) return;  // a ground station, a camera, this driver
   const bool right_system = options_.system == 0 || from.system == options_.system;
   if (!known() && right_system) adopt(from, heartbeat);
+  if (!fatal_.empty()) return;
   if (from != autopilot_) {
     if (strangers_.size() < 8 && strangers_.insert(from.system).second)
       note(true, "system " + std::to_string(from.system) + " is on this link, too, and not driven" +
@@ -114,6 +115,7 @@ void Vehicle::take_heartbeat(const Received& received, const Heartbeat& heartbea
   armed_ = (heartbeat.base_mode & kArmed) != 0;
   const bool left = was_external && !in_external_mode(), disarmed = was_armed && !armed_;
   if (running_ && (left || disarmed)) taken_over_ = true;
+  if (options_.take_command && armed_ && !was_armed && requested_ != kArm) taken_over_ = true;
 }
 
 void Vehicle::adopt(const Source& from, const Heartbeat& heartbeat) {
@@ -400,11 +402,11 @@ void Vehicle::ask_for_messages(std::vector<Packet>& out) const {
   if (!local) out.emplace_back(command(kRequestMessage, static_cast<float>(GpsGlobalOrigin::kId)));
 }
 
-/// The next step of mode, arming and take-off. A multicopter gets orders only on the ground. An
-/// armed vehicle in another mode is a pilot's, and so is a rover that is armed.
+/// The next step of mode, arming and take-off. A multicopter gets orders only on the ground, a
+/// rover only while it is disarmed.
 std::optional<CommandLong> Vehicle::next_order() const {
   const bool rests = body_ == Body::kRover ? !armed_ : landed_state_ == kOnGround;
-  if (!rests || (armed_ && !in_external_mode())) return std::nullopt;
+  if (!rests) return std::nullopt;
   if (!in_external_mode()) {
     constexpr float kCustomMode = 1;
     const std::uint32_t mode = make_ == Make::kPx4      ? kPx4Offboard
@@ -417,15 +419,11 @@ std::optional<CommandLong> Vehicle::next_order() const {
   return command(kTakeOff, 0, 0, static_cast<float>(options_.altitude_m.value_or(5)));
 }
 
-/// Once a second. A vehicle that is already armed in another mode is a pilot's or a failsafe's.
+/// Once a second. A vehicle that was armed by somebody else is a pilot's or a failsafe's.
 void Vehicle::take_command(std::vector<Packet>& out) {
   if (make_ == Make::kPx4 && setpoints_ < kSetpointsBeforeOffboard) return;
   const std::optional<CommandLong> next = next_order();
-  if (!next) {
-    const bool landed_known = body_ == Body::kRover || landed_state_;
-    if (armed_ && !in_external_mode() && landed_known) taken_over_ = true;
-    return;
-  }
+  if (!next) return;
   if (next->command != requested_) {
     requests_ = 0;
     accepted_at_heartbeat_.reset();

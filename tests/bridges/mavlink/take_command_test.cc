@@ -53,13 +53,28 @@ Flight parked(std::uint8_t make = kPx4) {
   return flight;
 }
 
+/// On the ground, in the driver's mode and armed by the driver; `landed_state` from then on.
+Flight armed(std::uint8_t make = kPx4, std::uint8_t landed_state = 1) {
+  Flight flight = parked(make);
+  flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
+  flight.pass(6);
+  flight.begin();
+  flight.pass(1);
+  EXPECT_EQ(flight.orders(400), 1) << flight.log;
+  flight.sent.clear();
+  flight.heartbeat.base_mode = 128;
+  flight.landed.landed_state = landed_state;
+  flight.hear(flight.landed);
+  flight.hear(flight.heartbeat);
+  flight.pass(1);
+  return flight;
+}
+
 TEST(MavlinkVehicle, IsThePilotsIfAnAcceptedOrderIsNotSeen) {
   for (const std::uint8_t make : {kPx4, kArduPilot}) {
-    for (const std::uint16_t order : {176, 400, 22}) {
-      if (order == 22 && make == kPx4) continue;
+    for (const std::uint16_t order : {176, 400}) {
       Flight flight = parked(make);
-      if (order != 176) flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
-      if (order == 22) flight.heartbeat.base_mode = 128;
+      if (order == 400) flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
       flight.pass(6);
       flight.begin();
       flight.pass(1);
@@ -67,21 +82,35 @@ TEST(MavlinkVehicle, IsThePilotsIfAnAcceptedOrderIsNotSeen) {
       flight.answer(order, 0);
       flight.pass(30);
       EXPECT_EQ(flight.orders(), 1) << order << ": a pilot has disarmed it, or changed its mode";
-      if (order != 22) EXPECT_TRUE(flight.said("has taken over")) << flight.log;
+      EXPECT_TRUE(flight.said("has taken over")) << flight.log;
     }
   }
+  Flight flight = armed(kArduPilot);
+  ASSERT_EQ(flight.orders(22), 1) << flight.log;
+  flight.answer(22, 0);
+  flight.pass(30);
+  EXPECT_EQ(flight.orders(), 1) << "it does not take off again after a landing";
 }
 
 TEST(MavlinkVehicle, IsThePilotsIfItIsDisarmed) {
-  Flight flight = parked();
-  flight.heartbeat.custom_mode = kOffboard;
-  flight.heartbeat.base_mode = 128;
-  flight.pass(6);
-  flight.begin();
-  flight.pass(1);
+  Flight flight = armed();
   flight.heartbeat.base_mode = 0;
   flight.pass(10);
   EXPECT_EQ(flight.orders(), 0) << flight.log;
+}
+
+TEST(MavlinkVehicle, IsThePilotsIfItWasArmedBeforeTheDriverBegan) {
+  for (const std::uint8_t make : {kPx4, kArduPilot}) {
+    Flight flight = parked(make);
+    flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
+    flight.heartbeat.base_mode = 128;
+    flight.pass(6);
+    flight.begin();
+    flight.pass(10);
+    EXPECT_EQ(flight.orders(), 0) << "the driver has begun anew, and somebody stands beside it";
+    if (make == kPx4) EXPECT_TRUE(flight.stands());
+    EXPECT_TRUE(flight.said("waits until the pilot has taken off")) << flight.log;
+  }
 }
 
 TEST(MavlinkVehicle, IsNotTakenFromAPilotOrAFailsafeWhileItIsArmed) {
@@ -110,12 +139,7 @@ TEST(MavlinkVehicle, IsNotTakenFromAPilotOrAFailsafeWhileItIsArmed) {
 }
 
 TEST(MavlinkVehicle, IsOrderedToTakeOffOnlyOnTheGround) {
-  Flight flight = parked(kArduPilot);
-  flight.heartbeat.custom_mode = kGuided;
-  flight.heartbeat.base_mode = 128;
-  flight.landed.landed_state = 3;
-  flight.pass(6);
-  flight.begin();
+  Flight flight = armed(kArduPilot, 3);
   flight.pass(5);
   EXPECT_EQ(flight.orders(22), 0) << "it takes off already";
   flight.landed.landed_state = 1;
@@ -125,12 +149,7 @@ TEST(MavlinkVehicle, IsOrderedToTakeOffOnlyOnTheGround) {
 
 /// A PX4 that takes off by climbing at 1 m/s.
 Flight taking_off() {
-  Flight flight = parked();
-  flight.heartbeat.custom_mode = kOffboard;
-  flight.heartbeat.base_mode = 128;
-  flight.pass(6);
-  flight.begin();
-  flight.pass(1);
+  Flight flight = armed();
   EXPECT_EQ(flight.setpoint(), Eigen::Vector3d(0, 0, 1)) << flight.log;
   return flight;
 }

@@ -159,6 +159,7 @@ TEST(MavlinkVehicle, ThatIsNoMulticopterOrRoverOrHasAnotherAutopilotIsRefused) {
     flight.heartbeat.autopilot = autopilot;
     flight.pass(5);
     EXPECT_TRUE(flight.sent_of<SetPositionTargetLocalNed>().empty());
+    EXPECT_FALSE(flight.said("--system")) << "the reason is enough";
     return flight.vehicle.fatal();
   };
   EXPECT_NE(refused(1, kPx4).find("fixed wing, which cannot be stopped"), std::string::npos);
