@@ -10,7 +10,7 @@
 //
 //   pilot state | arm | disarm | takeoff METRES | mode NAME | fly NORTH EAST | jump METRES | silent | land
 //
-// An order that ends in "#NUMBER" is obeyed once; its answer has the order. --patience replaces both time-outs.
+// An order that ends in "#NUMBER" is obeyed once, and its answer has it. --patience replaces both time-outs.
 //
 // Motion and time-outs count steps of 20 ms, so they stand while this process gets no processor time. Only
 // messages have the time of a clock.
