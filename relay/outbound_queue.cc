@@ -38,11 +38,7 @@ void OutboundQueue::add(const Admitted& admitted, Bus bus, std::span<const std::
       return make_room();
     }
   }
-  if (lines_[line].empty() && line != kOrders && !empty()) {
-    // A line that begins anew does not catch up on the time when it had nothing to send.
-    const std::size_t busy = turn();
-    if (busy != kOrders) passes_[line] = std::max(passes_[line], passes_[busy]);
-  }
+  if (lines_[line].empty()) begin(line);
   lines_[line].push_back({.bus = bus,
                           .datagram = {datagram.begin(), datagram.end()},
                           .place = admitted.place,
@@ -67,11 +63,25 @@ void OutboundQueue::pop() {
   erase(line, lines_[line].begin());
 }
 
+/// A line that begins anew does not catch up on the time when it had nothing to send. It owes
+/// nothing for the time when no other line had anything to send.
+void OutboundQueue::begin(std::size_t line) {
+  const std::size_t busy = turn_without_orders();
+  if (busy == kUrgencies) {
+    passes_.fill(0);
+  } else {
+    passes_[line] = std::max(passes_[line], passes_[busy]);
+  }
+}
+
 std::size_t OutboundQueue::turn() const {
   ERGOCAST_REQUIRE(!empty());
-  if (!lines_[kOrders].empty()) return kOrders;
+  return lines_[kOrders].empty() ? turn_without_orders() : kOrders;
+}
+
+std::size_t OutboundQueue::turn_without_orders() const {
   std::size_t best = kUrgencies;
-  for (std::size_t line = 0; line < kUrgencies; ++line) {
+  for (std::size_t line = kOrders + 1; line < kUrgencies; ++line) {
     if (lines_[line].empty()) continue;
     if (best == kUrgencies || passes_[line] < passes_[best]) best = line;
   }

@@ -61,6 +61,8 @@ class OutboundQueue {
     Line::iterator waiting{};
   };
   std::size_t turn() const;
+  std::size_t turn_without_orders() const;  // kUrgencies if nothing else waits
+  void begin(std::size_t line);
   void erase(std::size_t line, Line::iterator waiting);
   void make_room();
 

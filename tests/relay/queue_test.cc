@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a full link carries: newer messages in the place of older ones, never another part, orders
 // first, and no kind not at all.
+#include <algorithm>
 #include <map>
 
 #include "relay/gate.h"
@@ -115,6 +116,24 @@ TEST_F(Queue, NoKindStarvesWhereAnotherFillsTheLink) {
   EXPECT_GT(sent[type_index<Beacon>()], sent[type_index<Contribution>()]);
   EXPECT_GT(sent[type_index<Contribution>()], 20);
   EXPECT_GT(sent[type_index<AgentStatus>()], 20);
+}
+
+TEST_F(Queue, ALineThatHadTheLinkAloneKeepsItsShare) {
+  for (std::int64_t i = 0; i < 500; ++i) {
+    Beacon beacon = test::beacon();
+    beacon.header.sequence = i;
+    add(beacon);
+    all();
+  }
+  for (int agent = 0; agent < 100; ++agent) add(status(1, agent));
+  for (int agent = 0; agent < 10; ++agent) {
+    Beacon beacon = test::beacon();
+    beacon.header.sender = agent;
+    add(beacon);
+  }
+  const auto sent = all();
+  const auto is_beacon = [](const Message& one) { return std::holds_alternative<Beacon>(one); };
+  EXPECT_GE(std::count_if(sent.begin(), sent.begin() + 20, is_beacon), 8);
 }
 
 TEST_F(Queue, BeyondItsLimitTheLeastUrgentGoesFirst) {
