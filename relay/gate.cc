@@ -21,6 +21,10 @@ bool is_one_of(const Message& message) {
 }
 
 Urgency urgency_of(const Message& message) {
+  const auto* amend = std::get_if<Amend>(&message);
+  if (is_one_of<MissionPart>(message) || (amend != nullptr && amend->parts > 1)) {
+    return Urgency::kMission;
+  }
   if (is_one_of<Stop, Amend, Recall>(message)) return Urgency::kOrder;
   if (is_one_of<Command>(message)) return Urgency::kCommand;
   if (is_one_of<Contribution, Effort>(message)) return Urgency::kCoverage;

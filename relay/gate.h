@@ -17,14 +17,15 @@ namespace ergocast::relay {
 
 /// In what order a full link carries datagrams: the first at once, the others by turns.
 enum class Urgency {
-  kOrder,     ///< STOP, AMEND (pauses, too), RECALL
-  kMotion,    ///< what all agents need at once: beacons, states, MISSION, HELLO
+  kOrder,     ///< STOP, RECALL, and AMEND of one part, as pauses are
+  kMotion,    ///< what all agents need at once: beacons, states, HELLO
   kCommand,   ///< COMMAND, which only the site of the world needs
   kCoverage,  ///< CONTRIBUTION, EFFORT
+  kMission,   ///< MISSION, and AMEND of several parts: up to a megabyte at once
   kReport,    ///< statuses and digests
   kOther,     ///< other messages of LCM, which only a relay with --insecure carries
 };
-inline constexpr std::size_t kUrgencies = 6;
+inline constexpr std::size_t kUrgencies = 7;
 
 /// Only the newer one of two messages with the same place is needed. Parts have separate places.
 struct Place {

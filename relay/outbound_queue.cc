@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kOrders = static_cast<std::size_t>(Urgency::kOrder);
 /// The shares of a full link. Orders come first and have none.
-constexpr std::array<double, kUrgencies> kWeights{1, 6, 4, 3, 1, 1};
+constexpr std::array<double, kUrgencies> kWeights{1, 6, 4, 3, 3, 1, 1};
 /// What an idle flow may send at once, as a time at its rate, and at least one packet.
 constexpr double kBurstS = 0.05;
 constexpr double kLeastBurstBytes = 3000;

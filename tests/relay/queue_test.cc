@@ -87,7 +87,9 @@ TEST_F(Queue, BothCommandsThatAnswerANewWorldAreSent) {
 TEST_F(Queue, OrdersComeFirst) {
   for (int i = 0; i < 50; ++i) add(status(1, i));
   add(test::beacon());
-  add(test::stop()), add(test::amend()), add(test::recall());
+  Amend pause = test::amend();
+  pause.part = 0, pause.parts = 1;
+  add(test::stop()), add(pause), add(test::recall());
   const auto sent = all();
   EXPECT_TRUE(std::holds_alternative<Stop>(sent.at(0)));
   EXPECT_TRUE(std::holds_alternative<Amend>(sent.at(1)));
@@ -134,6 +136,22 @@ TEST_F(Queue, ALineThatHadTheLinkAloneKeepsItsShare) {
   const auto sent = all();
   const auto is_beacon = [](const Message& one) { return std::holds_alternative<Beacon>(one); };
   EXPECT_GE(std::count_if(sent.begin(), sent.begin() + 20, is_beacon), 8);
+}
+
+TEST_F(Queue, AMissionOfManyPartsAndALongTargetDelayNoBeacon) {
+  MissionPart mission = test::mission_part();
+  mission.parts = 500;
+  for (mission.part = 0; mission.part < mission.parts; ++mission.part) add(mission);
+  Amend target = test::amend();
+  for (target.part = 0; target.part < target.parts; ++target.part) add(target);
+  for (int agent = 0; agent < 10; ++agent) {
+    Beacon beacon = test::beacon();
+    beacon.header.sender = agent;
+    add(beacon);
+  }
+  const auto sent = all();
+  const auto is_beacon = [](const Message& one) { return std::holds_alternative<Beacon>(one); };
+  EXPECT_EQ(std::count_if(sent.begin(), sent.begin() + 20, is_beacon), 10);
 }
 
 TEST_F(Queue, BeyondItsLimitTheLeastUrgentGoesFirst) {
