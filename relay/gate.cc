@@ -64,6 +64,12 @@ bool is_answer(const Message& message) {
   return command != nullptr && command->asked_by != 0;
 }
 
+/// A receiver needs all parts of a state. Parts of all other messages are of use one by one.
+std::optional<Tick> whole_of(const Message& message) {
+  const auto* state = std::get_if<WorldState>(&message);
+  return state != nullptr && state->parts > 1 ? std::optional(state->header.tick) : std::nullopt;
+}
+
 /// More steps replace fewer, from any relayer. All other messages are ordered by their sequence.
 std::int64_t newness_of(const Message& message) {
   const auto* contribution = std::get_if<Contribution>(&message);
@@ -101,6 +107,7 @@ std::optional<Admitted> Gate::admit(Bus bus, std::span<const std::byte> datagram
     admitted.urgency = urgency_of(*decoded);
     if (is_answer(*decoded)) return admitted;
     admitted.newness = newness_of(*decoded);
+    admitted.whole = whole_of(*decoded);
     admitted.place = Place{.run = header.run,
                            .bus = bus,
                            .type = decoded->index(),

@@ -43,8 +43,9 @@ using Identity = std::array<std::uint64_t, 2>;
 
 struct Admitted {
   Urgency urgency = Urgency::kOther;
-  std::optional<Place> place;  ///< nothing: it replaces nothing
-  std::int64_t newness = 0;    ///< greater is newer, at one place
+  std::optional<Place> place;   ///< nothing: it replaces nothing
+  std::int64_t newness = 0;     ///< greater is newer, at one place
+  std::optional<Tick> whole{};  ///< a part that is of use only with the others of this tick
   Identity identity{};
 };
 

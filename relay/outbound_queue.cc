@@ -20,22 +20,26 @@ constexpr std::array<double, kUrgencies> kWeights{1, 6, 4, 3, 3, 1, 1};
 constexpr double kBurstS = 0.05;
 constexpr double kLeastBurstBytes = 3000;
 
+Place whole_of(Place part, Tick tick) {
+  part.part = 0;
+  part.revision = tick;
+  return part;
+}
+
 }  // namespace
 
 void OutboundQueue::add(const Admitted& admitted, Bus bus, std::span<const std::byte> datagram,
                         bool full) {
   const auto line = static_cast<std::size_t>(admitted.urgency);
-  if (admitted.place) {
+  if (admitted.place && full) {
     const auto known = places_.find(*admitted.place);
-    if (known != places_.end() && full) {
+    if (known != places_.end()) {
       Waiting& old = *known->second.waiting;
       if (admitted.newness < old.newness) return void(++dropped_.overtaken);
-      ++dropped_.replaced;
-      bytes_ += datagram.size() - old.datagram.size();
-      old.datagram.assign(datagram.begin(), datagram.end());
-      old.newness = admitted.newness;
-      old.identity = admitted.identity;
-      return make_room();
+      if (admitted.whole == old.whole || !has_begun(old)) {
+        ++dropped_.replaced;
+        return replace(old, admitted, datagram);
+      }
     }
   }
   if (lines_[line].empty()) begin(line);
@@ -43,10 +47,26 @@ void OutboundQueue::add(const Admitted& admitted, Bus bus, std::span<const std::
                           .datagram = {datagram.begin(), datagram.end()},
                           .place = admitted.place,
                           .newness = admitted.newness,
+                          .whole = admitted.whole,
                           .identity = admitted.identity});
   bytes_ += datagram.size();
   if (admitted.place) places_[*admitted.place] = {line, std::prev(lines_[line].end())};
   make_room();
+}
+
+void OutboundQueue::replace(Waiting& old, const Admitted& admitted,
+                            std::span<const std::byte> datagram) {
+  bytes_ += datagram.size() - old.datagram.size();
+  old.datagram.assign(datagram.begin(), datagram.end());
+  old.newness = admitted.newness;
+  old.whole = admitted.whole;
+  old.identity = admitted.identity;
+  make_room();
+}
+
+/// Whether a part of the same whole was sent. Then no newer part replaces the others, which follow.
+bool OutboundQueue::has_begun(const Waiting& waiting) const {
+  return waiting.whole && begun_ == whole_of(*waiting.place, *waiting.whole);
 }
 
 void OutboundQueue::remove(const Admitted& admitted) {
@@ -59,6 +79,7 @@ void OutboundQueue::remove(const Admitted& admitted) {
 
 void OutboundQueue::pop() {
   const std::size_t line = turn();
+  if (next().whole) begun_ = whole_of(*next().place, *next().whole);
   passes_[line] += static_cast<double>(next().datagram.size()) / kWeights[line];
   erase(line, lines_[line].begin());
 }

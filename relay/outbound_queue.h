@@ -44,6 +44,7 @@ class OutboundQueue {
     std::vector<std::byte> datagram;
     std::optional<Place> place{};
     std::int64_t newness = 0;
+    std::optional<Tick> whole{};
     Identity identity{};
   };
   /// The next in turn: an order if one waits. The others share the flow by the weights of their
@@ -63,11 +64,14 @@ class OutboundQueue {
   std::size_t turn() const;
   std::size_t turn_without_orders() const;  // kUrgencies if nothing else waits
   void begin(std::size_t line);
+  void replace(Waiting& old, const Admitted& admitted, std::span<const std::byte> datagram);
+  bool has_begun(const Waiting& waiting) const;
   void erase(std::size_t line, Line::iterator waiting);
   void make_room();
 
   std::array<Line, kUrgencies> lines_;
   std::map<Place, At> places_;
+  std::optional<Place> begun_;  // of the whole (its first part, tick as revision) sent last
   std::array<double, kUrgencies> passes_{};  // bytes sent by weight; the least is next in turn
   std::size_t bytes_ = 0;
   Dropped dropped_;

@@ -22,12 +22,15 @@ struct Queue : ::testing::Test {
     ASSERT_TRUE(admitted.has_value());
     queue.add(*admitted, Bus::kSwarm, datagram, full);
   }
+  Message take() {
+    const auto parsed = parse_datagram(queue.next().datagram);
+    const Message message = decode(parsed->message, 0, key(1), parsed->channel).value();
+    queue.pop();
+    return message;
+  }
   std::vector<Message> all() {
     std::vector<Message> messages;
-    for (; !queue.empty(); queue.pop()) {
-      const auto parsed = parse_datagram(queue.next().datagram);
-      messages.push_back(decode(parsed->message, 0, key(1), parsed->channel).value());
-    }
+    while (!queue.empty()) messages.push_back(take());
     return messages;
   }
 };
@@ -152,6 +155,35 @@ TEST_F(Queue, AMissionOfManyPartsAndALongTargetDelayNoBeacon) {
   const auto sent = all();
   const auto is_beacon = [](const Message& one) { return std::holds_alternative<Beacon>(one); };
   EXPECT_EQ(std::count_if(sent.begin(), sent.begin() + 20, is_beacon), 10);
+}
+
+/// How many of 60 states in three parts are sent whole by a link for two parts of three.
+/// @param after  how many datagrams the link takes after each part
+int whole_states(Queue& test, const std::array<int, 3>& after) {
+  std::map<Tick, int> parts_sent;
+  WorldState state = test::world_state();
+  state.parts = 3;
+  state.uncounted_ticks = 0;
+  for (Vehicle& vehicle : state.vehicles_in_part()) vehicle.answered_tick = 0;
+  for (state.header.tick = 1; state.header.tick <= 60; ++state.header.tick) {
+    for (state.part = 0; state.part < state.parts; ++state.part) {
+      ++state.header.sequence;
+      test.add(state);
+      for (int i = 0; i < after[static_cast<std::size_t>(state.part)]; ++i) {
+        ++parts_sent[header_of(test.take()).tick];
+      }
+    }
+  }
+  EXPECT_LE(test.all().size(), 6U) << "the queue does not grow";
+  return static_cast<int>(std::count_if(parts_sent.begin(), parts_sent.end(),
+                                        [](const auto& one) { return one.second == 3; }));
+}
+
+TEST_F(Queue, TheWorldsStatesAreSentWholeAtAnyMoment) {
+  for (const std::array<int, 3>& after :
+       std::vector<std::array<int, 3>>{{0, 0, 2}, {0, 2, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}) {
+    EXPECT_GE(whole_states(*this, after), 20) << after[0] << after[1] << after[2];
+  }
 }
 
 TEST_F(Queue, BeyondItsLimitTheLeastUrgentGoesFirst) {
