@@ -215,6 +215,19 @@ TEST(SenderOfAFlow, KeepsItsRate) {
   EXPECT_GT(sender.dropped().replaced, 5000);
 }
 
+TEST(SenderOfAFlow, BundlesNoMoreThanEveryPathTakes) {
+  constexpr std::size_t kLeastMtuBytes = 1280, kIpv6AndUdpBytes = 48;
+  Gate gate(key(1), false);
+  Sender sender(0);
+  for (AgentId agent = 0; agent < 100; ++agent) {
+    const Datagram datagram = datagram_of(status(1, agent), key(1));
+    sender.add(*gate.admit(Bus::kSwarm, datagram), Bus::kSwarm, datagram);
+  }
+  while (const auto packet = sender.next_packet(Instant{})) {
+    EXPECT_LE(packet->size() + kIpv6AndUdpBytes, kLeastMtuBytes);
+  }
+}
+
 // ---- the gate ----
 
 TEST(TheGate, RefusesWhatHasAnotherKeyOrNone) {
