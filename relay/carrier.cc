@@ -20,10 +20,14 @@ std::string refusals(const RefusalCounts& refused) {
 }  // namespace
 
 std::optional<Admitted> Carrier::from_group(Bus bus, std::span<const std::byte> datagram,
-                                            Instant now) {
+                                            bool has_path, Instant now) {
   const auto admitted = gate_.admit(bus, datagram);
   if (!admitted || echoes_.take(admitted->identity)) return std::nullopt;
   ++counts_.from_group;
+  if (!has_path) {
+    ++counts_.no_path;
+    return std::nullopt;
+  }
   if (recent_.note(admitted->identity, now)) return admitted;
   ++counts_.copies;
   return std::nullopt;
@@ -56,7 +60,6 @@ void add(const Sender& sender, Counts& counts) {
 Counts Carrier::counts() const {
   Counts counts = counts_;
   counts.refused = gate_.refused();
-  counts.no_path = no_path;
   return counts;
 }
 

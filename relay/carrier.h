@@ -38,7 +38,9 @@ class Carrier {
   Carrier(const MessageAuthenticator& authenticator, bool others) : gate_(authenticator, others) {}
 
   /// Whether a datagram of the local group is to be carried to the flows.
-  std::optional<Admitted> from_group(Bus bus, std::span<const std::byte> datagram, Instant now);
+  /// @param has_path  without one it is not, and does not count as carried when it comes again
+  std::optional<Admitted> from_group(Bus bus, std::span<const std::byte> datagram, bool has_path,
+                                     Instant now);
   /// One of a flow. `copy` is set if it is a copy of one that was carried.
   std::optional<Admitted> from_flow(const GroupDatagram& datagram, Instant now, bool& copy);
   /// Puts a datagram of a flow into the local group.
@@ -48,7 +50,6 @@ class Carrier {
   void end(const Sender& sender) { add(sender, counts_); }
   /// Without those of senders that are still there.
   Counts counts() const;
-  std::int64_t no_path = 0;
 
  private:
   Gate gate_;

@@ -31,10 +31,8 @@ Hub::Hub(const Settings& settings, const MessageAuthenticator& authenticator)
       carrier_(authenticator, settings.others) {}
 
 void Hub::take_local(Bus bus, std::span<const std::byte> datagram, Instant now) {
-  const auto admitted = carrier_.from_group(bus, datagram, now);
-  if (!admitted) return;
-  if (members_.empty()) return void(++carrier_.no_path);
-  queue(*admitted, {bus, {datagram.begin(), datagram.end()}}, nullptr);
+  const auto admitted = carrier_.from_group(bus, datagram, !members_.empty(), now);
+  if (admitted) queue(*admitted, {bus, {datagram.begin(), datagram.end()}}, nullptr);
 }
 
 void Hub::receive(std::span<const std::byte> packet, const Address& from, Instant now,

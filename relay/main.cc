@@ -26,7 +26,6 @@
 namespace ergocast::relay {
 namespace {
 
-
 /// Limit (Network): datagrams of a bus, and packets, that a relay reads in a turn. Beyond it: the
 /// next turn reads on.
 constexpr std::size_t kMostPerTurn = 256;

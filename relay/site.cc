@@ -24,12 +24,10 @@ std::optional<std::size_t> Site::joined() const {
 }
 
 void Site::take_local(Bus bus, std::span<const std::byte> datagram, Instant now) {
-  const auto admitted = carrier_.from_group(bus, datagram, now);
-  if (!admitted) return;
   // What waited while the site is cut off would be old when the path is back. The team's own
   // repeats make up for it.
-  if (!joined()) return void(++carrier_.no_path);
-  sender_->add(*admitted, bus, datagram);
+  const auto admitted = carrier_.from_group(bus, datagram, joined().has_value(), now);
+  if (admitted) sender_->add(*admitted, bus, datagram);
 }
 
 void Site::receive(std::span<const std::byte> packet, const Address& from, Instant now,

@@ -99,6 +99,19 @@ TEST_F(Relays, ACutOffSiteCarriesOnWithWhatIsNewOnceThePathIsBack) {
   EXPECT_EQ(site.counts().no_path, 1);
 }
 
+TEST_F(Relays, WhatASiteCouldNotSendIsNoCopyOnceThePathIsBack) {
+  network.add_hub(1);
+  network.add_site(3, {1}, 3);
+  network.settle();
+  Site& site = network.add_site(2, {1}, 2);
+  const Datagram stop = datagram_of(test::stop(), key(1));
+  network.send(2, stop);
+  ASSERT_TRUE(site.joined());
+  ASSERT_EQ(site.counts().no_path, 1);
+  network.send(2, stop);
+  EXPECT_EQ(network.arrived(3).size(), 1U);
+}
+
 TEST_F(Relays, ASiteWithANewAddressJoinsAgainAndTakesNoSecondPlace) {
   Hub& hub = network.add_hub(1);
   network.add_site(2, {1}, 2);
