@@ -106,7 +106,7 @@ void Hub::on(const Join& join, const Address& from, Instant now, Outbox& out) {
     member.count = join.count;
     member.last_received = now;
     member.ours = member.theirs = {};
-    member.received_by_ping = 0;
+    member.received_by_ping = member.sent_by_pong = member.sent_by_last_pong = 0;
   }
   send(Welcome{join.count}, from, out);
 }
@@ -124,6 +124,7 @@ void Hub::on(const Ping& ping, const Address& from, Instant now, Outbox& out) {
   member.received_by_ping = member.ours.packets_received;
   member.round_trip_s = ping.round_trip_s;
   member.ours.dropped = member.sender.dropped().total();
+  member.sent_by_last_pong = std::exchange(member.sent_by_pong, member.ours.packets_sent);
   send(Pong{ping.count, member.ours}, from, out);
 }
 
@@ -186,7 +187,7 @@ std::string Hub::report(Instant now) const {
         to_text(address).c_str(), std::chrono::duration<double>(now - member.joined).count(),
         1e3 * member.round_trip_s,
         percent_lost(member.theirs.packets_sent, member.received_by_ping),
-        percent_lost(member.ours.packets_sent, member.theirs.packets_received),
+        percent_lost(member.sent_by_last_pong, member.theirs.packets_received),
         static_cast<long long>(member.theirs.dropped),
         static_cast<long long>(member.sender.dropped().total()));
     text += (text.empty() ? "" : "; ") + std::string(line.data());

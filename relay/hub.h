@@ -59,8 +59,10 @@ class Hub {
     std::int64_t count;  // of its newest Join or Ping
     Instant last_received, joined;
     Sender sender;
-    FlowCounts ours, theirs;            // theirs as of the newest Ping
-    std::int64_t received_by_ping = 0;  // of ours.packets_received, when that Ping came
+    FlowCounts ours, theirs;             // theirs as of the newest Ping
+    std::int64_t received_by_ping = 0;   // of ours.packets_received, when that Ping came
+    std::int64_t sent_by_pong = 0;       // of ours.packets_sent, in the newest Pong
+    std::int64_t sent_by_last_pong = 0;  // the same of the Pong that theirs is about
     double round_trip_s = 0;
   };
   using Members = std::map<Address, Member>;

@@ -53,8 +53,9 @@ struct Welcome {
 };
 /// What one end of a flow has counted since the flow began.
 struct FlowCounts {
-  std::int64_t packets_sent = 0, packets_received = 0;
-  std::int64_t dropped = 0;  ///< datagrams that its full queue has dropped
+  std::int64_t packets_sent = 0;
+  std::int64_t packets_received = 0;  ///< in a Ping: when the last Pong had come
+  std::int64_t dropped = 0;           ///< datagrams that its full queue has dropped
 };
 /// Site to hub, each second: keeps the flow open, also in routers that translate addresses.
 struct Ping {

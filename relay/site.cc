@@ -40,11 +40,13 @@ void Site::receive(std::span<const std::byte> packet, const Address& from, Insta
     if (!control) return;
     const bool was_joined = joined().has_value();
     (of_flow ? *flow_ : *candidate_).receive(*control, now);
-    if (joined() && !was_joined) flow_counts_ = {};
+    if (joined() && !was_joined) begin_counts();
+    if (of_flow && std::holds_alternative<Pong>(*control))
+      flow_counts_.packets_received = packets_received_;
     return;
   }
   if (!of_flow || !joined()) return;
-  ++flow_counts_.packets_received;
+  ++packets_received_;
   for (GroupDatagram& datagram : frames_of(packet)) {
     bool copy = false;
     const auto admitted = carrier_.from_flow(datagram, now, copy);
@@ -93,7 +95,12 @@ void Site::adopt_candidate() {
   flow_hub_ = try_hub_;
   try_hub_ = 0;
   sender_.emplace(settings_.most_bytes_per_s);
+  begin_counts();
+}
+
+void Site::begin_counts() {
   flow_counts_ = {};
+  packets_received_ = 0;
 }
 
 void Site::end_flow() {

@@ -59,6 +59,7 @@ class Site {
   void search(Instant now);
   void try_next_address(Instant now);
   void adopt_candidate();
+  void begin_counts();
   void end_flow();
   void send_waiting(Instant now, Outbox& out);
 
@@ -74,6 +75,7 @@ class Site {
   Instant next_search_{};
   std::optional<Sender> sender_;  // while joined
   FlowCounts flow_counts_;
+  std::int64_t packets_received_ = 0;  // of the flow
 };
 
 }  // namespace ergocast::relay

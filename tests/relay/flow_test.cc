@@ -112,6 +112,30 @@ TEST_F(Relays, WhatASiteCouldNotSendIsNoCopyOnceThePathIsBack) {
   EXPECT_EQ(network.arrived(3).size(), 1U);
 }
 
+TEST_F(Relays, AHubReportsLossesOfWhatASiteHasCounted) {
+  Hub& hub = network.add_hub(
+      1, key(1), {.has_group = true, .most_bytes_per_s = 0, .others = false, .secret = {}});
+  network.add_site(2, {1}, 2);
+  network.settle();
+  const auto send = [&](std::int64_t sequence) {
+    hub.take_local(Bus::kSwarm, datagram_of(status(sequence), key(1)), network.now);
+    network.settle();
+  };
+  const auto report_has = [&](const std::string& loss) {
+    return hub.report(network.now).find(loss + " % from it") != std::string::npos;
+  };
+  for (int i = 0; i < 3; ++i) {
+    send(1 + i);
+    EXPECT_TRUE(report_has(" 0.0")) << hub.report(network.now);
+    network.pass(700ms);
+  }
+  network.cut(true);
+  send(4);
+  network.cut(false);
+  network.pass(3s);
+  EXPECT_TRUE(report_has(" 25.0")) << hub.report(network.now);
+}
+
 TEST_F(Relays, ASiteWithANewAddressJoinsAgainAndTakesNoSecondPlace) {
   Hub& hub = network.add_hub(1);
   network.add_site(2, {1}, 2);
