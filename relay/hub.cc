@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <string_view>
 #include <utility>
 
 namespace ergocast::relay {
@@ -177,7 +178,9 @@ Counts Hub::counts() const {
 }
 
 std::string Hub::report(Instant now) const {
-  std::string text;
+  constexpr std::string_view kMore = "; and 999 more";
+  std::string text = std::to_string(members_.size()) + " sites";
+  std::size_t left = members_.size();
   for (const auto& [address, member] : members_) {
     std::array<char, 256> line{};
     std::snprintf(
@@ -190,9 +193,12 @@ std::string Hub::report(Instant now) const {
         percent_lost(member.sent_by_last_pong, member.theirs.packets_received),
         static_cast<long long>(member.theirs.dropped),
         static_cast<long long>(member.sender.dropped().total()));
-    text += (text.empty() ? "" : "; ") + std::string(line.data());
+    const std::string more = (left == members_.size() ? ". " : "; ") + std::string(line.data());
+    if (text.size() + more.size() + kMore.size() > kMaxReportLength) break;
+    text += more;
+    --left;
   }
-  return std::to_string(members_.size()) + " sites. " + text;
+  return left == 0 ? text : text + "; and " + std::to_string(left) + " more";
 }
 
 }  // namespace ergocast::relay

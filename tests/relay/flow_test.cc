@@ -275,6 +275,18 @@ TEST_F(Strangers, CannotKeepAFlowOpenWithRecordings) {
   EXPECT_EQ(hub.sites(), 0U);
 }
 
+TEST_F(Strangers, AndMembersReadInAReportHowManySitesItLeavesOut) {
+  constexpr int kSites = 60;
+  for (int i = 0; i < kSites; ++i) {
+    const auto site = static_cast<SiteId>(i + 1);
+    answers(seal.write(Join{site, 1, cookie_for(address(i), site), 0}), address(i));
+  }
+  const std::string report = hub.report(now);
+  EXPECT_LE(report.size(), static_cast<std::size_t>(kMaxReportLength));
+  const auto named = std::count(report.begin(), report.end(), ';');
+  EXPECT_TRUE(report.ends_with("; and " + std::to_string(kSites - named) + " more")) << report;
+}
+
 TEST_F(Strangers, ManyJoinNoMoreThanThereArePlaces) {
   for (int i = 0; i < static_cast<int>(Hub::kMostSites) + 20; ++i) {
     const Address from = address(i % 256, static_cast<std::uint16_t>(1000 + i));
