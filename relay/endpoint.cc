@@ -62,6 +62,21 @@ SystemAddress to_system(const Address& address, bool ipv6) {
   return system;
 }
 
+std::string no_place(std::string_view text) {
+  return "'" + std::string(text) +
+         "' is not HOST:PORT, such as hub.example.org:7700 or [2001:db8::1]:7700";
+}
+
+/// What getaddrinfo() finds; the caller frees it.
+int find(const HostAndPort& name, int flags, addrinfo** first) {
+  addrinfo hints{};
+  hints.ai_family = AF_UNSPEC;
+  hints.ai_socktype = SOCK_DGRAM;
+  hints.ai_flags = AI_NUMERICSERV | flags;
+  return getaddrinfo(name.host.empty() ? "::" : name.host.c_str(),
+                     std::to_string(name.port).c_str(), &hints, first);
+}
+
 Address to_address(const sockaddr_storage& system) {
   if (system.ss_family == AF_INET6) {
     sockaddr_in6 from;
@@ -76,10 +91,7 @@ Address to_address(const sockaddr_storage& system) {
 }  // namespace
 
 Result<HostAndPort> HostAndPort::parse(std::string_view text) {
-  const auto wrong = [&] {
-    return failure("'" + std::string(text) +
-                   "' is not HOST:PORT, such as hub.example.org:7700 or [2001:db8::1]:7700");
-  };
+  const auto wrong = [&] { return failure(no_place(text)); };
   const std::size_t colon = text.rfind(':');
   if (colon == text.npos) return wrong();
   std::string_view host = text.substr(0, colon);
@@ -93,14 +105,23 @@ Result<HostAndPort> HostAndPort::parse(std::string_view text) {
   return HostAndPort{std::string(host), static_cast<std::uint16_t>(*port)};
 }
 
+Result<HostAndPort> HostAndPort::parse_hub(std::string_view text) {
+  auto place = parse(text);
+  if (place && place->host.empty()) return failure(no_place(text));
+  return place;
+}
+
+std::string to_text(const HostAndPort& place) {
+  const bool ipv6 = place.host.find(':') != place.host.npos;
+  return (ipv6 ? '[' + place.host + ']' : place.host) + ':' + std::to_string(place.port);
+}
+
+// AI_ADDRCONFIG leaves out addresses of a kind that this host has only on its loopback. A
+// literal needs no name server, and so no such choice.
 Result<std::vector<Address>> look_up(const HostAndPort& name) {
-  addrinfo hints{};
-  hints.ai_family = AF_UNSPEC;
-  hints.ai_socktype = SOCK_DGRAM;
-  hints.ai_flags = AI_NUMERICSERV | (name.host.empty() ? AI_PASSIVE : AI_ADDRCONFIG);
   addrinfo* first = nullptr;
-  const int error = getaddrinfo(name.host.empty() ? "::" : name.host.c_str(),
-                                std::to_string(name.port).c_str(), &hints, &first);
+  int error = find(name, AI_NUMERICHOST, &first);
+  if (error == EAI_NONAME) error = find(name, AI_ADDRCONFIG, &first);
   if (error != 0) return failure(name.host + ": " + gai_strerror(error));
   std::vector<Address> addresses;
   for (const addrinfo* one = first; one != nullptr; one = one->ai_next) {

@@ -27,7 +27,10 @@ struct HostAndPort {
 
   /// Or what is wrong with the text.
   static Result<HostAndPort> parse(std::string_view text);
+  /// The same for a place to send to, which has a host.
+  static Result<HostAndPort> parse_hub(std::string_view text);
 };
+std::string to_text(const HostAndPort& place);
 
 /// Its addresses, or why there are none. Waits for the answer of a name server.
 Result<std::vector<Address>> look_up(const HostAndPort& name);

@@ -126,11 +126,6 @@ void Process::run(auto& participant, int more_fd, const std::function<void(Insta
   spdlog::info("{}", to_text(participant.counts()));
 }
 
-std::string name_of(const HostAndPort& one) {
-  const bool ipv6 = one.host.find(':') != one.host.npos;
-  return (ipv6 ? '[' + one.host + ']' : one.host) + ':' + std::to_string(one.port);
-}
-
 int refuse(ExitCode code, const std::string& problem) {
   spdlog::error("{}", problem);
   return code;
@@ -144,14 +139,14 @@ class JoinedLog {
     if (site.joined() == logged_ && (logged_ || now < next_)) return;
     next_ = now + kWaitingPeriod;
     if (site.joined()) {
-      spdlog::info("joined the hub {} at {}", name_of(options_.to[*site.joined()]),
+      spdlog::info("joined the hub {} at {}", relay::to_text(options_.to[*site.joined()]),
                    relay::to_text(site.flow()->hub()));
     } else if (logged_) {
       spdlog::warn("cut off from the hub: this site goes on alone");
     } else if (begun_) {
       spdlog::warn(
           "no hub answers: none of {} runs, can be reached by UDP, and has this team's key",
-          options_.to.size() == 1 ? name_of(options_.to[0])
+          options_.to.size() == 1 ? relay::to_text(options_.to[0])
                                   : std::to_string(options_.to.size()) + " hubs");
     }
     begun_ = true;
@@ -194,7 +189,7 @@ int run_site(const Options& options, std::unique_ptr<LocalGroup> group) {
 
 int run_hub(const Options& options, std::unique_ptr<LocalGroup> group) {
   const auto addresses = look_up(*options.listen);
-  if (!addresses) return refuse(kExitBadInput, addresses.error());
+  if (!addresses) return refuse(kExitUnavailable, addresses.error());
   auto endpoint = Endpoint::open(addresses->front());
   if (!endpoint) return refuse(kExitUnavailable, endpoint.error());
   Hub::Settings settings{.has_group = group != nullptr,
@@ -240,9 +235,8 @@ int run(const Options& options) {
   return options.listen ? run_hub(options, std::move(group)) : run_site(options, std::move(group));
 }
 
-/// Reads the place that an option names.
-HostAndPort place_of(const std::string& option, const std::string& text) {
-  auto place = HostAndPort::parse(text);
+/// The place that an option names.
+HostAndPort place_of(const std::string& option, Result<HostAndPort> place) {
   if (!place) throw CLI::ValidationError(option, place.error());
   return *std::move(place);
 }
@@ -251,13 +245,17 @@ void add_place_options(CLI::App& app, Options& options) {
   app.add_option_function<std::vector<std::string>>(
          "--to",
          [&options](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts) options.to.push_back(place_of("--to", text));
+           for (const std::string& text : texts) {
+             options.to.push_back(place_of("--to", HostAndPort::parse_hub(text)));
+           }
          },
          "The hub or peer to join; give several in the order of preference")
       ->type_name("HOST:PORT");
   app.add_option_function<std::string>(
          "--listen",
-         [&options](const std::string& text) { options.listen = place_of("--listen", text); },
+         [&options](const std::string& text) {
+           options.listen = place_of("--listen", HostAndPort::parse(text));
+         },
          "Let sites join here; :PORT takes every address of this host")
       ->type_name("HOST:PORT");
 }
@@ -289,7 +287,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(kLogLevels))
       ->type_name("LEVEL");
   app.set_version_flag("--version", version_text());
-  app.footer("Exit codes: 0 done; 2 bad arguments; 3 LCM or the port cannot be used here.");
+  app.footer(
+      "Exit codes: 0 done; 2 bad arguments; 3 LCM, the port or its host cannot be used here.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("relay", options.log_level);
   return relay::run(options);

@@ -150,6 +150,7 @@ ergocast_test(NAME runtime_tests LABELS unit
 
 ergocast_test(NAME relay_tests LABELS unit
   SOURCES
+    relay/endpoint_test.cc
     relay/flow_test.cc
     relay/queue_test.cc
   LIBS ergocast_relay ergocast::runtime ${XXHASH_LIBRARY})

@@ -67,7 +67,7 @@ doctor::PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& authen
 
 Finding relay_finding(const relay::HostAndPort& hub, const MessageAuthenticator& authenticator) {
   const auto report = relay::ask_hub(hub, authenticator);
-  const std::string name = hub.host + ":" + std::to_string(hub.port);
+  const std::string name = relay::to_text(hub);
   if (report) return {"relay", Level::kOk, name + ": " + *report, "", ""};
   return {"relay", Level::kProblem, name + ": " + report.error(),
           "Without its hub each site is alone. On the hub's host, which needs an open UDP port:",
@@ -121,7 +121,7 @@ void add_doctor(CLI::App& app, Action& action) {
       ->add_option_function<std::string>(
           "--relay",
           [options](const std::string& text) {
-            auto hub = relay::HostAndPort::parse(text);
+            auto hub = relay::HostAndPort::parse_hub(text);
             if (!hub) throw CLI::ValidationError("--relay", hub.error());
             options->relay = *std::move(hub);
           },
