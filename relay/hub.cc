@@ -49,11 +49,12 @@ void Hub::receive(std::span<const std::byte> packet, const Address& from, Instan
 }
 
 void Hub::on_data(Member& member, std::span<const std::byte> packet, Instant now, Outbox& out) {
-  ++member.ours.packets_received;
+  bool counted = false;
   for (GroupDatagram& datagram : frames_of(packet)) {
     bool copy = false;
     const auto admitted = carrier_.from_flow(datagram, now, copy);
-    if (!admitted) continue;
+    if (!admitted) break;  // no relay sends it
+    if (!std::exchange(counted, true)) ++member.ours.packets_received;
     if (copy) {
       // This site has it: another relay there has carried it, or a VPN.
       member.sender.remove(*admitted);

@@ -2,8 +2,9 @@
 // The bytes between a site and a hub. Byte 0 is the kind.
 //
 // A data packet holds datagrams of LCM. Nothing protects it but the tags of the messages in it,
-// which both ends check. All other packets end with a tag of their own, keyed by the mission key.
-// So a host without the key gets no answer from a relay.
+// which both ends check: at the first wrong one they drop the rest, and a packet that begins with
+// one does not count. All other packets end with a tag of their own, keyed by the mission key. So a
+// host without the key gets no answer from a relay.
 //
 // A site joins in two round trips: kAsk, kCookie, kJoin, kWelcome. The cookie is a keyed hash of
 // the site's address by a secret of the hub. A hub keeps nothing of a site before the cookie has

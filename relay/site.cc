@@ -46,11 +46,13 @@ void Site::receive(std::span<const std::byte> packet, const Address& from, Insta
     return;
   }
   if (!of_flow || !joined()) return;
-  ++packets_received_;
+  bool counted = false;
   for (GroupDatagram& datagram : frames_of(packet)) {
     bool copy = false;
     const auto admitted = carrier_.from_flow(datagram, now, copy);
-    if (admitted && !copy) carrier_.put(std::move(datagram), *admitted, out);
+    if (!admitted) break;  // no relay sends it
+    if (!std::exchange(counted, true)) ++packets_received_;
+    if (!copy) carrier_.put(std::move(datagram), *admitted, out);
   }
 }
 

@@ -275,6 +275,24 @@ TEST_F(Strangers, CannotKeepAFlowOpenWithRecordings) {
   EXPECT_EQ(hub.sites(), 0U);
 }
 
+TEST_F(Strangers, AddNothingToTheCountsAndNothingBehindAForgery) {
+  for (const int site : {2, 3}) {
+    answers(seal.write(Join{SiteId(site), 1, cookie_for(address(site), SiteId(site)), 0}),
+            address(site));
+  }
+  const Datagram forged = datagram_of(status(1), key(2)), honest = datagram_of(status(2), key(1));
+  std::vector<std::byte> packet;
+  append_frame(packet, Bus::kSwarm, forged);
+  append_frame(packet, Bus::kSwarm, honest);
+  EXPECT_TRUE(answers(packet, address(2)).empty());
+  Outbox out;
+  hub.advance(now, out);
+  EXPECT_TRUE(out.packets.empty());
+  // The site has sent two packets by now, and neither has arrived.
+  answers(seal.write(Ping{2, 2, {.packets_sent = 2}, 0}), address(2));
+  EXPECT_NE(hub.report(now).find("lost 100.0 % to the hub"), std::string::npos) << hub.report(now);
+}
+
 TEST_F(Strangers, AndMembersReadInAReportHowManySitesItLeavesOut) {
   constexpr int kSites = 60;
   for (int i = 0; i < kSites; ++i) {
