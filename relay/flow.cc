@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A state machine of three steps. Every answer names what it answers, so a recording is ignored.
+// Unknown is an exception: a stranger gets one with a recorded Ping.
 #include "relay/flow.h"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ void Flow::enter(State state, Instant now) {
   if (state == State::kAsking) nonce_ = identity_.site ^ static_cast<std::uint64_t>(++count_);
   if (state == State::kJoining) join_count_ = ++count_;
   if (state == State::kJoined) pings_.fill({});
+  unknown_since_.reset();
 }
 
 /// Null if it is none of the last pings.
@@ -50,15 +52,17 @@ void Flow::on(const Pong& pong, Instant now) {
   const Sent* const question = ping(pong.count);
   if (question == nullptr) return;
   heard_ = now;
+  unknown_since_.reset();
   round_trip_s_ = std::chrono::duration<double>(now - question->at).count();
 }
 
 // The hub has restarted, or a router on the way has given this site another address.
 void Flow::on(const Unknown& unknown, Instant now) {
-  if (ping(unknown.count) != nullptr) enter(State::kAsking, now);
+  if (ping(unknown.count) != nullptr && !unknown_since_) unknown_since_ = now;
 }
 
 void Flow::advance(Instant now, const FlowCounts& counts, Outbox& out) {
+  if (unknown_since_ && now >= *unknown_since_ + kDoubt) enter(State::kAsking, now);
   const bool joined = state_ == State::kJoined;
   if (joined ? now >= heard_ + kSilence : now >= since_ + kPatience) state_ = State::kLost;
   if (state_ == State::kLost || now < due_) return;
@@ -74,7 +78,8 @@ void Flow::advance(Instant now, const FlowCounts& counts, Outbox& out) {
 
 Instant Flow::next_wakeup() const {
   if (state_ == State::kLost) return Instant{};  // at once
-  return std::min(due_, joined() ? heard_ + kSilence : since_ + kPatience);
+  const Instant next = std::min(due_, joined() ? heard_ + kSilence : since_ + kPatience);
+  return unknown_since_ ? std::min(next, *unknown_since_ + kDoubt) : next;
 }
 
 void Flow::leave(Outbox& out) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "core/base/ids.h"
 #include "relay/address.h"
@@ -23,6 +24,8 @@ class Flow {
   /// the next address or hub.
   static constexpr std::chrono::nanoseconds kPatience = std::chrono::seconds(3);
   static constexpr std::chrono::nanoseconds kPingPeriod = std::chrono::seconds(1);
+  /// How long an Unknown is doubted: a Pong comes in that time if the hub does know this address.
+  static constexpr std::chrono::nanoseconds kDoubt = kPingPeriod * 3 / 2;
   /// Limit (Time): silence of a hub that a site has joined [s]. Beyond it: the site is cut off, and
   /// looks for a hub.
   static constexpr std::chrono::nanoseconds kSilence = std::chrono::seconds(5);
@@ -69,6 +72,7 @@ class Flow {
   State state_ = State::kAsking;
   Instant since_, due_;          // in this state since; the next packet
   Instant heard_;                // a Pong, while joined
+  std::optional<Instant> unknown_since_;  // the first Unknown after it
   std::array<Sent, 8> pings_{};  // the last, by count: an answer may take longer than a period
   std::int64_t join_count_ = 0;
   std::uint64_t nonce_ = 0;

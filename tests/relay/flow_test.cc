@@ -209,6 +209,33 @@ TEST_F(Relays, APeerPutsWhatSitesSendIntoItsOwnGroup) {
 
 // ---- strangers ----
 
+TEST_F(Relays, ARecordedPingFromAnotherAddressDoesNotEndAFlow) {
+  Hub hub({}, key(1));
+  Site site({}, key(1), 7);
+  int joined = 0, turns = 0;
+  const Seal seal(key(1).key());
+  for (; turns < 100; ++turns, network.now += 100ms) {
+    Outbox up, down, stolen, none;
+    site.advance(network.now, up);
+    if (site.wanted_hub()) site.found({address(1)}, network.now);
+    for (const Packet& packet : up.packets) {
+      // The stranger is faster than the site.
+      if (std::holds_alternative<Ping>(*seal.read(packet.bytes))) {
+        hub.receive(packet.bytes, address(66), network.now, stolen);
+      }
+      hub.receive(packet.bytes, address(2), network.now, down);
+    }
+    for (const Outbox& answers : {stolen, down}) {
+      for (const Packet& packet : answers.packets) {
+        site.receive(packet.bytes, address(1), network.now, none);
+        if (joined > 0) EXPECT_TRUE(site.joined()) << turns;
+      }
+    }
+    joined += site.joined() ? 1 : 0;
+  }
+  EXPECT_GT(joined, 90);
+}
+
 struct Strangers : ::testing::Test {
   Instant now{1000s};
   Hub hub{{}, key(1)};
