@@ -22,7 +22,7 @@ std::string refusals(const RefusalCounts& refused) {
 std::optional<Admitted> Carrier::from_group(Bus bus, std::span<const std::byte> datagram,
                                             bool has_path, Instant now) {
   const auto admitted = gate_.admit(bus, datagram);
-  if (!admitted || echoes_.take(admitted->identity)) return std::nullopt;
+  if (!admitted || echoes_.take(admitted->identity, now)) return std::nullopt;
   ++counts_.from_group;
   if (!has_path) {
     ++counts_.no_path;
@@ -42,9 +42,9 @@ std::optional<Admitted> Carrier::from_flow(const GroupDatagram& datagram, Instan
   return admitted;
 }
 
-void Carrier::put(GroupDatagram datagram, const Admitted& admitted, Outbox& out) {
+void Carrier::put(GroupDatagram datagram, const Admitted& admitted, Instant now, Outbox& out) {
   ++counts_.to_group;
-  echoes_.sent(admitted.identity);
+  echoes_.sent(admitted.identity, now);
   out.group.push_back(std::move(datagram));
 }
 

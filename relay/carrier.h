@@ -44,7 +44,7 @@ class Carrier {
   /// One of a flow. `copy` is set if it is a copy of one that was carried.
   std::optional<Admitted> from_flow(const GroupDatagram& datagram, Instant now, bool& copy);
   /// Puts a datagram of a flow into the local group.
-  void put(GroupDatagram datagram, const Admitted& admitted, Outbox& out);
+  void put(GroupDatagram datagram, const Admitted& admitted, Instant now, Outbox& out);
 
   /// Keeps the counts of a sender that is about to be removed.
   void end(const Sender& sender) { add(sender, counts_); }

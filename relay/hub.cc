@@ -61,7 +61,7 @@ void Hub::on_data(Member& member, std::span<const std::byte> packet, Instant now
       continue;
     }
     queue(*admitted, datagram, &member);
-    if (settings_.has_group) carrier_.put(std::move(datagram), *admitted, out);
+    if (settings_.has_group) carrier_.put(std::move(datagram), *admitted, now, out);
   }
 }
 

@@ -42,29 +42,43 @@ class Recent {
   std::deque<std::pair<Instant, Identity>> notes_;  // oldest first
 };
 
-/// What this relay has put into the local group itself, and will receive from there. Time does not
-/// matter: a process that stood still may receive it later than a second.
+/// What this relay has put into the local group itself, and will receive from there. A process that
+/// stood still may receive it much later. What the socket's buffer lost never comes.
 class Echoes {
  public:
-  void sent(const Identity& one) {
-    if (order_.size() == Recent::kMostRemembered) {
-      take(order_.front());
-      order_.pop_front();
-    }
-    ++pending_[one];
-    order_.push_back(one);
+  /// Then an echo was lost, and what comes is a repeat that somebody needs.
+  static constexpr std::chrono::nanoseconds kTime = std::chrono::seconds(60);
+
+  void sent(const Identity& one, Instant now) {
+    if (order_.size() == Recent::kMostRemembered) forget();
+    Pending& pending = pending_[one];
+    ++pending.count;
+    pending.last = now;
+    order_.emplace_back(now, one);
   }
   /// Whether it is such an echo, which is then forgotten.
-  bool take(const Identity& one) {
+  bool take(const Identity& one, Instant now) {
+    while (!order_.empty() && order_.front().first + kTime <= now) forget();
     const auto at = pending_.find(one);
     if (at == pending_.end()) return false;
-    if (--at->second == 0) pending_.erase(at);
+    if (--at->second.count == 0) pending_.erase(at);
     return true;
   }
 
  private:
-  std::map<Identity, int> pending_;
-  std::deque<Identity> order_;
+  struct Pending {
+    int count = 0;
+    Instant last{};
+  };
+  void forget() {
+    const auto& [when, one] = order_.front();
+    const auto at = pending_.find(one);
+    if (at != pending_.end() && at->second.last == when) pending_.erase(at);
+    order_.pop_front();
+  }
+
+  std::map<Identity, Pending> pending_;
+  std::deque<std::pair<Instant, Identity>> order_;  // oldest first
 };
 
 }  // namespace ergocast::relay

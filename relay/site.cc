@@ -52,7 +52,7 @@ void Site::receive(std::span<const std::byte> packet, const Address& from, Insta
     const auto admitted = carrier_.from_flow(datagram, now, copy);
     if (!admitted) break;  // no relay sends it
     if (!std::exchange(counted, true)) ++packets_received_;
-    if (!copy) carrier_.put(std::move(datagram), *admitted, out);
+    if (!copy) carrier_.put(std::move(datagram), *admitted, now, out);
   }
 }
 

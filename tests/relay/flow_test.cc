@@ -81,6 +81,20 @@ TEST_F(Relays, AnEchoIsNotCarriedBackHoweverLateItComes) {
   EXPECT_EQ(network.arrived(2).size(), 1U) << "a repeat by somebody else";
 }
 
+TEST_F(Relays, ALostEchoHidesNoRepeatAMinuteLater) {
+  network.add_hub(1);
+  network.add_site(2, {1}, 2);
+  Site& deaf = network.add_site(3, {1}, -3);
+  network.settle();
+  const Datagram sent = datagram_of(test::stop(), key(1));
+  network.send(2, sent);
+  ASSERT_EQ(network.arrived(-3).size(), 1U);
+  network.pass(Echoes::kTime, 1s);
+  deaf.take_local(Bus::kSwarm, sent, network.now);
+  network.settle();
+  EXPECT_EQ(network.arrived(2).size(), 1U);
+}
+
 TEST_F(Relays, ACutOffSiteCarriesOnWithWhatIsNewOnceThePathIsBack) {
   network.add_hub(1);
   Site& site = network.add_site(2, {1}, 2);
