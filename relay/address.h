@@ -18,6 +18,9 @@ struct Address {
   std::array<std::uint8_t, 16> ip{};
   std::uint16_t port = 0;
   std::uint32_t interface = 0;  ///< of an address that is valid on one link only; else 0
+  /// Which address of this host it uses, at a socket that receives at all of them; else 0. Answers
+  /// leave from there, because a router on the way takes no others.
+  std::array<std::uint8_t, 16> ours{};
   auto operator<=>(const Address&) const = default;
 };
 

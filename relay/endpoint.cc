@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
@@ -88,6 +89,57 @@ Address to_address(const sockaddr_storage& system) {
   return from_system(from);
 }
 
+/// Whether it is :: or 0.0.0.0.
+bool is_every_address(const Address& address) {
+  constexpr Address kIpv4{{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff}};
+  return address.ip == Address().ip || address.ip == kIpv4.ip;
+}
+
+/// Room for the kernel's note on a packet: this host's address, and the interface.
+union Note {
+  cmsghdr header;
+  std::array<char, CMSG_SPACE(sizeof(in6_pktinfo))> bytes;
+};
+
+std::array<std::uint8_t, 16> our_address(msghdr& message) {
+  Address ours;
+  for (cmsghdr* note = CMSG_FIRSTHDR(&message); note != nullptr;
+       note = CMSG_NXTHDR(&message, note)) {
+    if (note->cmsg_level == IPPROTO_IPV6 && note->cmsg_type == IPV6_PKTINFO) {
+      std::memcpy(ours.ip.data(), CMSG_DATA(note) + offsetof(in6_pktinfo, ipi6_addr),
+                  sizeof(in6_addr));
+    } else if (note->cmsg_level == IPPROTO_IP && note->cmsg_type == IP_PKTINFO) {
+      sockaddr_in at{};
+      std::memcpy(&at.sin_addr, CMSG_DATA(note) + offsetof(in_pktinfo, ipi_addr),
+                  sizeof at.sin_addr);
+      ours = from_system(at);
+    }
+  }
+  return ours.ip;
+}
+
+/// Makes a message leave from that address.
+void set_our_address(msghdr& message, Note& space, const Address& to, bool ipv6) {
+  const auto write = [&](int level, int type, const auto& info) {
+    message.msg_control = &space;
+    message.msg_controllen = CMSG_SPACE(sizeof info);
+    space.header.cmsg_level = level;
+    space.header.cmsg_type = type;
+    space.header.cmsg_len = CMSG_LEN(sizeof info);
+    std::memcpy(CMSG_DATA(&space.header), &info, sizeof info);
+  };
+  if (ipv6) {
+    in6_pktinfo info{};
+    std::memcpy(&info.ipi6_addr, to.ours.data(), sizeof info.ipi6_addr);
+    info.ipi6_ifindex = to.interface;
+    write(IPPROTO_IPV6, IPV6_PKTINFO, info);
+  } else {
+    in_pktinfo info{};
+    std::memcpy(&info.ipi_spec_dst, &to.ours[kIpv4At], sizeof info.ipi_spec_dst);
+    write(IPPROTO_IP, IP_PKTINFO, info);
+  }
+}
+
 }  // namespace
 
 Result<HostAndPort> HostAndPort::parse(std::string_view text) {
@@ -149,6 +201,11 @@ Result<Endpoint> Endpoint::open(const std::optional<Address>& at) {
     if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&system.storage), system.length) != 0) {
       return failure(to_text(*at) + ": " + std::strerror(errno));
     }
+    if (is_every_address(*at)) {
+      const int yes = 1;
+      setsockopt(socket.fd(), ipv6 ? IPPROTO_IPV6 : IPPROTO_IP,
+                 ipv6 ? IPV6_RECVPKTINFO : IP_PKTINFO, &yes, sizeof yes);
+    }
   }
   return Endpoint(std::move(socket), ipv6);
 }
@@ -156,18 +213,33 @@ Result<Endpoint> Endpoint::open(const std::optional<Address>& at) {
 std::optional<Endpoint::Received> Endpoint::receive(std::vector<std::byte>& space) {
   space.resize(kMaxGroupBytes);
   sockaddr_storage system{};
-  socklen_t length = sizeof system;
-  const ssize_t size = recvfrom(fd(), space.data(), space.size(), MSG_DONTWAIT,
-                                reinterpret_cast<sockaddr*>(&system), &length);
+  Note note{};
+  iovec part{space.data(), space.size()};
+  msghdr message{};
+  message.msg_name = &system;
+  message.msg_namelen = sizeof system;
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = &note;
+  message.msg_controllen = sizeof note;
+  const ssize_t size = recvmsg(fd(), &message, MSG_DONTWAIT);
   if (size < 0) return std::nullopt;
-  return Received{std::span(space).first(static_cast<std::size_t>(size)), to_address(system)};
+  Address from = to_address(system);
+  from.ours = our_address(message);
+  return Received{std::span(space).first(static_cast<std::size_t>(size)), from};
 }
 
 void Endpoint::send(const Packet& packet) {
-  const SystemAddress system = to_system(packet.to, ipv6_);
-  const ssize_t sent = sendto(fd(), packet.bytes.data(), packet.bytes.size(), MSG_DONTWAIT,
-                              reinterpret_cast<const sockaddr*>(&system.storage), system.length);
-  if (sent < 0) ++not_sent_;
+  SystemAddress system = to_system(packet.to, ipv6_);
+  Note note{};
+  iovec part{const_cast<std::byte*>(packet.bytes.data()), packet.bytes.size()};
+  msghdr message{};
+  message.msg_name = &system.storage;
+  message.msg_namelen = system.length;
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  if (packet.to.ours != Address().ours) set_our_address(message, note, packet.to, ipv6_);
+  if (sendmsg(fd(), &message, MSG_DONTWAIT) < 0) ++not_sent_;
 }
 
 // ---- names ----

@@ -38,7 +38,9 @@ Result<std::vector<Address>> look_up(const HostAndPort& name);
 /// One socket for IPv6 and IPv4, or for IPv4 alone where the kernel has no IPv6.
 class Endpoint {
  public:
-  /// @param at  where to receive; without it, at any free port
+  /// @param at  where to receive; without it, at any free port. If it is every address of this
+  /// host,
+  ///            receive() tells which one a packet came to.
   static Result<Endpoint> open(const std::optional<Address>& at);
 
   int fd() const { return socket_.fd(); }

@@ -3,6 +3,11 @@
 #include "relay/endpoint.h"
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+
+#include <string>
+#include <vector>
 
 namespace ergocast::relay {
 namespace {
@@ -28,6 +33,31 @@ TEST(APlace, MayBeALiteralOfEitherKind) {
   EXPECT_EQ(to_text(look_up({"127.0.0.1", 7700}).value().at(0)), "127.0.0.1:7700");
   EXPECT_EQ(to_text(look_up({"::1", 7700}).value().at(0)), "[0:0:0:0:0:0:0:1]:7700");
   EXPECT_EQ(to_text(look_up({"", 7700}).value().at(0)), "[0:0:0:0:0:0:0:0]:7700");
+}
+
+/// The port that the system has chosen for a socket.
+std::uint16_t port_of(const Endpoint& endpoint) {
+  sockaddr_in6 at{};
+  socklen_t length = sizeof at;
+  EXPECT_EQ(getsockname(endpoint.fd(), reinterpret_cast<sockaddr*>(&at), &length), 0);
+  return ntohs(at.sin6_port);
+}
+
+TEST(AnEndpointAtEveryAddress, AnswersFromTheOneThatWasAsked) {
+  auto hub = Endpoint::open(Address()), site = Endpoint::open(std::nullopt);
+  ASSERT_TRUE(hub && site);
+  const std::string other = "127.0.0.2";
+  const Address asked = look_up({other, port_of(*hub)}).value().at(0);
+  const std::vector<std::byte> bytes(3, std::byte{7});
+  std::vector<std::byte> space;
+  const auto next = [&space](Endpoint& endpoint) {
+    pollfd ready{endpoint.fd(), POLLIN, 0};
+    poll(&ready, 1, -1);
+    return endpoint.receive(space).value();
+  };
+  site->send({asked, bytes});
+  hub->send({next(*hub).from, bytes});
+  EXPECT_EQ(to_text(next(*site).from), to_text(asked));
 }
 
 }  // namespace
