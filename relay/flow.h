@@ -70,8 +70,8 @@ class Flow {
   std::int64_t& count_;
   Address hub_;
   State state_ = State::kAsking;
-  Instant since_, due_;          // in this state since; the next packet
-  Instant heard_;                // a Pong, while joined
+  Instant since_, due_;                   // in this state since; the next packet
+  Instant heard_;                         // a Pong, while joined
   std::optional<Instant> unknown_since_;  // the first Unknown after it
   std::array<Sent, 8> pings_{};  // the last, by count: an answer may take longer than a period
   std::int64_t join_count_ = 0;

@@ -273,8 +273,8 @@ int main(int argc, char** argv) {
   relay::add_place_options(app, options);
   app.add_flag("--hub", options.hub, "With --listen: only a hub, without a local LCM group");
   app.add_option("--max-rate", options.most_kbit_per_s,
-                 "Most that a site sends and receives, in each direction; newer messages then "
-                 "replace older ones (default: no limit)")
+                 "Most that a site sends and receives, in each direction, or a hub sends to each "
+                 "site; newer messages then replace older ones (default: no limit)")
       ->check(CLI::Range(8, 10000000))
       ->type_name("KBIT/S");
   app.add_flag("--insecure", options.insecure,

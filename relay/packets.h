@@ -69,7 +69,8 @@ struct Pong {
   std::int64_t count = 0;
   FlowCounts counts;
 };
-/// Hub to site: the address of that Ping has not joined. The site asks again, unless a Pong follows.
+/// Hub to site: the address of that Ping has not joined. The site asks again, unless a Pong
+/// follows.
 struct Unknown {
   std::int64_t count = 0;
 };
