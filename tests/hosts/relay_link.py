@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures a mission over a relay whose link delays and loses packets. By hand:
+
+    tests/hosts/relay_link.py build/release/bin scenarios/quadrimodal_corners.textproto
+
+Two sites on one machine, as in docs/relays.md. World, coordinator, logger and half of the agents
+are at the ground site, the others at the field site. A kernel without netem cannot delay packets,
+so the field's relay joins a program here, not the hub: it passes each UDP packet on after the delay,
+in order, or loses it. It has no rate and no queue of its own; the relays' --max-rate is the only
+one. The last lines are the figures, as JSON.
+"""
+import argparse
+import heapq
+import json
+import os
+import pathlib
+import random
+import re
+import selectors
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+
+GROUND, FIELD = "udpm://239.255.76.67:24600?ttl=0", "udpm://239.255.76.67:24610?ttl=0"
+HUB, LINK = 7790, 7791
+IP_AND_UDP_BYTES = 28
+
+
+class Link(threading.Thread):
+    """Between one site and the hub."""
+
+    def __init__(self, delay_s, loss, seed):
+        super().__init__(daemon=True)
+        self.delay_s, self.loss, self.dice = delay_s, loss, random.Random(seed)
+        self.site_side, self.hub_side = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
+        self.site_side.bind(("127.0.0.1", LINK))
+        self.site = None
+        self.bytes = {"from_field": 0, "to_field": 0}
+        self.late_s = 0  # the most that this program was late itself
+
+    def run(self):
+        selector = selectors.DefaultSelector()
+        for one in (self.site_side, self.hub_side):
+            one.setblocking(False)
+            selector.register(one, selectors.EVENT_READ)
+        waiting, count = [], 0
+        while True:
+            selector.select(max(0, waiting[0][0] - time.monotonic()) if waiting else 1)
+            for one in (self.site_side, self.hub_side):
+                while True:
+                    try:
+                        packet, sender = one.recvfrom(65535)
+                    except BlockingIOError:
+                        break
+                    if one is self.site_side:
+                        self.site = sender
+                    way = "from_field" if one is self.site_side else "to_field"
+                    self.bytes[way] += len(packet) + IP_AND_UDP_BYTES
+                    if self.dice.random() >= self.loss:
+                        count += 1
+                        heapq.heappush(waiting, (time.monotonic() + self.delay_s, count, way, packet))
+            while waiting and waiting[0][0] <= time.monotonic():
+                due, _, way, packet = heapq.heappop(waiting)
+                self.late_s = max(self.late_s, time.monotonic() - due)
+                if way == "from_field":
+                    self.hub_side.sendto(packet, ("127.0.0.1", HUB))
+                elif self.site:
+                    self.site_side.sendto(packet, self.site)
+
+
+def scenario_of(text, options):
+    """The scenario in real time with that many agents at random starts."""
+    text = re.sub(r"agents \{.*?\n\}", f"agents {{ random_count: {options.agents} {options.in_agents} }}", text,
+                  flags=re.DOTALL)
+    return re.sub(r"time \{.*?\n\}", f"time {{ dt_s: {options.dt} duration_s: {options.duration} "
+                  f"pace: REALTIME {options.in_time} }}", text, flags=re.DOTALL)
+
+
+def measure(options, folder, relayed):
+    field = FIELD if relayed else GROUND
+    key = folder / "team"
+    environment = dict(os.environ, ERGOCAST_KEY_FILE=str(key) + ".key")
+    if not pathlib.Path(environment["ERGOCAST_KEY_FILE"]).exists():
+        subprocess.run([options.bin / "ergocast", "keygen", key], check=True, stdout=subprocess.DEVNULL)
+    out = folder / ("relayed" if relayed else "direct")
+    out.mkdir()
+
+    def start(program, *arguments, name=None):
+        with open(folder / f"{out.name}-{name or program}.log", "w") as log:
+            return subprocess.Popen([options.bin / program, *map(str, arguments)], env=environment,
+                                    stdout=log, stderr=log)
+
+    link, relays = None, []
+    if relayed:
+        link = Link(options.delay_ms / 1000, options.loss_percent / 100, options.seed)
+        link.start()
+        rate = ["--max-rate", options.max_rate] if options.max_rate else []
+        relays = [start("ergocast-relay", "--hub", "--listen", f"127.0.0.1:{HUB}", *rate, name="hub"),
+                  start("ergocast-relay", "--to", f"127.0.0.1:{HUB}", "--lcm-url", GROUND, name="ground"),
+                  start("ergocast-relay", "--to", f"127.0.0.1:{LINK}", "--lcm-url", FIELD, *rate, name="field")]
+    team = [start("ergocast-logger", "--out", out, "--lcm-url", GROUND),
+            start("ergocast-sim", "--lcm-url", GROUND),
+            start("ergocast-coordinator", folder / "scenario.textproto", "--lcm-url", GROUND, "--key-file",
+                  str(key) + ".coordinator.key")]
+    for agent in range(options.agents):
+        url = GROUND if agent < options.agents // 2 else field
+        team.append(start("ergocast-agent", "--id", agent, "--lcm-url", url, name=f"agent{agent}"))
+    team[2].wait()
+    carried_bytes = dict(link.bytes) if link else {}
+    team[0].wait()
+    for program in team + relays:
+        program.send_signal(signal.SIGTERM)
+    for program in team + relays:
+        program.wait()
+    summary = json.loads((out / "summary.json").read_text())
+    commands = summary["ticks"] * options.agents
+    figures = {"agents": options.agents, "result": summary["result"], "ticks": summary["ticks"],
+               "metric": summary["ergodic_metric"], "late_commands": summary["missed_deadlines"],
+               "late_share": round(summary["missed_deadlines"] / max(1, commands), 4),
+               "skipped_ticks": summary["skipped_ticks"], "gaps": summary["gaps"]}
+    if relayed:
+        figures["kbit_per_s"] = {way: round(8e-3 * count / summary["wall_time_s"], 1)
+                                 for way, count in carried_bytes.items()}
+        figures["link_late_ms"] = round(1e3 * link.late_s, 1)
+        figures["relays"] = {name: (folder / f"relayed-{name}.log").read_text().splitlines()[-1]
+                             for name in ("ground", "field", "hub")}
+    return figures
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin", type=lambda text: pathlib.Path(text).resolve(), help="folder of the programs")
+    parser.add_argument("scenario", type=pathlib.Path)
+    parser.add_argument("--agents", type=int, default=16)
+    parser.add_argument("--dt", type=float, default=0.5, help="a tick [s]")
+    parser.add_argument("--duration", type=float, default=120, help="of the mission [s]")
+    parser.add_argument("--delay-ms", type=float, default=150, help="each way")
+    parser.add_argument("--loss-percent", type=float, default=2, help="each way")
+    parser.add_argument("--max-rate", type=int, default=300, help="of the field's link [kbit/s]; 0: no limit")
+    parser.add_argument("--in-time", default="", help="more fields of `time`")
+    parser.add_argument("--in-agents", default="", help="more fields of `agents`")
+    parser.add_argument("--seed", type=int, default=1, help="of the losses")
+    parser.add_argument("--direct", action="store_true", help="also measure without a relay, to compare")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="relay-link-") as name:
+        folder = pathlib.Path(name)
+        (folder / "scenario.textproto").write_text(scenario_of(options.scenario.read_text(), options))
+        for relayed in [False, True] if options.direct else [True]:
+            print(json.dumps({"relayed" if relayed else "direct": measure(options, folder, relayed)}, indent=1),
+                  flush=True)
+
+
+if __name__ == "__main__":
+    main()
