@@ -127,8 +127,9 @@ TEST_F(Relays, WhatASiteCouldNotSendIsNoCopyOnceThePathIsBack) {
 }
 
 TEST_F(Relays, AHubReportsLossesOfWhatASiteHasCounted) {
-  Hub& hub = network.add_hub(
-      1, key(1), {.has_group = true, .most_bytes_per_s = 0, .others = false, .secret = {}});
+  const Hub::Settings with_group{
+      .has_group = true, .most_bytes_per_s = 0, .others = false, .secret = {}};
+  Hub& hub = network.add_hub(1, key(1), with_group);
   network.add_site(2, {1}, 2);
   network.settle();
   const auto send = [&](std::int64_t sequence) {

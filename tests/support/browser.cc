@@ -57,8 +57,8 @@ Browser::Browser(const std::filesystem::path& folder, bool webgl) {
                              last_lines(log, 25));
   }
   json options;
-  options["args"] = {"--headless=new",
-                     "--no-sandbox",
+  options["binary"] = "/usr/bin/chromium-headless-shell";
+  options["args"] = {"--no-sandbox",
                      "--disable-dev-shm-usage",
                      "--hide-scrollbars",
                      "--disable-extensions",
@@ -78,7 +78,7 @@ Browser::Browser(const std::filesystem::path& folder, bool webgl) {
   } else {
     for (const char* flag : {"--disable-gpu", "--disable-webgl"}) options["args"].push_back(flag);
   }
-  const json capabilities = {{"browserName", "chrome"},
+  const json capabilities = {{"browserName", "chrome-headless-shell"},
                              {"goog:chromeOptions", options},
                              {"goog:loggingPrefs", {{"browser", "ALL"}}},
                              {"timeouts", {{"script", 300000}, {"pageLoad", 300000}}}};
@@ -124,7 +124,14 @@ json Browser::run(const std::string& script) {
 }
 
 bool Browser::becomes(const std::string& script) {
-  return waits_for([&] { return run(script) == true; }, *driver_);
+  // A look costs the browser time, so there are fewer than of other conditions.
+  constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
+  const auto look = [&] {
+    if (run(script) == true) return true;
+    std::this_thread::sleep_for(kBetweenLooks);
+    return false;
+  };
+  return waits_for(look, *driver_);
 }
 
 void Browser::press(const std::string& key, const std::string& held) {
