@@ -298,7 +298,6 @@ ergocast_test(NAME lab_tests LABELS lab OPTIMISED
     lab/invariants_home_test.cc
     lab/invariants_known_test.cc
     lab/invariants_test.cc
-    lab/judgement_test.cc
     lab/laboratory_test.cc
     lab/large_team_test.cc
     lab/message_loss_test.cc
@@ -307,4 +306,5 @@ ergocast_test(NAME lab_tests LABELS lab OPTIMISED
     lab/planned_ends_test.cc
     lab/planned_laws_test.cc
     lab/recall_test.cc
-  LIBS ergocast_lab ergocast::scenario)
+  LIBS ergocast_lab ergocast::scenario
+  PROPERTIES COST 30)

@@ -14,14 +14,16 @@ ergocast_test(NAME memory_tests LABELS unit
   SOURCES target/map_memory_test.cc
   LIBS ergocast::target PNG::PNG)
 
-ergocast_test(NAME same_mission_tests LABELS lab
+ergocast_test(NAME long_lab_tests LABELS lab
   SOURCES
+    lab/judgement_test.cc
     lab/moved_scenario_test.cc
     studies/same_as_simulate_test.cc
     support/drawn_agreement.cc
     support/drawn_files.cc
     support/drawn_scenario.cc
-  LIBS ergocast_studies ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
+  LIBS ergocast_studies ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG
+  PROPERTIES COST 20)
 ergocast_test(NAME paper_tests LABELS paper
   SOURCES
     paper/corollary1_test.cc
@@ -170,7 +172,8 @@ ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
     checks_can_fail/verify_test.cc
     checks_can_fail/words.cc
     checks_can_fail/zone_files_test.cc
-  LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
+  LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG
+  PROPERTIES COST 40)
 # The real `ergocast` with selectable bugs, whose files have the linker's names of the wrapped
 # functions.
 set(bugs checks_can_fail/amendment_bugs.cc checks_can_fail/coverage_bugs.cc checks_can_fail/motion_bugs.cc checks_can_fail/participant_bugs.cc)

@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <utility>
+
 #include "core/law/coverage_table.h"
 #include "tests/modes/rooms.h"
 
@@ -25,6 +30,23 @@ TEST(Provide, ComputesATableOnce) {
   ASSERT_TRUE(one);
   EXPECT_EQ(one.value().get(), other.value().get());
   EXPECT_EQ(one.value()->mode_count, 12);
+}
+
+// Also for the thread sanitizer, which missed a race between accesses that computing separated by seconds.
+TEST(Threads, MayPrepareMissionsAtOnce) {
+  const Mission mission = mission_of(80);
+  const ModesTable known = table_of(mission).value();
+  const auto use = [&](std::uint64_t first) {
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      auto other = std::make_shared<FreeModes>(*known);
+      other->hash = first + i;
+      keep_table(std::move(other));
+      EXPECT_EQ(table_of(mission).value()->key, known->key);
+    }
+  };
+  std::thread one(use, 100), other(use, 200);
+  one.join();
+  other.join();
 }
 
 TEST(Provide, HasAnotherTableForOtherMissions) {

@@ -60,5 +60,22 @@ TEST(AnEndpointAtEveryAddress, AnswersFromTheOneThatWasAsked) {
   EXPECT_EQ(to_text(next(*site).from), to_text(asked));
 }
 
+// Also for the thread sanitizer.
+TEST(Threads, LookUpNamesBesideARelay) {
+  Resolver resolver;
+  for (int i = 1; i < 20; ++i) {
+    resolver.ask({"127.0.0." + std::to_string(i), 7700});
+    pollfd answer{resolver.fd(), POLLIN, 0};
+    ASSERT_EQ(poll(&answer, 1, -1), 1);
+    const auto found = resolver.take();
+    ASSERT_TRUE(found);
+    EXPECT_EQ(to_text(found->value().at(0)), "127.0.0." + std::to_string(i) + ":7700");
+  }
+}
+
+TEST(Threads, EndAfterTheRelayThatAskedThem) {
+  for (int i = 0; i < 20; ++i) Resolver().ask({"127.0.0.1", 7700});
+}
+
 }  // namespace
 }  // namespace ergocast::relay
