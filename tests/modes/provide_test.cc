@@ -32,7 +32,8 @@ TEST(Provide, ComputesATableOnce) {
   EXPECT_EQ(one.value()->mode_count, 12);
 }
 
-// Also for the thread sanitizer, which missed a race between accesses that computing separated by seconds.
+// Also for the thread sanitizer, which missed a race between accesses that computing separated by
+// seconds.
 TEST(Threads, MayPrepareMissionsAtOnce) {
   const Mission mission = mission_of(80);
   const ModesTable known = table_of(mission).value();
