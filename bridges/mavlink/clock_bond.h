@@ -34,7 +34,9 @@ class ClockBond {
   /// Takes in an answer; others' answers and questions have no effect.
   void take(const Timesync& answer) {
     const Instant asked{Instant::duration(answer.ts1)};
-    if (answer.tc1 <= 0 || std::ranges::find(asked_, asked) == asked_.end()) return;
+    if (answer.tc1 <= 0 || answer.tc1 > kLatest_ns ||
+        std::ranges::find(asked_, asked) == asked_.end())
+      return;
     answers_.push_back({asked, asked.time_since_epoch() - Instant::duration(answer.tc1)});
     if (answers_.size() > kMostAnswers) answers_.pop_front();
   }
@@ -55,6 +57,8 @@ class ClockBond {
     Instant asked;
     Instant::duration offset;  ///< of our clock
   };
+  /// 100 years: some autopilots answer by the calendar. No sum of such times overflows.
+  static constexpr std::int64_t kLatest_ns = 3'155'760'000'000'000'000;
   static constexpr std::size_t kMostAnswers = 10;
   static constexpr auto kOldest = std::chrono::seconds(20);
   /// The drift of two clocks in that time.

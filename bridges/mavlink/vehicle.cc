@@ -115,7 +115,7 @@ void Vehicle::take_heartbeat(const Received& received, const Heartbeat& heartbea
   armed_ = (heartbeat.base_mode & kArmed) != 0;
   const bool left = was_external && !in_external_mode(), disarmed = was_armed && !armed_;
   if (running_ && (left || disarmed)) taken_over_ = true;
-  if (options_.take_command && armed_ && !was_armed && requested_ != kArm) taken_over_ = true;
+  if (options_.take_command && armed_ && !was_armed && !waits_until_armed()) taken_over_ = true;
 }
 
 void Vehicle::adopt(const Source& from, const Heartbeat& heartbeat) {
@@ -417,6 +417,11 @@ std::optional<CommandLong> Vehicle::next_order() const {
   if (!armed_) return command(kArm, 1);
   if (make_ == Make::kPx4) return std::nullopt;
   return command(kTakeOff, 0, 0, static_cast<float>(options_.altitude_m.value_or(5)));
+}
+
+/// Whether it has ordered to arm, and not given up.
+bool Vehicle::waits_until_armed() const {
+  return requested_ == kArm && (accepted_at_heartbeat_ || requests_ <= kMostRequests);
 }
 
 /// Once a second. A vehicle that was armed by somebody else is a pilot's or a failsafe's.

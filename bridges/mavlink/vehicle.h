@@ -115,6 +115,7 @@ class Vehicle {
   void each_second(Instant now, std::vector<Packet>& out);
   void ask_for_messages(std::vector<Packet>& out) const;
   std::optional<CommandLong> next_order() const;
+  bool waits_until_armed() const;
   void take_command(std::vector<Packet>& out);
   CommandLong command(std::uint16_t number, float one, float two = 0, float seven = 0) const;
 

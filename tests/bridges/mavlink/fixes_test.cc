@@ -122,6 +122,19 @@ TEST(MavlinkVehicle, HasNoPositionOfTheFuture) {
   EXPECT_NE(flight.vehicle.why_not(flight.now).find("in the future"), std::string::npos);
 }
 
+TEST(MavlinkVehicle, HasNoPositionByAnImpossibleClock) {
+  Flight flight;
+  flight.answers = flight.positions = false;
+  flight.pass(3);
+  Timesync answer = flight.sent_of<Timesync>().back();
+  answer.tc1 = std::numeric_limits<std::int64_t>::max();
+  flight.hear(answer);
+  flight.pass(0.5);
+  flight.at.time_boot_ms = 10;
+  flight.hear(flight.at);
+  EXPECT_FALSE(flight.vehicle.fix(flight.now)) << "no number is as large as its age";
+}
+
 TEST(MavlinkVehicle, HasNoPositionWhoseAgeIsNotKnownAnyLonger) {
   Flight flight;
   flight.pass(5);

@@ -113,6 +113,22 @@ TEST(MavlinkVehicle, IsThePilotsIfItWasArmedBeforeTheDriverBegan) {
   }
 }
 
+TEST(MavlinkVehicle, IsThePilotsIfItIsArmedAfterTheDriverHasAskedInVain) {
+  Flight flight = parked(kArduPilot);
+  flight.heartbeat.custom_mode = kGuided;
+  flight.pass(6);
+  flight.begin();
+  flight.pass(10);
+  ASSERT_TRUE(flight.said("leaves it to the pilot")) << flight.log;
+  flight.heartbeat.base_mode = 128;
+  flight.pass(10);
+  EXPECT_EQ(flight.orders(22), 0) << "the pilot has armed it, and stands beside it";
+  flight.landed.landed_state = 2;
+  flight.at.relative_alt = 20'000;
+  flight.pass(1);
+  EXPECT_TRUE(flight.follows()) << flight.log;
+}
+
 TEST(MavlinkVehicle, IsNotTakenFromAPilotOrAFailsafeWhileItIsArmed) {
   for (const int state : {1, 2, 3, 4}) {
     Flight flight = parked();
