@@ -39,8 +39,7 @@ Result<std::vector<Address>> look_up(const HostAndPort& name);
 class Endpoint {
  public:
   /// @param at  where to receive; without it, at any free port. If it is every address of this
-  /// host,
-  ///            receive() tells which one a packet came to.
+  ///            host, receive() tells which one a packet came to.
   static Result<Endpoint> open(const std::optional<Address>& at);
 
   int fd() const { return socket_.fd(); }

@@ -39,8 +39,7 @@ bool stands(const json& state) { return state["setpoint"][0] == 0 && state["setp
 class Pilot {
  public:
   explicit Pilot(int port) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
-    const sockaddr_in to{
-        AF_INET, htons(static_cast<in_port_t>(port)), {htonl(INADDR_LOOPBACK)}, {}};
+    const sockaddr_in to = loopback(port);
     connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to);
   }
   Pilot(const Pilot&) = delete;
@@ -246,6 +245,11 @@ TEST_F(MavlinkVehicles, TakeOffByThemselvesOnlyIfToldToAndStandAfterAJump) {
   EXPECT_EQ(wait_for(one.child), 0) << one.printed();
 }
 
+bool has_caller(int listener) {
+  pollfd waiting{listener, POLLIN, 0};
+  return poll(&waiting, 1, 0) > 0;
+}
+
 /// Passes bytes between a mock and a link of another kind, as radios do.
 class Radio {
  public:
@@ -318,6 +322,7 @@ TEST_F(MavlinkVehicles, AreReachedByEveryLinkAndRefusedIfTheyCannotStopOrHaveADr
   }
   close(end);
   Program& tcp = driver(0, "tcp:127.0.0.1:14571");
+  ASSERT_TRUE(eventually([&] { return has_caller(listener); }, tcp.child.pid())) << tcp.printed();
   const Radio radio(14551, accept(listener, nullptr, nullptr));
   EXPECT_TRUE(tcp.prints("waits for the mission")) << tcp.printed();
   tcp.child.send(SIGTERM);

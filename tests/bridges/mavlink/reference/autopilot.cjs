@@ -87,6 +87,7 @@ const allowed = () => state.mode === external && state.armed && state.air;
 const say = text => send(make(mavlink.common.StatusText, { severity: 4, text }));
 const started = process.hrtime.bigint();
 let nextPosition = 0; // ms
+let nextLanded = 0;
 let nextHeartbeat = 0;
 const bootNs = () => process.hrtime.bigint() - started;
 
@@ -156,7 +157,8 @@ function step() {
     nextPosition = now + 40;
     position();
   }
-  if (state.steps % 25 === 0) {
+  if (now >= nextLanded) {
+    nextLanded = now + 500;
     send(make(mavlink.common.ExtendedSysState, { vtolState: 0, landedState: state.air ? 2 : 1 }));
   }
   if (now >= nextHeartbeat) {
