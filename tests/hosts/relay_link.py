@@ -80,42 +80,63 @@ def scenario_of(text, options):
                   f"pace: REALTIME {options.in_time} }}", text, flags=re.DOTALL)
 
 
-def measure(options, folder, relayed):
-    field = FIELD if relayed else GROUND
-    key = folder / "team"
-    environment = dict(os.environ, ERGOCAST_KEY_FILE=str(key) + ".key")
-    if not pathlib.Path(environment["ERGOCAST_KEY_FILE"]).exists():
-        subprocess.run([options.bin / "ergocast", "keygen", key], check=True, stdout=subprocess.DEVNULL)
-    out = folder / ("relayed" if relayed else "direct")
-    out.mkdir()
+class Programs:
+    """The programs of one mission; those that still run end with the block."""
 
-    def start(program, *arguments, name=None):
-        with open(folder / f"{out.name}-{name or program}.log", "w") as log:
-            return subprocess.Popen([options.bin / program, *map(str, arguments)], env=environment,
-                                    stdout=log, stderr=log)
+    def __init__(self, options, folder, name):
+        self.options, self.folder, self.name, self.all = options, folder, name, []
 
-    link, relays = None, []
-    if relayed:
-        link = Link(options.delay_ms / 1000, options.loss_percent / 100, options.seed)
-        link.start()
-        rate = ["--max-rate", options.max_rate] if options.max_rate else []
-        relays = [start("ergocast-relay", "--hub", "--listen", f"127.0.0.1:{HUB}", *rate, name="hub"),
-                  start("ergocast-relay", "--to", f"127.0.0.1:{HUB}", "--lcm-url", GROUND, name="ground"),
-                  start("ergocast-relay", "--to", f"127.0.0.1:{LINK}", "--lcm-url", FIELD, *rate, name="field")]
-    team = [start("ergocast-logger", "--out", out, "--lcm-url", GROUND),
-            start("ergocast-sim", "--lcm-url", GROUND),
-            start("ergocast-coordinator", folder / "scenario.textproto", "--lcm-url", GROUND, "--key-file",
-                  str(key) + ".coordinator.key")]
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for program in self.all:
+            program.send_signal(signal.SIGTERM)
+        for program in self.all:
+            program.wait()
+
+    def log(self, name):
+        return self.folder / f"{self.name}-{name}.log"
+
+    def start(self, program, *arguments, name=None):
+        with open(self.log(name or program), "w") as log:
+            self.all.append(subprocess.Popen([self.options.bin / program, *map(str, arguments)],
+                                             stdout=log, stderr=log))
+        return self.all[-1]
+
+
+def start_relays(programs, options):
+    link = Link(options.delay_ms / 1000, options.loss_percent / 100, options.seed)
+    link.start()
+    rate = ["--max-rate", options.max_rate] if options.max_rate else []
+    relay = "ergocast-relay"
+    programs.start(relay, "--hub", "--listen", f"127.0.0.1:{HUB}", *rate, name="hub")
+    programs.start(relay, "--to", f"127.0.0.1:{HUB}", "--lcm-url", GROUND, name="ground")
+    programs.start(relay, "--to", f"127.0.0.1:{LINK}", "--lcm-url", FIELD, *rate, name="field")
+    return link
+
+
+def run_mission(programs, options, out, field):
+    """Until the record is complete."""
+    logger = programs.start("ergocast-logger", "--out", out, "--lcm-url", GROUND)
+    programs.start("ergocast-sim", "--lcm-url", GROUND)
+    coordinator = programs.start("ergocast-coordinator", programs.folder / "scenario.textproto", "--lcm-url", GROUND,
+                                 "--key-file", programs.folder / "team.coordinator.key")
     for agent in range(options.agents):
         url = GROUND if agent < options.agents // 2 else field
-        team.append(start("ergocast-agent", "--id", agent, "--lcm-url", url, name=f"agent{agent}"))
-    team[2].wait()
-    carried_bytes = dict(link.bytes) if link else {}
-    team[0].wait()
-    for program in team + relays:
-        program.send_signal(signal.SIGTERM)
-    for program in team + relays:
-        program.wait()
+        programs.start("ergocast-agent", "--id", agent, "--lcm-url", url, name=f"agent{agent}")
+    if coordinator.wait() != 0:
+        raise SystemExit(programs.log("ergocast-coordinator").read_text())
+    logger.wait()
+
+
+def measure(options, folder, relayed):
+    out = folder / ("relayed" if relayed else "direct")
+    out.mkdir()
+    with Programs(options, folder, out.name) as programs:
+        link = start_relays(programs, options) if relayed else None
+        run_mission(programs, options, out, FIELD if relayed else GROUND)
+        carried_bytes = dict(link.bytes) if link else {}
     summary = json.loads((out / "summary.json").read_text())
     commands = summary["ticks"] * options.agents
     figures = {"agents": options.agents, "result": summary["result"], "ticks": summary["ticks"],
@@ -126,7 +147,7 @@ def measure(options, folder, relayed):
         figures["kbit_per_s"] = {way: round(8e-3 * count / summary["wall_time_s"], 1)
                                  for way, count in carried_bytes.items()}
         figures["link_late_ms"] = round(1e3 * link.late_s, 1)
-        figures["relays"] = {name: (folder / f"relayed-{name}.log").read_text().splitlines()[-1]
+        figures["relays"] = {name: programs.log(name).read_text().splitlines()[-1]
                              for name in ("ground", "field", "hub")}
     return figures
 
@@ -148,6 +169,8 @@ def main():
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="relay-link-") as name:
         folder = pathlib.Path(name)
+        subprocess.run([options.bin / "ergocast", "keygen", folder / "team"], check=True, stdout=subprocess.DEVNULL)
+        os.environ["ERGOCAST_KEY_FILE"] = str(folder / "team.key")
         (folder / "scenario.textproto").write_text(scenario_of(options.scenario.read_text(), options))
         for relayed in [False, True] if options.direct else [True]:
             print(json.dumps({"relayed" if relayed else "direct": measure(options, folder, relayed)}, indent=1),
