@@ -44,7 +44,7 @@ class Hub {
 
   std::size_t sites() const { return members_.size(); }
   Counts counts() const;
-  /// A line for each site, for people.
+  /// For people: how many sites there are, and of as many as fit kMaxReportLength, how they are.
   std::string report(Instant now) const;
 
  private:

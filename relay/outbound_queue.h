@@ -33,7 +33,8 @@ class OutboundQueue {
   static constexpr std::size_t kMostBytes = 1 << 20;
 
   /// @pre the gate has admitted it
-  /// @param full  whether the link is: then it may replace an older one
+  /// @param full  whether the link is: then it may replace an older one, but no part of a whole
+  ///              that is already being sent
   void add(const Admitted& admitted, Bus bus, std::span<const std::byte> datagram, bool full);
   /// Removes a copy, which the receiver has got in another way.
   void remove(const Admitted& admitted);

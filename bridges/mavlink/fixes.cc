@@ -10,7 +10,7 @@ namespace {
 
 /// A clock that is behind by more has begun anew; less is a message that was overtaken [ms].
 constexpr std::uint32_t kOvertaken_ms = 5000;
-/// So far the bound of clock_bond.h may be ahead of the clock, because clocks drift.
+/// The bound of clock_bond.h may be ahead of the clock by so much, because clocks drift.
 constexpr auto kFuture = std::chrono::milliseconds(10);
 
 std::string metres(double value) {

@@ -31,8 +31,9 @@ class Link {
   virtual int fd() const = 0;
   /// Whether each read() is a whole datagram.
   virtual bool has_datagrams() const = 0;
-  /// The next bytes; empty if there are none now.
+  /// The next bytes; empty if there are none now, or if too many datagrams of others come first.
   virtual std::vector<std::byte> read(Instant now) = 0;
+  /// Leaves the frame out while older ones wait to be sent.
   virtual void write(std::span<const std::byte> frame) = 0;
   /// Opens the link again, at most once a second, if it is down. An answer says that its state has
   /// changed.

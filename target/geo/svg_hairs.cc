@@ -59,7 +59,7 @@ std::optional<std::pair<int, int>> first_hair(const CellGrid& darkness) {
     any_faint = any_faint || (darkness[i] >= kAlike && darkness[i] != kSolidDarkness);
   if (!any_faint) return std::nullopt;
   const std::vector<At> thin = thin_cells(darkness);
-  // The darkest cell that each has at hand, as yet without those that are thin.
+  // The darkest cell near each one. Thin cells do not count at first.
   CellGrid at_hand = darkness;
   for (const At& cell : thin) at_hand.at(cell.column, cell.row) = 0;
   for (int step = 0; step < kPoint; ++step) {
