@@ -118,7 +118,6 @@ TEST_F(RelaysOnHosts, AMissionAtTwoSitesOutlivesItsHubAndAChangedAddress) {
 
   // Without a hub, the site with the world goes on.
   hub->child.send(SIGKILL);
-  forget_watched();
   ASSERT_TRUE(ground.prints("cut off")) << ground.printed();
   ASSERT_TRUE(field.prints("cut off")) << field.printed();
   const std::int64_t steps = here.steps_sent(here.member(0));
