@@ -292,7 +292,7 @@ class PolygonFileReader {
     const auto others = std::count_if(first + 1, polygons.end(), has_none);
     findings_.note(field,
                    file_ + ": " + first->member + ": has no place, and is left out" +
-                       (others > 0 ? ", as are " + std::to_string(others) + " others" : ""),
+                       (others > 0 ? ", with " + std::to_string(others) + " more" : ""),
                    "delete it there, or draw it");
   }
 

@@ -111,6 +111,10 @@ TEST_F(OtherPeoplesData, PlacesOnTheEarthAreReadOrNamed) {
     EXPECT_EQ(left.mission().target_coefficients, plain);
     EXPECT_TRUE(has(joined(left.warnings()), "has no place, and is left out (delete it there"));
   }
+  const std::string empty = R"({"type":"Feature","geometry":null},)";
+  EXPECT_TRUE(
+      has(joined(good(of_target(region(collection(triangle + end, empty + empty)))).warnings()),
+          "has no place, and is left out, with 1 more (delete it there"));
   EXPECT_TRUE(has(problems(region("\xff\xfe{")), "is in UTF-16, and GeoJSON is UTF-8"));
   const std::string comma = problems(region("{\"type\":[1,]}"));
   EXPECT_TRUE(has(comma, "a.geojson: line 1, column 12: is no JSON: "));
