@@ -77,7 +77,7 @@ class MavlinkVehicles : public ByHand {
  protected:
   static constexpr const char* kOrigin = "47.6535,9.175";
   static constexpr double kDistance_m = 8;
-  static constexpr const char* kPatience_s = "5";
+  static constexpr const char* kPatience_s = "30";
 
   std::filesystem::path scenario_of_one() const {
     std::string text = text_of(kFolder + "two.textproto");
@@ -182,7 +182,7 @@ TEST_F(MavlinkVehicles, FlyOnlyWhileTheirPilotsAllowIt) {
   };
   EXPECT_TRUE(first.sees(has_flown)) << one.printed();
   EXPECT_TRUE(second.sees(has_flown)) << other.printed();
-  ASSERT_EQ(first.state()["timeouts"], 0) << "no setpoint for 5 s of the mock's time";
+  ASSERT_EQ(first.state()["timeouts"], 0) << "no setpoint for 30 s of the mock's time";
 
   // The first pilot takes over, and flies by hand; the record has what is really flown.
   first.orders("fly 0 -1");
