@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "core/base/require.h"
 #include "core/measure/detection.h"
@@ -37,6 +36,7 @@ Contacts::Contacts(const Mission& mission)
       prior_(cells_.cells.total(), 0),
       left_(prior_),
       nats_(prior_),
+      gain_at_(prior_),
       reports_(prior_.size(), 0),
       confirmed_(prior_.size(), 0) {
   if (!has_false_alarms_) return;
@@ -55,6 +55,7 @@ Contacts::Contacts(const Mission& mission)
     }
   }
   contacts_.reserve(prior_.size());
+  likely_.reserve(prior_.size());
   confirmed_contacts_.reserve(prior_.size());
 }
 
@@ -68,6 +69,11 @@ void Contacts::renew(const Efforts& efforts) {
   read(efforts);
   std::ranges::fill(confirmed_, 0);
   confirmed_contacts_.clear();
+  std::ranges::fill(gain_at_, 0.0);
+  for (const std::size_t contact : contacts_)
+    for_neighbours(contact, [&](std::size_t cell) {
+      if (gain_at_[cell] == 0) gain_at_[cell] = std::exp(log_gain(cell));
+    });
   confirm_likely();
   weigh();
 }
@@ -86,20 +92,36 @@ void Contacts::read(const Efforts& efforts) {
   }
 }
 
+/// To confirm a contact only makes others less likely. So the first one in the heap is the
+/// likeliest if its odds are still what they were when it was put there. Others go back with their
+/// new odds.
 void Contacts::confirm_likely() {
-  while (true) {
-    double best = confirmed_at_;
-    std::optional<std::size_t> likeliest;
-    for (const std::size_t contact : contacts_) {
-      if (reports_[contact] == 0) continue;
-      const double odds = log_odds(contact);
-      if (likeliest ? odds <= best : odds < best) continue;
-      best = odds;
-      likeliest = contact;
-    }
-    if (!likeliest) return;
-    confirm(*likeliest);
+  likely_.clear();
+  considered_ = 0;
+  for (const std::size_t contact : contacts_) consider(contact, log_odds(contact));
+  while (!likely_.empty()) {
+    std::ranges::pop_heap(likely_, less_likely);
+    const Likely first = likely_.back();
+    likely_.pop_back();
+    if (reports_[first.contact] == 0) continue;
+    const double odds = log_odds(first.contact);
+    if (odds < first.odds)
+      consider(first.contact, odds);
+    else
+      confirm(first.contact);
   }
+}
+
+void Contacts::consider(std::size_t contact, double odds) {
+  ++considered_;
+  if (odds < confirmed_at_) return;
+  likely_.push_back({odds, contact});
+  std::ranges::push_heap(likely_, less_likely);
+}
+
+/// The contact with the smaller number comes first if two are as likely.
+bool Contacts::less_likely(const Likely& one, const Likely& other) {
+  return one.odds != other.odds ? one.odds < other.odds : one.contact > other.contact;
 }
 
 void Contacts::confirm(std::size_t contact) {
@@ -107,6 +129,9 @@ void Contacts::confirm(std::size_t contact) {
   for_neighbours(contact, [&](std::size_t cell) {
     confirmed_[cell] = 1;
     reports_[cell] = 0;
+  });
+  for_near(contact, 2, [&](std::size_t cell, std::size_t, std::size_t) {
+    gain_at_[cell] = std::exp(log_gain(cell));
   });
 }
 
@@ -122,11 +147,10 @@ void Contacts::weigh() {
 /// ln g.
 double Contacts::log_gain(std::size_t cell) const {
   const auto rows = static_cast<std::size_t>(cells_.cells.count.y());
+  const std::size_t column = cell / rows, row = cell % rows;
   double nats = 0;
-  for_neighbours(cell, [&](std::size_t other) {
-    if (reports_[other] > 0)
-      nats += reports_[other] *
-              gain_[other / rows == cell / rows ? 0 : 1][other % rows == cell % rows ? 0 : 1];
+  for_near(cell, 1, [&](std::size_t other, std::size_t i, std::size_t j) {
+    nats += reports_[other] * gain_[i == column ? 0 : 1][j == row ? 0 : 1];
   });
   return std::min(nats, kMostEvidence);
 }
@@ -135,7 +159,7 @@ double Contacts::log_gain(std::size_t cell) const {
 double Contacts::log_odds(std::size_t contact) const {
   double sum = 0;
   for_neighbours(contact, [&](std::size_t cell) {
-    if (confirmed_[cell] == 0 && left_[cell] > 0) sum += left_[cell] * std::exp(log_gain(cell));
+    if (confirmed_[cell] == 0 && left_[cell] > 0) sum += left_[cell] * gain_at_[cell];
   });
   return std::log(sum) - std::log(others(contact));
 }

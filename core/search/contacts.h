@@ -50,17 +50,30 @@ class Contacts {
   const std::vector<std::size_t>& confirmed_contacts() const { return confirmed_contacts_; }
   /// Calls each(cell) for a cell and its neighbours.
   void for_neighbours(std::size_t cell, auto&& each) const {
-    const Eigen::Array3i& count = cells_.cells.count;
-    const auto number = static_cast<int>(cell);
-    const int column = number / count.y(), row = number % count.y();
-    for (int i = std::max(0, column - 1); i <= std::min(column + 1, count.x() - 1); ++i)
-      for (int j = std::max(0, row - 1); j <= std::min(row + 1, count.y() - 1); ++j)
-        each(cells_.cells.column(i, 0) + static_cast<std::size_t>(j));
+    for_near(cell, 1, [&](std::size_t near, std::size_t, std::size_t) { each(near); });
   }
+  /// How often the last renewal has compared a contact's odds: what it takes grows with that.
+  std::size_t considered() const { return considered_; }
 
  private:
+  /// Calls each(cell, column, row) for the cells up to so many columns and rows away.
+  void for_near(std::size_t cell, std::size_t reach, auto&& each) const {
+    const auto columns = static_cast<std::size_t>(cells_.cells.count.x());
+    const auto rows = static_cast<std::size_t>(cells_.cells.count.y());
+    const std::size_t column = cell / rows, row = cell % rows;
+    const std::size_t last_column = std::min(column + reach, columns - 1);
+    const std::size_t last_row = std::min(row + reach, rows - 1);
+    for (std::size_t i = column - std::min(column, reach); i <= last_column; ++i)
+      for (std::size_t j = row - std::min(row, reach); j <= last_row; ++j) each(i * rows + j, i, j);
+  }
   void read(const Efforts& efforts);
+  struct Likely {
+    double odds;  // their ln
+    std::size_t contact;
+  };
   void confirm_likely();
+  void consider(std::size_t contact, double odds);
+  static bool less_likely(const Likely& one, const Likely& other);
   void confirm(std::size_t contact);
   void weigh();
   double log_gain(std::size_t cell) const;
@@ -73,9 +86,12 @@ class Contacts {
   std::array<std::array<double, 2>, 2> gain_{};
   double confirmed_at_;  // ln of the odds
   std::vector<double> prior_, left_, nats_;
+  std::vector<double> gain_at_;         // g near contacts
   std::vector<std::uint32_t> reports_;  // that are not explained
   std::vector<char> confirmed_;
   std::vector<std::size_t> contacts_, confirmed_contacts_;
+  std::vector<Likely> likely_;  // a heap
+  std::size_t considered_ = 0;
 };
 
 }  // namespace ergocast

@@ -200,6 +200,108 @@ TEST(Contacts, AreTheSameInWhateverOrderTilesArrive) {
   }
 }
 
+/// What is confirmed by the formulas of contacts.h: the odds of every contact again after each.
+std::vector<std::size_t> confirmed_one_by_one(const Mission& mission, const Efforts& efforts,
+                                              const std::vector<double>& prior) {
+  const SearchCells& cells = efforts.cells();
+  const int columns = cells.cells.count.x(), rows = cells.cells.count.y();
+  const auto total = static_cast<int>(cells.cells.total());
+  const double sides = cells.cells.size_m.x() / mission.sensor.position_error_m;
+  const double own = std::erf(sides / std::numbers::sqrt2) -
+                     std::sqrt(2 / std::numbers::pi) / sides * (1 - std::exp(-sides * sides / 2));
+  const double ratio = mission.sensor.detections_per_s * std::numbers::pi * 100 /
+                       (mission.sensor.false_alarms_per_s * 100);
+  const auto near = [&](int cell, auto&& each) {
+    for (int i = std::max(0, cell / rows - 1); i <= std::min(columns - 1, cell / rows + 1); ++i)
+      for (int j = std::max(0, cell % rows - 1); j <= std::min(rows - 1, cell % rows + 1); ++j)
+        each(i * rows + j);
+  };
+  std::vector<double> reports, left;
+  for (int cell = 0; cell < total; ++cell) {
+    reports.push_back(efforts.reports(cells.tile_cell(cell)));
+    left.push_back(prior[static_cast<std::size_t>(cell)] *
+                   std::exp(-cells.nats_per_look * efforts.looks(cells.tile_cell(cell))));
+  }
+  const auto odds_of = [&](int contact) {
+    double sum = 0, others = 1;
+    near(contact, [&](int cell) {
+      double gain = 1;
+      near(cell, [&](int other) {
+        const double share = (other / rows == cell / rows ? own : (1 - own) / 2) *
+                             (other % rows == cell % rows ? own : (1 - own) / 2);
+        gain *= std::pow(1 + ratio * share, reports[static_cast<std::size_t>(other)]);
+      });
+      sum += left[static_cast<std::size_t>(cell)] * gain;
+      others -= prior[static_cast<std::size_t>(cell)];
+    });
+    return sum / others;
+  };
+  std::vector<std::size_t> confirmed;
+  while (true) {
+    double best = mission.sensor.confirm_at / (1 - mission.sensor.confirm_at);
+    int likeliest = -1;
+    for (int cell = 0; cell < total; ++cell) {
+      if (reports[static_cast<std::size_t>(cell)] == 0 || odds_of(cell) <= best) continue;
+      best = odds_of(cell);
+      likeliest = cell;
+    }
+    if (likeliest < 0) return confirmed;
+    confirmed.push_back(static_cast<std::size_t>(likeliest));
+    near(likeliest, [&](int cell) {
+      reports[static_cast<std::size_t>(cell)] = left[static_cast<std::size_t>(cell)] = 0;
+    });
+  }
+}
+
+std::vector<double> uneven(const Mission& mission) {
+  std::vector<double> prior = uniform(mission);
+  for (std::size_t cell = 0; cell < prior.size(); ++cell)
+    prior[cell] *= 2 * uniform_pair(1, Purpose::kStart, 0, cell).x();
+  return prior;
+}
+
+TEST(Contacts, AreConfirmedOneByOneTheLikeliestFirst) {
+  const Mission mission = field();
+  std::size_t confirmed = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Efforts efforts(mission);
+    efforts.add_row({0, 1});
+    for (Tick tick = 0; tick < static_cast<Tick>(20 * seed); ++tick) {
+      const auto number = static_cast<std::uint64_t>(tick);
+      const Vector3d x_m = uniform_in(mission.domain, seed, Purpose::kStart, 0, number);
+      efforts.look({0, 1}, tick, x_m);
+      efforts.report({0, 1}, tick, cell_at(mission, x_m));
+    }
+    Contacts contacts(mission);
+    contacts.set_prior(uneven(mission));
+    contacts.renew(efforts);
+    EXPECT_EQ(contacts.confirmed_contacts(),
+              confirmed_one_by_one(mission, efforts, uneven(mission)))
+        << "seed " << seed;
+    confirmed += contacts.confirmed_contacts().size();
+  }
+  EXPECT_GT(confirmed, 100u);
+}
+
+// A sensor that reports something at every tick delays no agent.
+TEST(Contacts, OfTheMostReportsAreConsideredAFewTimesEach) {
+  Mission mission = field();
+  mission.domain.size_m = {640, 640, 0};
+  Efforts efforts(mission);
+  efforts.add_row({0, 1});
+  const std::size_t cells = efforts.cells().cells.total();
+  ASSERT_EQ(cells, std::size_t{kMaxSearchCells});
+  for (std::size_t tick = 0; tick < kMaxReports * cells; ++tick)
+    efforts.report({0, 1}, static_cast<Tick>(tick), static_cast<std::int32_t>(tick % cells));
+  Contacts contacts(mission);
+  for (const std::vector<double>& prior : {uniform(mission), uneven(mission)}) {
+    contacts.set_prior(prior);
+    contacts.renew(efforts);
+    EXPECT_GT(contacts.confirmed_contacts().size(), 400u);
+    EXPECT_LT(contacts.considered(), 4 * cells);
+  }
+}
+
 TEST(Efforts, CountReportsOnceAndOnlyWhileLooksCount) {
   const Mission mission = field();
   Efforts efforts(mission);
