@@ -28,9 +28,12 @@ using Json = nlohmann::json;
 /// The work of only the longer mission, without the start of the processes.
 constexpr int kShort_s = 2, kLong_s = 22;
 
-std::string scenario_text(int agents, int period_ticks, int duration_s) {
+/// @param law  what the scenario says of it besides the greatest speed
+std::string scenario_text(const std::string& law, int agents, int period_ticks, int duration_s) {
   return "domain { size_x_m: 2000 size_y_m: 2000 }\ntarget { uniform_weight: 1 }\n"
-         "basis { modes_x: 10 modes_y: 10 }\nlaw { u_max_mps: 10 }\n"
+         "basis { modes_x: 10 modes_y: 10 }\nlaw { u_max_mps: 10 " +
+         law +
+         " }\n"
          "time { dt_s: 0.1 duration_s: " +
          std::to_string(duration_s) +
          " pace: REALTIME broadcast_period_ticks: " + std::to_string(period_ticks) +
@@ -53,10 +56,10 @@ struct Measured {
 };
 
 /// A mission by the real programs, or the error.
-Result<Measured> measure(int agents, int period_ticks, int duration_s) {
+Result<Measured> measure(const std::string& law, int agents, int period_ticks, int duration_s) {
   const TemporaryFolder folder;
   const fs::path scenario = folder.path() / "team.textproto", log = folder.path() / "log";
-  std::ofstream(scenario) << scenario_text(agents, period_ticks, duration_s);
+  std::ofstream(scenario) << scenario_text(law, agents, period_ticks, duration_s);
   const double before_s = processor_s();
   auto started = Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", scenario,
                                            "--out", folder.path() / "run"},
@@ -80,12 +83,12 @@ Result<Measured> measure(int agents, int period_ticks, int duration_s) {
   return measured;
 }
 
-void RealTime(benchmark::State& state) {
+void measure_team(benchmark::State& state, const std::string& law) {
   const auto agents = static_cast<int>(state.range(0)), period = static_cast<int>(state.range(1));
   for (auto _ : state) {
     std::array<Measured, 2> measured;
     for (const std::size_t i : {0, 1}) {
-      const auto mission = measure(agents, period, i == 0 ? kShort_s : kLong_s);
+      const auto mission = measure(law, agents, period, i == 0 ? kShort_s : kLong_s);
       if (!mission) return state.SkipWithError(mission.error().c_str());
       measured[i] = *mission;
     }
@@ -101,9 +104,21 @@ void RealTime(benchmark::State& state) {
   }
 }
 
+void RealTime(benchmark::State& state) { measure_team(state, ""); }
 BENCHMARK(RealTime)
     ->ArgNames({"agents", "period"})
     ->ArgsProduct({{32, 64, 128}, {1, 10}})
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
+
+/// On 64 × 64 cells.
+void RealTimeSearch(benchmark::State& state) {
+  measure_team(state, "kind: SEARCH } sensor { radius_m: 31");
+}
+BENCHMARK(RealTimeSearch)
+    ->ArgNames({"agents", "period"})
+    ->Args({64, 10})
     ->UseManualTime()
     ->Iterations(1)
     ->Unit(benchmark::kSecond);

@@ -3,6 +3,7 @@
 // potential on 64 × 64 cells.
 #include <benchmark/benchmark.h>
 
+#include <Eigen/SparseCholesky>
 #include <cmath>
 #include <vector>
 
@@ -27,6 +28,14 @@ Mission mission_with(bool false_alarms) {
   return mission;
 }
 
+/// As much as counts, in every cell.
+void report_most(Efforts& efforts, const Author& author) {
+  const auto cells = static_cast<std::int32_t>(efforts.cells().cells.total());
+  for (Tick tick = 0; tick < cells * Tick{kMaxReports}; ++tick)
+    efforts.report(author, tick, static_cast<std::int32_t>(tick % cells));
+}
+
+/// false_alarms: 0, none; 1, some; 2, the most that count, everywhere.
 void Renewal(benchmark::State& state) {
   const Mission mission = mission_with(state.range(1) != 0);
   Searcher law(mission);
@@ -35,6 +44,7 @@ void Renewal(benchmark::State& state) {
   std::vector<TeamPlace> places;
   for (AgentId id = 0; id < state.range(0); ++id) {
     efforts.add_row({id, 1});
+    if (state.range(1) == 2) report_most(efforts, {id, 1});
     for (Tick tick = 0; tick < 6000; ++tick) {
       const Eigen::Vector3d x_m(1000 + 900 * std::sin(0.003 * static_cast<double>(tick) + id),
                                 1000 + 900 * std::cos(0.0017 * static_cast<double>(tick) + id), 0);
@@ -55,9 +65,79 @@ void Renewal(benchmark::State& state) {
   }
   state.counters["cells"] = static_cast<double>(efforts.cells().cells.total());
 }
+/// The same sums and the same solution by bare loops: what is left of each cell, a Gaussian for
+/// each teammate, and two passes over the factors of the equation.
+void RenewalFloor(benchmark::State& state) {
+  constexpr int kSide = 64, kCells = kSide * kSide;
+  const double exchange = std::pow(3.2 * 31 / (2000.0 / kSide), 2);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int cell = 0; cell < kCells; ++cell) {
+    entries.emplace_back(cell, cell, 1);
+    for (const int step : {1, kSide}) {
+      if (step == 1 ? cell % kSide == kSide - 1 : cell + kSide >= kCells) continue;
+      for (const int end : {cell, cell + step}) entries.emplace_back(end, end, exchange);
+      entries.emplace_back(cell, cell + step, -exchange);
+      entries.emplace_back(cell + step, cell, -exchange);
+    }
+  }
+  Eigen::SparseMatrix<double> equation(kCells, kCells);
+  equation.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(equation);
+  Eigen::SparseMatrix<double> lower = factors.matrixL();
+  lower.prune([](int row, int column, double) { return row > column; });
+  const Eigen::VectorXd diagonal = factors.vectorD();
+  const double* value = lower.valuePtr();
+  const int *index = lower.innerIndexPtr(), *first = lower.outerIndexPtr();
+  const std::vector<double> efforts(kCells, 0.5), along(kSide, 0.1);
+  Eigen::VectorXd u(kCells);
+  for (auto _ : state) {
+    for (int cell = 0; cell < kCells; ++cell)
+      u[cell] = -std::exp(-efforts[static_cast<std::size_t>(cell)]);
+    for (int mate = 1; mate < state.range(0); ++mate) {
+      benchmark::DoNotOptimize(along.data());
+      for (int i = 0; i < kSide; ++i)
+        for (int j = 0; j < kSide; ++j)
+          u[i * kSide + j] +=
+              along[static_cast<std::size_t>(i)] * along[static_cast<std::size_t>(j)];
+    }
+    for (int i = 0; i < kCells; ++i)
+      for (int at = first[i]; at < first[i + 1]; ++at) u[index[at]] -= value[at] * u[i];
+    for (int i = kCells - 1; i >= 0; --i) {
+      u[i] /= diagonal[i];
+      for (int at = first[i]; at < first[i + 1]; ++at) u[i] -= value[at] * u[index[at]];
+    }
+    benchmark::DoNotOptimize(u.data());
+    benchmark::ClobberMemory();
+  }
+  state.counters["factors"] = static_cast<double>(lower.nonZeros());
+}
+BENCHMARK(RenewalFloor)->ArgName("agents")->Arg(4)->Arg(16)->Arg(64)->Unit(benchmark::kMicrosecond);
+
+/// Each agent has reported as much as counts in every cell.
+void MostReports(benchmark::State& state) {
+  const Mission mission = mission_with(true);
+  Efforts efforts(mission);
+  const auto cells = static_cast<std::int32_t>(efforts.cells().cells.total());
+  for (AgentId id = 0; id < state.range(0); ++id) {
+    efforts.add_row({id, 1});
+    report_most(efforts, {id, 1});
+  }
+  Contacts contacts(mission);
+  std::vector<double> prior(efforts.cells().cells.total(), 1.0 / cells);
+  for (std::size_t cell = 0; state.range(1) != 0 && cell < prior.size(); ++cell)
+    prior[cell] *= 2 * uniform_pair(1, Purpose::kStart, 0, cell).x();
+  contacts.set_prior(prior);
+  for (auto _ : state) contacts.renew(efforts);
+  state.counters["confirmed"] = static_cast<double>(contacts.confirmed_contacts().size());
+}
+BENCHMARK(MostReports)
+    ->ArgNames({"agents", "uneven"})
+    ->ArgsProduct({{1, 64}, {0, 1}})
+    ->Unit(benchmark::kMicrosecond);
+
 BENCHMARK(Renewal)
     ->ArgNames({"agents", "false_alarms"})
-    ->ArgsProduct({{4, 16, 64}, {0, 1}})
+    ->ArgsProduct({{4, 16, 64}, {0, 1, 2}})
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
