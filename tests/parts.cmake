@@ -156,6 +156,11 @@ ergocast_test(NAME relay_tests LABELS unit
   LIBS ergocast_relay ergocast::runtime ${XXHASH_LIBRARY})
 target_include_directories(relay_tests SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
 
+ergocast_test(NAME cot_tests LABELS unit
+  SOURCES
+    cli/cot/events_test.cc
+  LIBS ergocast_tak pugixml::pugixml)
+
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
     cli/amend_order_test.cc

@@ -136,6 +136,11 @@ target_compile_definitions(process_tests PRIVATE
   ERGOCAST_NO_MORE_PROCESSES="$<TARGET_FILE:no_more_processes>"
   ERGOCAST_NO_NUMBER="$<TARGET_FILE:no_number>")
 
+# The team as events for TAK.
+ergocast_test(NAME cot_process_tests LABELS process RUNS_PROGRAMS
+  SOURCES process/cot_test.cc
+  LIBS pugixml::pugixml)
+
 # The page in Chromium.
 ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
   SOURCES
@@ -229,6 +234,10 @@ ergocast_test(NAME mavlink_flight_tests LABELS process RUNS_PROGRAMS
   SOURCES bridges/mavlink/flight_test.cc
   PROPERTIES FIXTURES_REQUIRED node_mavlink)
 target_compile_definitions(mavlink_flight_tests PRIVATE ERGOCAST_NODE_MAVLINK="${CMAKE_BINARY_DIR}/node_mavlink")
+add_executable(cot-lines cli/cot/lines.cc)
+target_link_libraries(cot-lines PRIVATE ergocast_tak ergocast::plan nlohmann_json::nlohmann_json ergocast::warnings)
+ergocast_script_test(cot_reference process cli/cot/reference_test.sh
+  $<TARGET_FILE:cot-lines> ${CMAKE_BINARY_DIR}/node_cot)
 ergocast_script_test(example_law process examples/law_test.sh ${CMAKE_BINARY_DIR})
 ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 # Installing Slurm starts services, so ./test does not install it.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast watch`: serves a page of a record or of a running team. With --control, operators give
-// orders on the page.
+// orders on the page. With --cot, it also sends the team to clients of TAK.
 #include <poll.h>
 
 #include <chrono>
@@ -12,8 +12,10 @@
 #include "cli/commands.h"
 #include "cli/operate/controlled_page.h"
 #include "cli/operate/team_command.h"
+#include "cli/record/origin_option.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
+#include "cli/tak/cot_output.h"
 #include "cli/watch/find_run.h"
 #include "cli/watch/live_watch.h"
 #include "cli/watch/serve_page.h"
@@ -45,6 +47,7 @@ struct WatchOptions : BusOptions {
   fs::path run_dir;
   PageOptions page;
   bool control = false;
+  CotOptions cot;
 };
 
 void announce(const std::string& url) {
@@ -69,9 +72,39 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
   return kExitDone;
 }
 
+/// The output to TAK; or prints an error, and returns the exit code.
+Result<CotOutput, int> open_cot(const CotOptions& options, const fs::path& run_dir) {
+  std::optional<GeoPlace> origin = options.origin;
+  if (!origin) {
+    auto recorded = recorded_origin(run_dir);
+    if (!recorded) return failure(report_error(kExitBadInput, recorded.error()));
+    origin = *recorded;
+  }
+  if (!origin)
+    return failure(report_error(
+        kExitBadInput,
+        run_dir.empty() ? "--cot: the scenario of this team is not on this host; say where its (0, "
+                          "0) is, with --origin LATITUDE,LONGITUDE"
+                        : "--cot: the scenario has no origin; add origin { latitude_deg: … "
+                          "longitude_deg: … } to it, or say --origin LATITUDE,LONGITUDE"));
+  auto output = CotOutput::open(*options.to, *origin);
+  if (!output) return failure(report_error(kExitUnavailable, output.error()));
+  return *std::move(output);
+}
+
 /// @param run_dir  the team's run directory; empty: not known here
 int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals& signals) {
-  auto opened = LiveWatch::open({options, run_dir, {}, {}});
+  LiveWatch::Source source{options, run_dir, {}, {}};
+  std::optional<CotOutput> cot;
+  if (options.cot.to) {
+    auto output = open_cot(options.cot, run_dir);
+    if (!output) return output.error();
+    cot = *std::move(output);
+    source.on_look = [&cot](const auto& picture, const Mission& mission) {
+      cot->show(picture, mission);
+    };
+  }
+  auto opened = LiveWatch::open(std::move(source));
   if (!opened) return report_error(kExitUnavailable, opened.error());
   LiveWatch& watch = **opened;
   auto socket = PageSocket::open(options.page);
@@ -82,6 +115,7 @@ int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals
     watch.listen(server->fd());
     if (watch.over()) watch.finish();
   });
+  if (cot && !cot->losses().empty()) print_message(cot->losses());
   return kExitDone;
 }
 
@@ -138,10 +172,14 @@ void add_watch(CLI::App& app, Action& action) {
   add_page_options(*command, options->page);
   add_control_option(*command, options->control);
   command->get_option("--control")->excludes("RUN_DIR");
+  CLI::Option* const cot = add_cot_option(*command, options->cot);
+  cot->excludes("RUN_DIR")->excludes("--control");
+  add_origin_option(*command, options->cot.origin)->needs(cot);
   command->footer(
-      "Serves the page until Ctrl-C. Sends nothing, unless --control is given. Exit codes:\n"
-      "0 done; 2 no record, or it is damaged, or several runs are found, or a bad certificate;\n"
-      "3 LCM or the address cannot be used; 4 --control finds no team.");
+      "Serves the page until Ctrl-C. Sends the team nothing, unless --control is given. Exit "
+      "codes:\n"
+      "0 done; 2 no record, or it is damaged, or several runs are found, or a bad certificate, or "
+      "--cot\nwithout an origin; 3 LCM or an address cannot be used; 4 --control finds no team.");
   command->callback([&action, options, command] {
     action = [options, command]() -> int {
       StopSignals signals;

@@ -5,12 +5,10 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/record/origin_option.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
-#include "logger/run_record.h"
 #include "report/export/exports.h"
-#include "scenario/origin.h"
-#include "text/read_number.h"
 
 namespace ergocast::cli {
 namespace {
@@ -22,22 +20,6 @@ struct ExportOptions {
   std::string to;
   std::optional<GeoPlace> origin;
 };
-
-/// "47.5,9.2": latitude, then longitude.
-GeoPlace parse_origin(const std::string& text) {
-  const std::size_t comma = text.find(',');
-  const auto latitude = read_number<double>(text.substr(0, comma));
-  const auto longitude =
-      comma == text.npos ? std::nullopt : read_number<double>(text.substr(comma + 1));
-  const bool is_place = latitude && longitude && *latitude >= -90 && *latitude <= 90 &&
-                        *longitude >= -180 && *longitude <= 180;
-  if (!is_place) {
-    throw CLI::ValidationError("--origin", "\"" + text +
-                                               "\" is no LATITUDE,LONGITUDE in degrees, −90 to 90 "
-                                               "and −180 to 180, such as 47.5,9.2");
-  }
-  return {*latitude, *longitude};
-}
 
 /// Writes to a temporary name first, so that a reader never sees an incomplete file.
 std::optional<std::string> write_whole(const ExportRecord& record, const fs::path& file,
@@ -65,10 +47,8 @@ int export_run(const ExportOptions& options) {
   const auto mission = recorded_mission_or_complain(options.run_dir);
   if (!mission) return kExitBadInput;
   std::optional<GeoPlace> origin = options.origin;
-  const fs::path scenario = options.run_dir / kScenarioFile;
-  std::error_code none;
-  if (!origin && fs::exists(scenario, none)) {
-    auto read = read_origin(scenario);
+  if (!origin) {
+    auto read = recorded_origin(options.run_dir);
     if (!read) return report_error(kExitBadInput, read.error());
     origin = *read;
   }
@@ -108,11 +88,7 @@ void add_export(CLI::App& app, Action& action) {
                    "File, or folder of the tables (default: export.mcap, export/ or "
                    "export.geojson in RUN_DIR)")
       ->type_name("PATH");
-  command
-      ->add_option_function<std::string>(
-          "--origin", [options](const std::string& text) { options->origin = parse_origin(text); },
-          "Place of (0, 0) in degrees of WGS 84 (default: the scenario's origin)")
-      ->type_name("LATITUDE,LONGITUDE");
+  add_origin_option(*command, options->origin);
   command->footer("Exit codes: 0 done; 2 no record, or it is damaged; 4 it cannot be written.");
   command->callback([&action, options] { action = [options] { return export_run(*options); }; });
 }

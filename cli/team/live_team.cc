@@ -106,9 +106,9 @@ TeamPicture LiveTeam::notice(Instant now) {
   return picture;
 }
 
-void LiveTeam::look(Instant now) {
-  if (!grid_) return;
-  const TeamPicture picture = notice(now);
+TeamPicture LiveTeam::look(Instant now) {
+  TeamPicture picture = notice(now);
+  if (!grid_) return picture;
   end_text_ = picture.reason;
   status_ = Json::parse(team_json(picture));
   // The page's time continues in a pause, as in the record.
@@ -121,6 +121,7 @@ void LiveTeam::look(Instant now) {
     roster_revision_ = me_.follower().revision();
     ++rosters_;
   }
+  return picture;
 }
 
 bool LiveTeam::joined_late(const Author& author) const {

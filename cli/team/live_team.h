@@ -46,12 +46,14 @@ class LiveTeam {
   /// Looks for incidents; call it a few times a second. Returns the picture that it examined.
   TeamPicture notice(Instant now);
   /// Does the same, and keeps the agents' statuses for the browsers.
-  void look(Instant now);
+  TeamPicture look(Instant now);
   /// [{"t", "kind", "sign", "text", "agent", "until"}, …] as the page gets them. The last two keys
   /// are there only if known.
   nlohmann::ordered_json incidents_json() const;
 
   RunId run() const { return me_.run(); }
+  /// Null until it is received.
+  const Mission* mission() const { return me_.knows_mission() ? &me_.mission() : nullptr; }
   /// Whether the mission's end was reported.
   bool over() const { return view_.over(); }
   const std::string& end_text() const { return end_text_; }

@@ -9,6 +9,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/motion/vehicle.h"
+#include "core/search/search_cells.h"
 #include "team/median_metric.h"
 
 namespace ergocast {
@@ -75,6 +76,9 @@ void TeamView::on(const WorldState& world, const Arrival& arrival) {
   clamped_commands_ = std::max(clamped_commands_, world.clamped_commands);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     const auto [at, is_new] = vehicles_.try_emplace(vehicle.id);
+    const bool reports = vehicle.reported_cell != kNoCell;
+    if (reports && (is_new || arrival.from.tick > at->second.first))
+      ++reports_[vehicle.reported_cell];
     if (is_new || arrival.from.tick >= at->second.first) at->second = {arrival.from.tick, vehicle};
   }
 }
@@ -157,6 +161,7 @@ void TeamView::add_vehicle(AgentRow& row) const {
   if (found == vehicles_.end() || !mission) return;
   const Vehicle& vehicle = found->second.second;
   const int axes = mission->domain.planar() ? 2 : 3;
+  row.position_tick = found->second.first;
   row.position_m.assign(vehicle.position_m.data(), vehicle.position_m.data() + axes);
   row.velocity_mps.assign(vehicle.velocity_mps.data(), vehicle.velocity_mps.data() + axes);
   row.moves = !stands(motion_of(*mission, row.author.agent), vehicle.velocity_mps);
@@ -219,6 +224,18 @@ void TeamView::add_forgotten(TeamPicture& picture) const {
     if (picture.forgotten.empty() || picture.forgotten.back() != entry.author.agent) {
       picture.forgotten.push_back(entry.author.agent);
     }
+  }
+}
+
+void TeamView::add_contacts(TeamPicture& picture) const {
+  const auto& mission = follower().mission();
+  if (reports_.empty() || !mission || !mission->domain.planar()) return;
+  const Cells cells = SearchCells(*mission).cells;
+  const int rows = cells.count.y();
+  for (const auto& [cell, reports] : reports_) {
+    if (static_cast<std::size_t>(cell) >= cells.total()) continue;
+    const Eigen::Vector2d x_m(cells.center_m(0, cell / rows), cells.center_m(1, cell % rows));
+    picture.contacts.push_back({cell, x_m, reports});
   }
 }
 
@@ -294,6 +311,7 @@ TeamPicture TeamView::picture(Instant now) const {
   picture.over = over();
   add_agents(picture, now);
   add_forgotten(picture);
+  add_contacts(picture);
   for (const AgentId sender : {kCoordinator, kWorld, kLogger}) add_process(picture, sender, now);
   const bool under_way = picture.state == MissionState::kRunning && !over() && !replay_;
   picture.trouble |= under_way && picture.agents_alive < picture.agents_expected;

@@ -40,10 +40,18 @@ struct AgentRow {
   double blocked_s = 0;  ///< without a break, by a teammate's body or an edge, in mission time
   /// Its place in the newest state of the world: two numbers, in a box three; empty: not known.
   std::vector<double> position_m{};
+  Tick position_tick = -1;  ///< of that state
   /// Its velocity there, in as many numbers.
   std::vector<double> velocity_mps{};
   /// Whether it moves in that state; nothing: not known.
   std::optional<bool> moves{};
+};
+
+/// A cell of core/search/search_cells.h in which sensors with false alarms have reported something.
+struct Contact {
+  std::int32_t cell = 0;
+  Eigen::Vector2d x_m{0, 0};  ///< its middle
+  int reports = 0;            ///< that were received
 };
 
 /// Coordinator, world or logger.
@@ -81,6 +89,7 @@ struct TeamPicture {
   int objects = 0;                         ///< that the world hides, by the plan
   std::vector<Find> finds;                 ///< in their order, as a logger has reported them
   std::optional<int> wrong_confirmations;  ///< likewise, with false alarms
+  std::vector<Contact> contacts;           ///< with false alarms, ascending by cell
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
@@ -131,6 +140,7 @@ class TeamView {
   std::map<AgentId, std::pair<Author, bool>> newest_incarnations() const;
   void add_agents(TeamPicture& picture, Instant now) const;
   void add_forgotten(TeamPicture& picture) const;
+  void add_contacts(TeamPicture& picture) const;
   void add_process(TeamPicture& picture, AgentId sender, Instant now) const;
   bool should_report(AgentId sender) const;
 
@@ -143,6 +153,7 @@ class TeamView {
   std::map<Author, Seen> agents_;
   std::map<AgentId, Header> processes_;                   // the newest message of each
   std::map<AgentId, std::pair<Tick, Vehicle>> vehicles_;  // each one's newest state
+  std::map<std::int32_t, int> reports_;                   // by cell
   std::string coordinator_host_;
   std::optional<double> detection_probability_;  // from the newest RECORD_ACK
   int wrong_confirmations_ = 0;

@@ -161,7 +161,8 @@ void Watch::look() {
   if (!source_.run_dir.empty()) {
     for (const std::string& line : logs_.take()) team_->log(line);
   }
-  team_->look(now());
+  const TeamPicture picture = team_->look(now());
+  if (source_.on_look && team_->mission() != nullptr) source_.on_look(picture, *team_->mission());
   if (team_->over() && !over_since_) over_since_ = now();
   over_ = over_since_ && now() - *over_since_ >= kLastFrame;
 }

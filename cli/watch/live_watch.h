@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
+#include "cli/team/team_view.h"
 #include "cli/watch/page_server.h"
 #include "core/base/result.h"
 #include "core/mission/mission.h"
@@ -25,6 +27,8 @@ class LiveWatch {
     std::filesystem::path run_dir;   ///< its logs and record are shown; empty: there is none
     std::optional<Mission> mission;  ///< with its target density, if already known
     Field density = {};
+    /// Gets the team's picture a few times a second; empty: nobody does.
+    std::function<void(const TeamPicture&, const Mission&)> on_look = {};
   };
 
   /// Returns an error if LCM cannot be used.

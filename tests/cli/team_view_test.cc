@@ -73,6 +73,39 @@ struct TeamViewRealtime : TeamViewTest {
   TeamViewRealtime() : TeamViewTest(mission()) {}
 };
 
+struct TeamViewWithFalseAlarms : TeamViewTest {
+  static Mission mission() {
+    Mission mission = small_mission(4);
+    mission.sensor.radius_m = 300;
+    mission.sensor.false_alarms_per_s = 0.1;
+    return mission;
+  }
+  TeamViewWithFalseAlarms() : TeamViewTest(mission()) {}
+  void report(Tick tick, std::int32_t cell) {
+    WorldState state = world_state(tick, {{1, 1, 0}});
+    state.vehicles[0].reported_cell = cell;
+    give(view_, state, at(1s));
+  }
+};
+
+TEST_F(TeamViewWithFalseAlarms, CountsReportsOnceInTheCellsWhereTheyAre) {
+  hear_mission(at(0s));
+  const SearchCells cells(mission());
+  const auto cell = static_cast<std::int32_t>(cells.cells.cell_of({900, 300, 0}));
+  report(5, cell);
+  report(5, cell);  // the world repeats a tick
+  report(6, kNoCell);
+  report(7, cell);
+  report(8, kMaxSearchCells - 1);  // beyond this domain's cells
+  const TeamPicture picture = view_.picture(at(1s));
+  ASSERT_EQ(picture.contacts.size(), 1U);
+  EXPECT_EQ(picture.contacts[0].cell, cell);
+  EXPECT_EQ(picture.contacts[0].reports, 2);
+  EXPECT_LE((picture.contacts[0].x_m - Eigen::Vector2d(900, 300)).cwiseAbs().maxCoeff(),
+            cells.cells.size_m.x() / 2);
+  EXPECT_EQ(row(0, at(1s)).position_tick, 8);
+}
+
 TEST_F(TeamViewTest, NamesWhoseCoverageIsForgottenAndCallsThatTrouble) {
   auto roster = roster_of(4);
   roster[2].forgotten = true;

@@ -154,6 +154,11 @@ inline const std::vector<Rule> kRules = {
      {"text", "core", "plan", "team", "lcmtypes", "target", "scenario", "runtime/bus",
       "runtime/record", "runtime/process", "logger", "report", "cli"},
      {kJson, kFiles, kSystem}},
+    // The team as events for TAK; only the last has a socket and a clock.
+    {"cli/tak", {"text", "core", "team", "target/geo", "cli/team"}, {}},
+    {"cli/tak/cot_event.cc", {"text", "cli/tak"}, {kXml}},
+    {"cli/tak/cot_output.h", {"core", "relay", "runtime/bus", "cli/tak"}, {kCommandLine}},
+    {"cli/tak/cot_output.cc", {"runtime/bus", "cli", "cli/tak"}, {kSystem}},
     {"cli/record",
      {"text", "core", "modes", "plan", "team", "lcmtypes", "scenario", "runtime/bus",
       "runtime/record", "runtime/process", "logger", "report", "report/export", "lab", "cli",
@@ -168,7 +173,7 @@ inline const std::vector<Rule> kRules = {
     // An operator's orders to a team. Commands and the page give the same orders.
     {"cli/operate",
      {"text", "core", "plan", "team", "lcmtypes", "scenario", "scenario/parse", "runtime/bus",
-      "runtime/process", "report", "cli", "cli/team", "cli/record", "cli/watch"},
+      "runtime/process", "report", "cli", "cli/team", "cli/tak", "cli/record", "cli/watch"},
      {kCommandLine, kJson, kFiles, kSystem}},
     {"cli/launch",
      {"text", "core", "modes", "plan", "team", "scenario", "scenario/parse", "runtime/bus",
