@@ -411,7 +411,8 @@ class CheckCanFail : public Scenarios {
     write("s.textproto", text + "origin { latitude_deg: 47.5 longitude_deg: 9.2 }\n");
     EXPECT_EQ(ergocast({"check", file_}), 0) << output();
     note(output());
-    EXPECT_NE(output().find("features[0]: has no place, and is left out"), std::string::npos)
+    EXPECT_NE(output().find("features[0]: has no place, and is left out, with 1 more"),
+              std::string::npos)
         << output();
   }
 

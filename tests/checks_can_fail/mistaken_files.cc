@@ -194,6 +194,7 @@ void write_mistaken_files(const fs::path& folder) {
   write("page.csv", "<html>");
   write("nowhere.geojson",
         R"({"type":"FeatureCollection","features":[{"type":"Feature","geometry":null},)"
+        R"({"type":"Feature","geometry":null},)"
         R"({"type":"Feature","geometry":{"type":"Polygon","coordinates":[[[9.2005,47.5001],)"
         R"([9.2006,47.5001],[9.2006,47.5002],[9.2005,47.5001]]]}}]})");
   write("oblong.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ndx 5\ndy 6\n1 2\n");

@@ -46,6 +46,7 @@ std::vector<Mistake> mistakes_between_fields() {
   return {
       {"size_x_m: 100", "size_x_m: 100 origin_x_m: 10000001", "domain.origin_x_m: "},
       {"size_x_m: 100", "size_x_m: 100 origin_y_m: 10000001", "domain.origin_y_m: "},
+      {"size_x_m: 100", "size_x_m: 100 size_z_m: 40 origin_z_m: 10000001", "domain.origin_z_m: "},
       {kLaw, "basis { modes_x: 1 modes_y: 1 } law {", "basis: a single mode"},
       {"u_max_mps: 5", "u_max_mps: 501", "law.u_max_mps: 501 makes u_max_mps"},
       {kLaw, "law { noise_intensity: 159", "law.noise_intensity: 159 makes"},
