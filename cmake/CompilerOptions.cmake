@@ -13,6 +13,12 @@ endif()
 # and add.
 add_compile_options(-ffp-contract=off)
 
+# Programs with sanitizers are large, and lld links them faster.
+find_program(LLD ld.lld)
+if(LLD AND CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  add_link_options(-fuse-ld=lld)
+endif()
+
 option(ERGOCAST_WERROR "Treat warnings as errors (continuous integration sets this)" OFF)
 add_library(ergocast_warnings INTERFACE)
 add_library(ergocast::warnings ALIAS ergocast_warnings)

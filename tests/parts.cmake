@@ -272,12 +272,6 @@ ergocast_test(NAME mavlink_tests LABELS unit
     bridges/mavlink/vehicle_test.cc
   LIBS ergocast_mavlink ergocast::geo)
 
-if(TARGET ergocast_example_mujoco)
-  ergocast_test(NAME mujoco_tests LABELS unit
-    SOURCES examples/mujoco_test.cc
-    LIBS ergocast_example_mujoco ergocast_lab ergocast::scenario)
-endif()
-
 ergocast_test(NAME doctor_tests LABELS unit
   SOURCES
     cli/doctor/bus_listener_test.cc

@@ -14,6 +14,12 @@ ergocast_test(NAME memory_tests LABELS unit
   SOURCES target/map_memory_test.cc
   LIBS ergocast::target PNG::PNG)
 
+if(TARGET ergocast_example_mujoco)
+  ergocast_test(NAME mujoco_tests LABELS unit
+    SOURCES examples/mujoco_test.cc
+    LIBS ergocast_example_mujoco ergocast_lab ergocast::scenario)
+endif()
+
 ergocast_test(NAME long_lab_tests LABELS lab
   SOURCES
     lab/judgement_test.cc

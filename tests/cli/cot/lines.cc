@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints events of a team as lines of JSON, for a comparison with another program's reading: the
-// XML, and what it says.
+// XML, and what it means.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# node-cot reads our events, and says what they say: reference_test.sh COT_LINES FOLDER. FOLDER keeps node-cot (MIT,
+# node-cot reads our events as we mean them: reference_test.sh COT_LINES FOLDER. FOLDER keeps node-cot (MIT,
 # for tests only), from npm's registry, between tests. Later versions need a newer Node than Debian has.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/reference
