@@ -33,6 +33,17 @@ struct Queue : ::testing::Test {
     while (!queue.empty()) messages.push_back(take());
     return messages;
   }
+  /// How many beacons of ten agents, added last, are among the next 20 messages.
+  std::int64_t early_of_ten_beacons() {
+    for (int agent = 0; agent < 10; ++agent) {
+      Beacon beacon = test::beacon();
+      beacon.header.sender = agent;
+      add(beacon);
+    }
+    const auto sent = all();
+    return std::count_if(sent.begin(), sent.begin() + 20,
+                         [](const Message& one) { return std::holds_alternative<Beacon>(one); });
+  }
 };
 
 Contribution block(std::int32_t block, std::int64_t steps) {
@@ -131,14 +142,7 @@ TEST_F(Queue, ALineThatHadTheLinkAloneKeepsItsShare) {
     all();
   }
   for (int agent = 0; agent < 100; ++agent) add(status(1, agent));
-  for (int agent = 0; agent < 10; ++agent) {
-    Beacon beacon = test::beacon();
-    beacon.header.sender = agent;
-    add(beacon);
-  }
-  const auto sent = all();
-  const auto is_beacon = [](const Message& one) { return std::holds_alternative<Beacon>(one); };
-  EXPECT_GE(std::count_if(sent.begin(), sent.begin() + 20, is_beacon), 8);
+  EXPECT_GE(early_of_ten_beacons(), 8);
 }
 
 TEST_F(Queue, AMissionOfManyPartsAndALongTargetDelayNoBeacon) {
@@ -147,14 +151,7 @@ TEST_F(Queue, AMissionOfManyPartsAndALongTargetDelayNoBeacon) {
   for (mission.part = 0; mission.part < mission.parts; ++mission.part) add(mission);
   Amend target = test::amend();
   for (target.part = 0; target.part < target.parts; ++target.part) add(target);
-  for (int agent = 0; agent < 10; ++agent) {
-    Beacon beacon = test::beacon();
-    beacon.header.sender = agent;
-    add(beacon);
-  }
-  const auto sent = all();
-  const auto is_beacon = [](const Message& one) { return std::holds_alternative<Beacon>(one); };
-  EXPECT_EQ(std::count_if(sent.begin(), sent.begin() + 20, is_beacon), 10);
+  EXPECT_EQ(early_of_ten_beacons(), 10);
 }
 
 /// How many of 60 states in three parts are sent whole by a link for two parts of three.

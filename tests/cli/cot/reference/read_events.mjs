@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares our events with what node-cot reads in them: read_events.mjs FOLDER < LINES. FOLDER has node_modules.
+// Compares our events with what node-cot reads in them: read_events.mjs FOLDER < LINES. FOLDER has
+// node_modules.
 import assert from 'node:assert';
 import { readFileSync } from 'node:fs';
 import { resolve } from 'node:path';
