@@ -162,6 +162,11 @@ class Desk : public WithProbe {
     }
     return {values["X"], values["Y"], values["WIDTH"], values["HEIGHT"]};
   }
+  /// The window's pixels. Each look brings it to the front and asks where it is: a window of a row
+  /// that open() tried may come late and above it, and it may still change its size.
+  std::map<int, std::set<Pixel>> pixels_of(const std::string& name) {
+    return look().pixels_by_color(front(name));
+  }
   /// Double-clicks rows of the viewer's table until the window of that channel is there. Starts at
   /// `row` and tries the next rows, because channels may appear and disappear.
   bool open(const std::string& channel, int row) {

@@ -50,9 +50,8 @@ TEST_F(Spy, DrawsTheTeamAsItMoves) {
   ASSERT_TRUE(sees("LCM Spy")) << output();
 
   ASSERT_TRUE(open("ERGOCAST_TEAM_STATUS", kTeamStatusRow));
-  const Area team = front("ERGOCAST_TEAM_STATUS");
   const auto agents = [&] {
-    const auto pixels = look().pixels_by_color(team);
+    const auto pixels = pixels_of("ERGOCAST_TEAM_STATUS");
     std::vector<std::set<Pixel>> found;
     for (const int color : kAgentColors) {
       const auto at = pixels.find(color);
@@ -97,8 +96,8 @@ TEST_F(Spy, DebiansScriptTakesTheJarToo) {
   EXPECT_TRUE(
       eventually([&] { return text_of(log).find("Found 1 plugins") != std::string::npos; }));
   ASSERT_TRUE(open("ERGOCAST_TEAM_STATUS", kTeamStatusRow));
-  const Area map = front("ERGOCAST_TEAM_STATUS");
-  EXPECT_TRUE(eventually([&] { return look().pixels_by_color(map).contains(kAgentColors[0]); }));
+  EXPECT_TRUE(
+      eventually([&] { return pixels_of("ERGOCAST_TEAM_STATUS").contains(kAgentColors[0]); }));
   end(spy, kJavaInterrupted);
   end(mission, 0);
 }
