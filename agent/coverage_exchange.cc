@@ -136,15 +136,26 @@ std::optional<Refusal> CoverageExchange::merge(const Contribution& theirs, int k
   return std::nullopt;
 }
 
-/// The admission of a forgotten agent may have been lost with its coordinator. This also runs in a
-/// pause, because forgetting goes by the world's ticks, and the agent then reports the c_k that
-/// counts.
+/// This also runs in a pause, because forgetting goes by the world's ticks, and the agent then
+/// reports the c_k that counts.
 void CoverageExchange::forget_silent(const AgentStep& step, const Participant& me) {
   table_.remember_all();
   for (const RosterEntry& entry : me.follower().roster()) {
     // Our own coverage always counts: we run, even if the coordinator receives nothing from us.
     if (entry.author == self_) continue;
     if (entry.forgotten_at(step.tick, step.roster_revision)) table_.forget(entry.author);
+  }
+  if (listed_by_ != me.follower().revision()) note_unlisted(me.follower());
+  for (const Author& author : unlisted_) table_.forget(author);
+}
+
+/// A coordinator may take over without an admission that its predecessor sent to a few agents. The
+/// others refuse that author's row, and all agents have to go by the same rows.
+void CoverageExchange::note_unlisted(const MissionFollower& known) {
+  listed_by_ = known.revision();
+  unlisted_.clear();
+  for (const Author& author : last_update_.authors()) {
+    if (known.entry_of(author.incarnation) == nullptr) unlisted_.push_back(author);
   }
 }
 

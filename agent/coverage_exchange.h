@@ -60,7 +60,8 @@ class CoverageExchange {
   std::optional<Refusal> merge(const Contribution& theirs, int kind, std::int64_t max_steps,
                                Tick counted);
   /// From now on the coverage of agents that are silent at `step` does not count, by the roster
-  /// that the tick may have waited for, never by an older one. All other coverage counts.
+  /// that the tick may have waited for, never by an older one. Neither does a row whose author the
+  /// newest roster lacks. All other coverage counts.
   void forget_silent(const AgentStep& step, const Participant& me);
   /// The first teammate in radio range whose coverage is due at `step` and missing; kUnassigned:
   /// none.
@@ -84,6 +85,8 @@ class CoverageExchange {
                          const Participant& me) const;
 
  private:
+  void note_unlisted(const MissionFollower& known);
+
   struct Broadcast {
     Contribution block;
     Tick tick = 0, next = 0;  // when it was sent, and when the next one is due, as counted
@@ -96,6 +99,8 @@ class CoverageExchange {
   AntiEntropy anti_entropy_;
   std::vector<Broadcast> published_;  // own blocks as last broadcast
   AuthorMap<Tick> last_update_;       // counted tick at which a teammate's coverage last grew
+  std::vector<Author> unlisted_;      // teammates with a row and no entry in the roster …
+  std::int64_t listed_by_ = -1;       // … of this revision
   Deadline next_digest_;
   bool rests_ = false;              // it was recalled at the newest tick that it has begun, …
   bool own_repeat_wanted_ = false;  // … and a teammate lacks some of its coverage

@@ -114,7 +114,8 @@ void Invariants::check_forecast(double t_s, const TableView& holder) {
 
 // ---- liveness ----
 
-/// The newest of each author's blocks that any agent holds. Forgotten rows do not count any more.
+/// The newest of each author's blocks that any agent holds and counts: a forgotten row does not
+/// count any more, nor does a teammate's that the holder's roster lacks.
 std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
     const std::vector<TableView>& living) const {
   std::map<Author, std::vector<Best>> best;
@@ -123,7 +124,7 @@ std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
     for (const Author& author : authors_) {
       if (!holder.table->steps_held(author)) continue;
       const RosterEntry* entry = entry_of(*holder.roster, author);
-      if (entry != nullptr && is_forgotten(*entry, holder)) continue;
+      if (entry == nullptr ? author != holder.self : is_forgotten(*entry, holder)) continue;
       auto& blocks = best.try_emplace(author, static_cast<std::size_t>(block_count_)).first->second;
       for (int b = 0; b < block_count_; ++b) {
         const Contribution held = holder.table->block(author, b);

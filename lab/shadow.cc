@@ -318,11 +318,10 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
   }
   for (const auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
-    if (entry != nullptr && is_forgotten(*entry, agent)) continue;
-    const bool forecast = entry != nullptr && has_forecast(mission, agent, *entry);
+    if (entry == nullptr || is_forgotten(*entry, agent)) continue;
+    const bool forecast = has_forecast(mission, agent, *entry);
     team.push_back(parts_of(mission, row, entry,
                             forecast ? std::optional(agent.counted) : std::nullopt, halvings));
-    if (entry == nullptr) continue;
     for (Part& part : team.back())
       part.until = covers_until(mission, entry->author.agent, agent.amendments, agent.counted);
   }

@@ -15,6 +15,7 @@ template <class Value>
 class AuthorMap {
  public:
   std::size_t size() const { return authors_.size(); }
+  const std::vector<Author>& authors() const { return authors_; }  ///< ascending
   /// Null if it is not there.
   const Value* find(const Author& author) const {
     const std::size_t at = place_of(author);

@@ -96,17 +96,20 @@ TEST(AgentForgets, UntilTheNamedTickAtWhichItCountsAgain) {
   }
 }
 
-TEST(AgentForgets, NoAgentWhoseAdmissionWasLostWithTheCoordinator) {
+TEST(AgentForgets, AnAgentWhoseAdmissionWasLostWithTheCoordinatorUntilItIsAdmittedAgain) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
-  give(agent, forgetting_from(0), at(0s));
   deliver(agent, world_at(0));
-  EXPECT_TRUE(steered_alone(agent, mission, 1));
-  // The roster of the coordinator's successor, 1000 revisions later, does not have agent 1.
+  EXPECT_FALSE(steered_alone(agent, mission, 1));
+  // The roster of the coordinator's successor, 1000 revisions later, does not have agent 1. Agents
+  // without its row refuse it now.
   give(agent, mission_part(1001, MissionState::kRunning, {{author_of(0), 0, -1}}), at(0s));
   EXPECT_EQ(only<Command>(deliver(agent, world_at(1, 1001))).size(), 1u);
-  EXPECT_FALSE(steered_alone(agent, mission, 2)) << "as for agents admitted since";
+  EXPECT_TRUE(steered_alone(agent, mission, 2));
+  give(agent, mission_part(1002, MissionState::kRunning, roster_of(2)), at(0s));
+  EXPECT_EQ(only<Command>(deliver(agent, world_at(2, 1002))).size(), 1u);
+  EXPECT_FALSE(steered_alone(agent, mission, 3));
 }
 
 TEST(AgentForgets, AndRemembersWhileTheMissionIsPaused) {
