@@ -133,8 +133,9 @@ void MissionRun::on(const Effort& theirs, const Arrival& arrival, Participant& m
   const RosterEntry* const entry = me.member(theirs.header);
   if (entry == nullptr || !search_ || step_.tick < 0) return;
   const Tick newest = step_.counted + lead(me, arrival.now);
-  if (const auto refusal = search_->merge(theirs, newest)) return me.count_refused(*refusal);
-  if (arrival.transmitter == theirs.header.sender) search_->note_received(theirs);
+  const bool by_author = arrival.transmitter == theirs.header.sender;
+  if (const auto refusal = search_->receive(theirs, newest, by_author))
+    me.count_refused(*refusal);
 }
 
 void MissionRun::on(const Beacon& beacon, const Arrival& arrival, Participant&) {

@@ -10,6 +10,8 @@ namespace ergocast {
 namespace {
 
 constexpr double kPeriod_s = 2;
+/// So many messages wait for a halving. Others are lost; they are sent again.
+constexpr std::size_t kMostEarly = 512;
 
 /// Adds a tile to the last part, or to a new one.
 void add(std::vector<Effort>& parts, std::size_t number, const EffortTile& content) {
@@ -43,6 +45,7 @@ Tick SearchExchange::last_due(AgentId agent, Tick counted) const {
 
 void SearchExchange::begin(const AgentStep& step, bool covers, Participant& me, Outbox& out) {
   efforts_.set_now(step.counted);
+  merge_early(me);
   if (covers) {
     efforts_.look(self_, step.counted, step.x_m);
     efforts_.report(self_, step.counted, step.reported_cell);
@@ -111,8 +114,26 @@ void SearchExchange::note_received(const Effort& theirs) {
   arrived.missing &= ~(std::uint32_t{1} << theirs.part);
 }
 
-std::optional<Refusal> SearchExchange::merge(const Effort& theirs, Tick newest) {
+std::optional<Refusal> SearchExchange::receive(const Effort& theirs, Tick newest, bool by_author) {
   if (theirs.author() == self_ || theirs.header.tick > newest) return Refusal::kRange;
+  if (!efforts_.is_early(theirs.header.tick)) return merge(theirs, by_author);
+  if (early_.size() < kMostEarly) early_.push_back({theirs, by_author});
+  return std::nullopt;
+}
+
+void SearchExchange::merge_early(Participant& me) {
+  std::vector<Early> still_early;
+  for (const Early& one : early_) {
+    if (efforts_.is_early(one.tiles.header.tick)) {
+      still_early.push_back(one);
+    } else if (const auto refusal = merge(one.tiles, one.by_author)) {
+      me.count_refused(*refusal);
+    }
+  }
+  early_ = std::move(still_early);
+}
+
+std::optional<Refusal> SearchExchange::merge(const Effort& theirs, bool by_author) {
   const auto tiles = std::span(theirs.tiles).first(static_cast<std::size_t>(theirs.tile_count));
   for (const SentTile& tile : tiles) {
     const auto number = static_cast<std::size_t>(tile.number);
@@ -120,6 +141,7 @@ std::optional<Refusal> SearchExchange::merge(const Effort& theirs, Tick newest) 
         !efforts_.merge(theirs.author(), number, tile.content, theirs.header.tick))
       return Refusal::kRange;
   }
+  if (by_author) note_received(theirs);
   return std::nullopt;
 }
 

@@ -36,11 +36,11 @@ class SearchExchange {
   /// Sends again what it has sent last.
   void repeat(Participant& me, Outbox& out) const;
 
-  /// Notes that a teammate has sent `theirs` itself.
-  void note_received(const Effort& theirs);
-  /// Takes in tiles of a teammate, unless they are refused.
-  /// @param newest  the latest counted tick that the message can be of
-  std::optional<Refusal> merge(const Effort& theirs, Tick newest);
+  /// Takes in tiles of a teammate, unless they are refused. Tiles from after the next halving wait
+  /// for it: in lockstep they may come before the state of their tick.
+  /// @param newest    the latest counted tick that the message can be of
+  /// @param by_author  whether their author has sent them itself
+  std::optional<Refusal> receive(const Effort& theirs, Tick newest, bool by_author);
   /// The first teammate in radio range whose tiles are due at `step` and missing; kUnassigned:
   /// none.
   AgentId awaited(const AgentStep& step, const RadioRange& radio, const Participant& me) const;
@@ -53,7 +53,15 @@ class SearchExchange {
     std::uint32_t missing = 0;  // a bit for each part
   };
 
+  struct Early {
+    Effort tiles;
+    bool by_author;
+  };
+
   Tick last_due(AgentId agent, Tick counted) const;
+  std::optional<Refusal> merge(const Effort& theirs, bool by_author);
+  void note_received(const Effort& theirs);
+  void merge_early(Participant& me);
   void send_own(const AgentStep& step, Participant& me, Outbox& out);
   void relay_one_row(Tick counted, Participant& me, Outbox& out);
   /// Adds tiles of a row in turn, until the message is full.
@@ -65,6 +73,7 @@ class SearchExchange {
   Tick sent_at_ = -1;         // the counted tick of the last sending
   std::vector<Effort> sent_;  // its parts
   AuthorMap<Arrived> arrived_;
+  std::vector<Early> early_;  // that wait for the next halving
   std::size_t own_turn_ = 0, row_turn_ = 0, tile_turn_ = 0;
 };
 

@@ -70,7 +70,7 @@ IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
   if (needs_.search) {
     efforts_.emplace(mission_);
     objects_ = Objects(mission_);
-    reports_ = Reports(mission_, objects_.places_m());
+    reports_ = Reports(mission_);
   }
   for (const Agent& agent : agents_) {
     if (efforts_) efforts_->add_row(agent.author);
@@ -154,7 +154,8 @@ void IdealTeam::search() {
     const AgentId id = agent.author.agent;
     efforts_->look(agent.author, tick_, agent.x_m);
     const ObjectSet detected = objects_.detected(id, tick_, agent.x_m);
-    efforts_->report(agent.author, tick_, reports_.cell(id, tick_, agent.x_m, detected));
+    efforts_->report(agent.author, tick_,
+                     reports_.cell(id, tick_, agent.x_m, detected, objects_.places_m()));
   }
 }
 

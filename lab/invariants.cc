@@ -57,7 +57,7 @@ Invariants::Invariants(const Mission& mission)
       weights_(sobolev_weights(mission.basis, mission.domain)),
       block_count_(block_count_of(mission)),
       wire_modes_(modes_on_wire(mission)),
-      objects_m_(Objects(mission).places_m()) {
+      objects_(mission) {
   note_ends();
 }
 

@@ -346,7 +346,7 @@ class Invariants {
   std::map<Author, Tick> rested_;                // counted ticks since an agent was recalled
   std::map<AgentId, Eigen::Vector3d> places_m_;  // in lockstep, of the newest state
   StateAssembler state_;                         // where a distance is kept
-  std::vector<Eigen::Vector3d> objects_m_;
+  Objects objects_;
   /// For each object by tick and agent.
   std::map<int, std::set<std::pair<Tick, AgentId>>> detections_;
   std::map<AgentId, std::set<Tick>> reports_;  // ticks at which a sensor reports something

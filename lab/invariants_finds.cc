@@ -13,14 +13,16 @@ namespace ergocast::lab {
 
 void Invariants::check_detections(double t_s, const WorldState& world) {
   worlds_.insert(world.header.incarnation);
-  const double radius_m = objects_m_.empty() ? 0 : sensor_radius_m(mission_);
+  const double radius_m = objects_.places_m().empty() ? 0 : sensor_radius_m(mission_);
+  objects_.move_to(world.header.tick);
+  const std::vector<Eigen::Vector3d>& objects_m = objects_.places_m();
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     if (vehicle.reported_cell != kNoCell) reports_[vehicle.id].insert(world.header.tick);
     for (int object = 0; object < kMaxObjects; ++object) {
       if ((vehicle.detected >> object & 1) == 0) continue;
       detections_[object].emplace(world.header.tick, vehicle.id);
-      const bool exists = object < std::ssize(objects_m_);
-      if (exists && (vehicle.position_m - objects_m_[static_cast<std::size_t>(object)]).norm() <=
+      const bool exists = object < std::ssize(objects_m);
+      if (exists && (vehicle.position_m - objects_m[static_cast<std::size_t>(object)]).norm() <=
                         radius_m * (1 + 1e-9))
         continue;
       violate(t_s, Invariant::kDetectionsInReach, "vehicle " + std::to_string(vehicle.id),

@@ -106,6 +106,12 @@ class TextWriter : public FieldVisitor {
                "\n      y_m: " + shortest(x_m.y()) + "\n    }\n";
     if (objects.end_when_found > 0)
       text_ += "    end_when_found: " + std::to_string(objects.end_when_found) + '\n';
+    if (const ObjectMotion& motion = objects.motion; motion.any()) {
+      text_ += "    motion {\n      speed_mps: " + shortest(motion.speed_mps) + '\n';
+      if (motion.persistence_s != ObjectMotion().persistence_s)
+        text_ += "      persistence_s: " + shortest(motion.persistence_s) + '\n';
+      text_ += "    }\n";
+    }
     text_ += "  }\n";
   }
   void part(const Field& field, const auto& part) {

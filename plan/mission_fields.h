@@ -91,7 +91,8 @@ void list_fields(auto& io, MaybeConst<Basis> auto& basis) {
 
 void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
   const When adaptive = only_if(law.perturbation == Perturbation::kAdaptive);
-  const When forgets = unless(law.memory_half_life_s, 0);
+  // With SEARCH its default may be another one: that of objects that drift.
+  const When forgets = {law.memory_half_life_s != 0 || law.kind == LawKind::kSearch};
   io.number({1, "u_max_mps", limits::above(0, 1e6)}, law.u_max_mps);
   io.choice({2, "regularization"}, law.regularization, {"ABSOLUTE", "RELATIVE"});
   io.number({3, "epsilon", limits::between(0, 1e6)}, law.epsilon);
@@ -167,12 +168,22 @@ void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
   io.number({14, "reserve_s", limits::between(0, 1e7), unless(kind.reserve_s, 0)}, kind.reserve_s);
 }
 
+void list_fields(auto& io, MaybeConst<ObjectMotion> auto& motion) {
+  const ObjectMotion usual;
+  const When moves = only_if(motion.any());
+  io.number({1, "speed_mps", limits::above(0, 1e6), moves}, motion.speed_mps);
+  io.number({2, "persistence_s", limits::between(1e-6, 1e7),
+             unless(motion.persistence_s, usual.persistence_s)},
+            motion.persistence_s);
+}
+
 void list_fields(auto& io, MaybeConst<HiddenObjects> auto& objects) {
   io.number({1, "count", limits::between(1, kMaxObjects), unless(objects.count, 0)}, objects.count);
   io.places({2, "places"}, {3, "place_heights_m"}, objects.places_m);
   io.number(
       {4, "end_when_found", limits::between(1, kMaxObjects), unless(objects.end_when_found, 0)},
       objects.end_when_found);
+  io.part({5, "motion"}, objects.motion);
 }
 
 void list_fields(auto& io, MaybeConst<SearchSensor> auto& sensor) {

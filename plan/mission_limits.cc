@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/measure/detection.h"
+#include "core/measure/drift.h"
 #include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
@@ -206,12 +207,21 @@ bool are_kinds(const Mission& mission) {
          std::ranges::all_of(kinds, [&](const AgentKind& kind) { return fits(kind, mission); });
 }
 
+/// Drifting objects need room for a step, and not too many legs.
+bool drift_fits(const Mission& mission) {
+  const ObjectMotion& motion = mission.objects.motion;
+  if (!motion.any()) return motion.persistence_s == ObjectMotion().persistence_s;
+  return motion.speed_mps <= max_drift_mps(mission.domain, mission.timing.dt_s) &&
+         drift_legs(mission) <= kMaxLegs;
+}
+
 /// Either a count or places, in a plane. Places are free. An end that nobody knows before leaves no
 /// time to go to a station.
 bool fits(const HiddenObjects& objects, const Mission& mission) {
   if (objects.end_when_found > objects.total()) return false;
   if (objects.end_when_found > 0 && any_station(mission)) return false;
-  if (objects.total() == 0) return true;
+  if (!drift_fits(mission)) return false;
+  if (objects.total() == 0) return !objects.motion.any();
   const auto free = [&](const Eigen::Vector3d& x_m) {
     return in_domain(mission.domain, x_m) && !solid_at(mission.walls, x_m.head<2>());
   };

@@ -118,6 +118,9 @@ Json conventions(const Mission& mission, bool free_domain) {
   }
   add("sensor", "finds an object within " + readable(sensor_radius_m(mission)) + " m at the rate " +
                     readable(mission.sensor.detections_per_s) + " /s, through walls");
+  if (const ObjectMotion& motion = mission.objects.motion; motion.any())
+    add("objects", "drift at " + readable(motion.speed_mps) + " m/s, persistence " +
+                       readable(motion.persistence_s) + " s");
   if (mission.sensor.has_false_alarms())
     add("false alarms", readable(mission.sensor.false_alarms_per_s) + " /s; confirmed at " +
                             readable(mission.sensor.confirm_at));

@@ -159,7 +159,7 @@ void Fleet::move_bodies() {
   }
 }
 
-std::vector<WorldState> Fleet::snapshot(Tick tick) const {
+std::vector<WorldState> Fleet::snapshot(Tick tick) {
   const auto parts = std::max<std::size_t>(
       1, (vehicles_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState);
   std::vector<WorldState> states(parts);
@@ -175,7 +175,8 @@ std::vector<WorldState> Fleet::snapshot(Tick tick) const {
     vehicle.position_m = slot.x_m;
     vehicle.velocity_mps = slot.applied_mps;
     vehicle.detected = objects_.detected(id, tick, slot.x_m);
-    vehicle.reported_cell = reports_.cell(id, tick, slot.x_m, vehicle.detected);
+    vehicle.reported_cell =
+        reports_.cell(id, tick, slot.x_m, vehicle.detected, objects_.places_m());
   }
   return states;
 }
@@ -184,7 +185,7 @@ std::optional<std::string> Fleet::learn(const Mission& mission) {
   if (!mission_) {
     mission_ = mission;
     objects_ = Objects(mission);
-    reports_ = Reports(mission, objects_.places_m());
+    reports_ = Reports(mission);
   }
   if (!physics_maker_ || physics_) return {};
   auto made = physics_maker_(mission);

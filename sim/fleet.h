@@ -93,7 +93,7 @@ class Fleet {
 
   /// The parts of the state of `tick` with all vehicles. Only part numbers and vehicles are filled
   /// in.
-  std::vector<WorldState> snapshot(Tick tick) const;
+  std::vector<WorldState> snapshot(Tick tick);
   /// Steps of a vehicle that the speed limit made slower than its command.
   std::int64_t clamped_commands() const { return clamped_commands_; }
   /// The summary of the physics; empty without one.

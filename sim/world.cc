@@ -288,7 +288,7 @@ void World::step() {
   ++tick_;
 }
 
-std::vector<WorldState> World::snapshot() const {
+std::vector<WorldState> World::snapshot() {
   std::vector<WorldState> states = fleet_.snapshot(tick_);
   for (WorldState& state : states) {
     state.missed_deadlines = missed_deadlines_;

@@ -104,7 +104,7 @@ class World {
   void advance_lockstep(Instant now, Outbox& out);
   void advance_realtime(Instant now, Outbox& out);
   void step();
-  std::vector<WorldState> snapshot() const;
+  std::vector<WorldState> snapshot();
   void publish(const std::vector<WorldState>& states, Outbox& out);
   void remember_and_publish(Instant now, Outbox& out);
   void repeat(Instant now, Outbox& out);

@@ -32,6 +32,7 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/merge_property_test.cc
     core/mower_test.cc
     core/contacts_test.cc
+    core/drift_test.cc
     core/objects_test.cc
     core/noise_test.cc
     core/perturbation_test.cc

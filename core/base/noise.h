@@ -24,6 +24,7 @@ enum class Purpose : std::uint32_t {
   kDetection = 11,    ///< whether a sensor detects an object
   kReport = 12,       ///< the error of a reported place
   kFalseAlarm = 13,   ///< whether and where a sensor reports nothing real
+  kDrift = 14,        ///< the headings of drifting objects
 };
 
 /// Two independent 64-bit words (Philox 4×32-10, Salmon et al. 2011).

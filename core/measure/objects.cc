@@ -52,9 +52,17 @@ Objects::Objects(const Mission& mission)
                                           : mission.objects.places_m),
       seed_(mission.seed),
       radius_m_(sensor_radius_m(mission)),
-      probability_(-std::expm1(-mission.sensor.detections_per_s * mission.timing.dt_s)) {}
+      probability_(-std::expm1(-mission.sensor.detections_per_s * mission.timing.dt_s)) {
+  if (mission.objects.motion.any() && !places_m_.empty()) drift_.emplace(mission, places_m_);
+}
 
-ObjectSet Objects::detected(AgentId id, Tick tick, const Eigen::Vector3d& x_m) const {
+void Objects::move_to(Tick tick) {
+  for (std::size_t object = 0; drift_ && object < places_m_.size(); ++object)
+    places_m_[object] = drift_->place_m(object, tick);
+}
+
+ObjectSet Objects::detected(AgentId id, Tick tick, const Eigen::Vector3d& x_m) {
+  move_to(tick);
   ObjectSet set = 0;
   for (std::uint32_t object = 0; object < places_m_.size(); ++object) {
     if ((x_m - places_m_[object]).squaredNorm() > radius_m_ * radius_m_) continue;

@@ -130,12 +130,21 @@ struct AgentKind {
 /// Limit (Scenario): objects to find. Beyond it: the scenario is refused.
 inline constexpr int kMaxObjects = 32;
 
-/// The objects that the simulated world hides in a plane: `count` of them, or those at `places_m`;
-/// core/measure/objects.h. They do not steer.
+/// How objects drift: core/measure/drift.h.
+struct ObjectMotion {
+  double speed_mps = 0;       ///< 0: they stand still
+  double persistence_s = 60;  ///< after this time the mean cosine of what they have turned is 1/e
+
+  bool any() const { return speed_mps > 0; }
+};
+
+/// The objects that the simulated world hides in a plane: `count` of them, or those that begin at
+/// `places_m`; core/measure/objects.h. They do not steer.
 struct HiddenObjects {
   int count = 0;  ///< drawn from the target
   std::vector<Eigen::Vector3d> places_m{};
   int end_when_found = 0;  ///< the mission ends once so many are found; 0: it does not
+  ObjectMotion motion{};
 
   int total() const { return places_m.empty() ? count : static_cast<int>(places_m.size()); }
 };

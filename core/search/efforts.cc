@@ -100,8 +100,7 @@ bool Efforts::merge(const Author& author, std::size_t tile, EffortTile theirs, T
   ERGOCAST_REQUIRE(tile < cells_.tile_count());
   if (!possible(theirs, sent)) return false;
   EffortTile& ours = row(author).tiles[tile];
-  // A tile from after the next halving comes too early; it will be sent again.
-  if (theirs.newest_look <= ours.newest_look || half_life_.halvings(sent) > halvings_) return true;
+  if (theirs.newest_look <= ours.newest_look || is_early(sent)) return true;
   halve(theirs, halvings_ - half_life_.halvings(sent));
   subtract(tile, ours);
   add(tile, theirs);

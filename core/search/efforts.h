@@ -49,8 +49,11 @@ class Efforts {
   /// without their looks. A cell that does not exist has no effect. @pre `author` has a row
   void report(const Author& author, Tick counted, std::int32_t cell);
 
-  /// Takes in a tile as its author had it at tick `sent`. A tile that is not newer than the one
-  /// held has no effect.
+  /// Whether a tile of tick `sent` has been halved more often than ours: it is from after the next
+  /// halving.
+  bool is_early(Tick sent) const { return half_life_.halvings(sent) > halvings_; }
+  /// Takes in a tile as its author had it at tick `sent`. A tile that is early, or not newer than
+  /// the one held, has no effect.
   /// @return false without effect: no agent can have looked so often
   /// @pre tile < cells().tile_count()
   bool merge(const Author& author, std::size_t tile, EffortTile theirs, Tick sent);

@@ -11,9 +11,8 @@
 
 namespace ergocast {
 
-Reports::Reports(const Mission& mission, std::vector<Eigen::Vector3d> places_m)
-    : places_m_(std::move(places_m)),
-      domain_(mission.domain),
+Reports::Reports(const Mission& mission)
+    : domain_(mission.domain),
       seed_(mission.seed),
       radius_m_(sensor_radius_m(mission)),
       error_m_(mission.sensor.position_error_m),
@@ -22,14 +21,15 @@ Reports::Reports(const Mission& mission, std::vector<Eigen::Vector3d> places_m)
 }
 
 std::int32_t Reports::cell(AgentId id, Tick tick, const Eigen::Vector3d& x_m,
-                           ObjectSet detected) const {
+                           ObjectSet detected,
+                           const std::vector<Eigen::Vector3d>& places_m) const {
   if (!cells_) return kNoCell;
   const auto who = static_cast<std::uint32_t>(id);
   const auto step = static_cast<std::uint64_t>(tick);
   Eigen::Vector3d place_m;
   if (detected != 0) {
     const auto object = static_cast<std::size_t>(std::countr_zero(detected));
-    place_m = places_m_[object];
+    place_m = places_m[object];
     place_m.head<2>() += error_m_ * normal_pair(seed_, Purpose::kReport, who, step);
     place_m = domain_.nearest(place_m);
   } else {

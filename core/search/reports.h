@@ -21,16 +21,16 @@ class Reports {
  public:
   /// Nothing is ever reported.
   Reports() = default;
-  /// @param places_m  of the objects, by number
-  Reports(const Mission& mission, std::vector<Eigen::Vector3d> places_m);
+  explicit Reports(const Mission& mission);
 
   /// The cell that the sensor of an agent at `x_m` reports; kNoCell: none.
   /// @param detected  what it detects
-  std::int32_t cell(AgentId id, Tick tick, const Eigen::Vector3d& x_m, ObjectSet detected) const;
+  /// @param places_m  of the objects at this tick, by number
+  std::int32_t cell(AgentId id, Tick tick, const Eigen::Vector3d& x_m, ObjectSet detected,
+                    const std::vector<Eigen::Vector3d>& places_m) const;
 
  private:
   std::optional<Cells> cells_;  // nothing: no sensor has false alarms
-  std::vector<Eigen::Vector3d> places_m_;
   Box domain_;
   std::uint64_t seed_ = 0;
   double radius_m_ = 0, error_m_ = 0;

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "core/measure/detection.h"
+#include "core/measure/drift.h"
 #include "core/motion/starts.h"
 #include "scenario/parse/assign.h"
 #include "scenario/parse/convert.h"
@@ -47,6 +49,7 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
 /// an origin places are in metres only. Without a vehicle all bodies are points, or a kind has the
 /// scenario's vehicle. Without a separation bodies keep no distance. Without a sensor measures
 /// assume the usual one. Without a band all modes count. Without objects there is nothing to find.
+/// Without motion they stand still.
 bool means_something_absent(const FieldDescriptor& field) {
   return field.message_type() == proto::Covariance::descriptor() ||
          field.message_type() == proto::Origin::descriptor() ||
@@ -54,6 +57,7 @@ bool means_something_absent(const FieldDescriptor& field) {
          field.message_type() == proto::Separation::descriptor() ||
          field.message_type() == proto::Sensor::descriptor() ||
          field.message_type() == proto::Objects::descriptor() ||
+         field.message_type() == proto::Motion::descriptor() ||
          field.message_type() == proto::Band::descriptor();
 }
 
@@ -137,6 +141,41 @@ void fill_foresight(proto::Scenario& scenario) {
   if (scenario.time().has_broadcast_period_ticks()) return;
   const bool dead_reckons = law.anticipation() > 0 && scenario.agents().dead_reckoning();
   scenario.mutable_time()->set_broadcast_period_ticks(dead_reckons ? kReckonedPeriodTicks : 1);
+}
+
+/// Objects that have drifted so many sensor radii are somewhere else.
+constexpr double kRadiiDrifted = 2;
+
+/// Whether a number of a block is given and within its limits.
+bool has_valid(const Message& block, const char* name) {
+  const auto& field = find_field(block, name).field;
+  return block.GetReflection()->HasField(block, &field) &&
+         rule_of(field)->range.contains(number_in(block, field));
+}
+
+/// What a team that searches has seen of drifting objects is old after a time. Numbers outside
+/// their limits give no default: validate() reports them.
+/// @pre the constants are filled in
+void fill_memory(const Box& domain, proto::Scenario& scenario) {
+  proto::Law& law = *scenario.mutable_law();
+  if (law.has_memory_half_life_s()) return;
+  law.set_memory_half_life_s(0);
+  const proto::Motion& motion = scenario.world().objects().motion();
+  const bool known = has_valid(motion, "speed_mps") && has_valid(motion, "persistence_s") &&
+                     has_valid(law, "u_max_mps") && has_valid(scenario.time(), "dt_s") &&
+                     limits::kSize_m.contain(domain.size_m.x()) &&
+                     limits::kSize_m.contain(domain.size_m.y());
+  if (law.kind() != proto::Law::SEARCH || !domain.planar() || !known) return;
+  Mission mission;
+  mission.domain = domain;
+  if (has_valid(scenario.sensor(), "radius_m"))
+    mission.sensor.radius_m = scenario.sensor().radius_m();
+  const double drifted_s = time_to_drift_s({motion.speed_mps(), motion.persistence_s()},
+                                           kRadiiDrifted * sensor_radius_m(mission));
+  const double crossing_s = domain.size_m.maxCoeff() / law.u_max_mps();
+  const double least_s = limits::kLeastHalfLife_ticks * scenario.time().dt_s();
+  law.set_memory_half_life_s(
+      std::min(std::ceil(std::max({drifted_s, crossing_s, least_s})), 1e9));
 }
 
 /// The law has the speed of the fastest kind if each has its own. Where one of them is outside its
@@ -346,6 +385,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   if (has_walls(scenario) && !scenario.world().has_wall_clearance_m())
     scenario.mutable_world()->set_wall_clearance_m(0);
   fill_law(domain, *scenario.mutable_law());
+  fill_memory(domain, scenario);
   proto::Agents& agents = *scenario.mutable_agents();
   put_on_edges(domain, agents);
   fill_kinds(scenario.law(), agents);

@@ -84,6 +84,7 @@ constexpr Row kRows[] = {
     {"Law", "contraction_y_m", kCoordinate, kLeft},
     {"Law", "contraction_z_m", kCoordinate, kLeft},
     {"Law", "anticipation", kMissions, kLeft},
+    {"Law", "memory_half_life_s", kMissions, kLeft},
 
     {"Time", "duration_s", limits::kDuration_s, kRefused},
     {"Time", "broadcast_period_ticks", kMissions, kLeft},
@@ -102,6 +103,7 @@ constexpr Row kRows[] = {
     {"Kind", "noise_ceiling", kMissions, kLeft},
     {"Band", "from", kMissions, kDefaulted, 0},
     {"Band", "to", above(0, 1000), kLeft},
+    {"Motion", "speed_mps", kMissions, kRefused},
     {"Start", "x_m", kCoordinate, kRefused},
     {"Start", "y_m", kCoordinate, kRefused},
     {"Start", "z_m", kCoordinate, kRefused},

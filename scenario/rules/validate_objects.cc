@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/measure/detection.h"
+#include "core/measure/drift.h"
 #include "core/motion/walls.h"
 #include "scenario/parse/convert.h"
 #include "text/shortest.h"
@@ -54,6 +55,28 @@ void validate_end(const proto::Scenario& scenario, Checks& checks) {
   }
 }
 
+/// Drifting objects have room for a step, and not too many legs (core/measure/drift.h).
+void validate_motion(const proto::Scenario& scenario, Checks& checks) {
+  const proto::Objects& objects = scenario.world().objects();
+  if (!objects.has_motion() || !checks.sound("world.objects") || !checks.sound("domain") ||
+      !checks.sound("time"))
+    return;
+  const Mission mission = mission_of(scenario);
+  const double most_mps = max_drift_mps(mission.domain, mission.timing.dt_s);
+  if (mission.objects.motion.speed_mps > most_mps) {
+    checks.problem("world.objects.motion.speed_mps",
+                   "objects would move by more than an eighth of the domain's shorter side in a "
+                   "step",
+                   "write at most " + shortest(rounded_down(most_mps)) + ", or a shorter time.dt_s");
+  } else if (const std::int64_t legs = drift_legs(mission); legs > kMaxLegs) {
+    checks.problem("world.objects.motion",
+                   std::to_string(legs) + " legs of all objects are above the limit " +
+                       std::to_string(kMaxLegs),
+                   "write a longer persistence_s, a lower speed_mps, fewer objects or a shorter "
+                   "time.duration_s");
+  }
+}
+
 /// What false alarms need.
 void validate_sensor(const proto::Scenario& scenario, Checks& checks) {
   if (!scenario.has_sensor() || !checks.sound("sensor") || !checks.sound("domain")) return;
@@ -98,6 +121,7 @@ void validate_objects(const proto::Scenario& scenario, Checks& checks) {
   }
   validate_places(scenario, checks);
   validate_end(scenario, checks);
+  validate_motion(scenario, checks);
 }
 
 }  // namespace ergocast

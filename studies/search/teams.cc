@@ -47,7 +47,7 @@ class Team {
       : mission_(mission),
         conditions_(conditions),
         objects_(mission),
-        reports_(mission, objects_.places_m()),
+        reports_(mission),
         period_(std::max<Tick>(1, std::llround(conditions.period_s / mission.timing.dt_s))) {
     for (const Eigen::Vector3d& start_m : mission.starts_m) {
       const auto id = static_cast<AgentId>(agents_.size());
@@ -70,7 +70,9 @@ class Team {
       const ObjectSet detected = objects_.detected(id, tick_, agent.x_m);
       agent.efforts.set_now(tick_);
       agent.efforts.look(agent.author, tick_, agent.x_m);
-      agent.efforts.report(agent.author, tick_, reports_.cell(id, tick_, agent.x_m, detected));
+      agent.efforts.report(
+          agent.author, tick_,
+          reports_.cell(id, tick_, agent.x_m, detected, objects_.places_m()));
     }
     for (Agent& agent : agents_)
       if ((tick_ - agent.author.agent) % period_ == 0) send(agent);
@@ -189,7 +191,7 @@ class Judge {
       : mission_(mission),
         detection_(mission),
         objects_(mission),
-        reports_(mission, objects_.places_m()),
+        reports_(mission),
         confirmations_(mission),
         finds_(mission.objects.total()),
         seen_s_(detection_.cells().total(), 0) {
@@ -201,7 +203,8 @@ class Judge {
   void see(AgentId id, Tick tick, const Eigen::Vector3d& x_m) {
     detection_.see(tick, x_m);
     const ObjectSet detected = objects_.detected(id, tick, x_m);
-    finds_.note(confirmations_.see(id, tick, x_m, detected, reports_.cell(id, tick, x_m, detected)),
+    const std::int32_t cell = reports_.cell(id, tick, x_m, detected, objects_.places_m());
+    finds_.note(confirmations_.see(id, tick, x_m, detected, cell),
                 {.agent = id, .tick = tick});
     if (tick % 10 != 0) return;
     const double t_s = static_cast<double>(tick) * mission_.timing.dt_s;

@@ -112,7 +112,7 @@ law { u_max_mps: 5 }
 time { duration_s: 60 }
 agents { starts { x_m: 10 y_m: 20 } }
 world {
-  speed_limit_mps: 100 wall_clearance_m: 1 objects { count: 3 end_when_found: 2 }
+  speed_limit_mps: 100 wall_clearance_m: 1 objects { count: 3 end_when_found: 2 motion { speed_mps: 1 persistence_s: 60 } }
   walls { vertices { x_m: 80 y_m: 10 } vertices { x_m: 90 y_m: 10 } vertices { x_m: 90 y_m: 20 } }
   walls { file: "room.yaml" unknown_free: true }
   walls { file: "dot.svg" solid_white: true }

@@ -126,6 +126,8 @@ const char* const kStations =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 20 } "
     "kind { name: \"b\" count: 2 } }";
 
+const char* const kDrifting =
+    "world { objects { count: 5 motion { speed_mps: 5 } } }\nsensor { radius_m: 20 }";
 const char* const kObjects = "world { objects { count: 5 } }\nsensor { radius_m: 20 }";
 
 const char* const kSearch = "law { kind: SEARCH }\nsensor { radius_m: 5 }";
@@ -172,6 +174,7 @@ const Plant kPlants[] = {
     {Invariant::kDistanceKept, "a neighbour's loiter circle is a point", "", kMixedCrowd},
     {Invariant::kDistanceKept, "a neighbour is taken for another vehicle", "", kMixedCrowd},
     {Invariant::kDetectionsInReach, "sensors detect from everywhere", "", kObjects},
+    {Invariant::kDetectionsInReach, "sensors detect objects where they were", "", kDrifting},
     {Invariant::kLooksAreTrue, "a tile is added to the one before", "", kSearch},
     {Invariant::kLooksAreTrue, "an old tile replaces a newer one", kLateBlocks, kSearch},
     {Invariant::kLooksAreTrue, "a relayed row is the relayer's", "", kSearch, "", "--lockstep"},

@@ -25,7 +25,7 @@ WRAPPED(void, receive_at_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7va
 WRAPPED(void, receive_at_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5AmendENS_6BeaconENS_6RecallENS_6EffortEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSK_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
 WRAPPED(bool, is_held, "_ZN8ergocast7is_heldESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, counted_ticks, "_ZN8ergocast13counted_ticksESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
-WRAPPED(ObjectSet, detected, "_ZNK8ergocast7Objects8detectedEilRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEE", const Objects*, AgentId, Tick, const Eigen::Vector3d&)
+WRAPPED(ObjectSet, detected, "_ZN8ergocast7Objects8detectedEilRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEE", Objects*, AgentId, Tick, const Eigen::Vector3d&)
 WRAPPED(void, note_finds, "_ZN8ergocast5Finds4noteEjNS_4FindE", Finds*, ObjectSet, Find)
 WRAPPED(Tick, tick_after, "_ZN8ergocast10tick_afterESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
@@ -74,7 +74,8 @@ Tick bug_tick_after(std::span<const Hold> holds, Tick count) {
 
 // ---- finds ----
 
-ObjectSet bug_detected(const Objects* self, AgentId id, Tick tick, const Eigen::Vector3d& x_m) {
+ObjectSet bug_detected(Objects* self, AgentId id, Tick tick, const Eigen::Vector3d& x_m) {
+  if (bug("sensors detect objects where they were")) tick /= 2;
   return bug("sensors detect from everywhere") ? 1 : real_detected(self, id, tick, x_m);
 }
 

@@ -250,6 +250,13 @@ std::vector<Mistake> mistakes_of_objects() {
                "world.objects: objects belong to a plane"),
       objects("count: 2 end_when_found: 3",
               "world.objects.end_when_found: 3 is above the number of objects, 2"),
+      objects("count: 2 motion { }", "world.objects.motion.speed_mps: is missing"),
+      objects("count: 2 motion { speed_mps: 63 }",
+              "world.objects.motion.speed_mps: objects would move by more than an eighth"),
+      {kTime,
+       "dt_s: 0.001 duration_s: 60 } world { objects { count: 32 motion { speed_mps: 1 "
+       "persistence_s: 0.001 } }",
+       "world.objects.motion: 1920032 legs of all objects are above the limit 262144"},
       objects(place + "end_when_found: 2", "2 is above the number of objects, 1"),
       objects("count: 2 end_when_found: 1",
               "world.objects.end_when_found: with false alarms no agent knows at once",

@@ -48,14 +48,15 @@ TEST(Reports, AreOfObjectsWithAnErrorAndOfNothingAtTheirRate) {
   Mission mission = field();
   const Vector3d object_m(105, 45, 0);
   mission.objects = {0, {object_m}};
-  const Objects objects(mission);
-  const Reports reports(mission, objects.places_m());
+  Objects objects(mission);
+  const Reports reports(mission);
   const SearchCells cells(mission);
   int false_alarms = 0, true_reports = 0, right = 0;
   constexpr Tick kTicks = 400000;
   for (Tick tick = 0; tick < kTicks; ++tick) {
     const Vector3d x_m(50, 50, 0);
-    const std::int32_t cell = reports.cell(3, tick, x_m, objects.detected(3, tick, x_m));
+    const std::int32_t cell =
+        reports.cell(3, tick, x_m, objects.detected(3, tick, x_m), objects.places_m());
     if (cell == kNoCell) continue;
     ++false_alarms;
     const int i = cell / cells.cells.count.y(), j = cell % cells.cells.count.y();
@@ -64,7 +65,7 @@ TEST(Reports, AreOfObjectsWithAnErrorAndOfNothingAtTheirRate) {
   }
   for (Tick tick = 0; tick < 20000; ++tick) {
     const ObjectSet detected = objects.detected(3, tick, {109, 45, 0});
-    const std::int32_t cell = reports.cell(3, tick, {109, 45, 0}, detected);
+    const std::int32_t cell = reports.cell(3, tick, {109, 45, 0}, detected, objects.places_m());
     if (detected == 0) continue;
     ++true_reports;
     right += cell == cell_at(mission, object_m) ? 1 : 0;
@@ -74,7 +75,7 @@ TEST(Reports, AreOfObjectsWithAnErrorAndOfNothingAtTheirRate) {
   const double in_column = std::erf(5 / 2.0 / std::numbers::sqrt2);
   EXPECT_NEAR(right / static_cast<double>(true_reports), in_column / 2, 0.06);
   mission.sensor.false_alarms_per_s = 0;
-  EXPECT_EQ(Reports(mission, objects.places_m()).cell(3, 1, object_m, 1), kNoCell);
+  EXPECT_EQ(Reports(mission).cell(3, 1, object_m, 1, {object_m}), kNoCell);
 }
 
 /// The counts after an agent has looked at the middle for so many looks, and has reported there.
@@ -365,8 +366,8 @@ TEST(Confirmations, AreOfObjectsAndRarelyWrong) {
     Mission mission = field();
     mission.seed = seed;
     mission.objects = {0, {{100, 45, 0}}};
-    const Objects objects(mission);
-    const Reports reports(mission, objects.places_m());
+    Objects objects(mission);
+    const Reports reports(mission);
     Confirmations confirmations(mission);
     Tick first = -1;
     for (Tick tick = 0; tick < 600; ++tick) {
@@ -376,7 +377,7 @@ TEST(Confirmations, AreOfObjectsAndRarelyWrong) {
         const Vector3d x_m =
             Vector3d(id == 0 ? 98 : 30, 45, 0) + 5 * Vector3d(std::cos(angle), std::sin(angle), 0);
         const ObjectSet detected = objects.detected(id, tick, x_m);
-        const std::int32_t cell = reports.cell(id, tick, x_m, detected);
+        const std::int32_t cell = reports.cell(id, tick, x_m, detected, objects.places_m());
         if (first < 0 && detected != 0) first = tick;
         const ObjectSet set = confirmations.see(id, tick, x_m, detected, cell);
         EXPECT_TRUE(set == 0 || (first >= 0 && tick > first)) << "one report is not enough";

@@ -85,7 +85,7 @@ double share_found(int agents, Tick ticks, double off_m) {
   for (std::uint64_t seed = 0; seed < kMissions; ++seed) {
     Mission mission = square(seed);
     mission.objects = {0, {{20, 60, 0}}};
-    const Objects objects(mission);
+    Objects objects(mission);
     Finds finds(1);
     for (Tick tick = 0; tick < ticks; ++tick) {
       for (AgentId id = 0; id < agents; ++id) {
@@ -110,7 +110,7 @@ TEST(Objects, AreFoundAsOftenAsTheTimeInReachSays) {
 TEST(Objects, AreDetectedByAFunctionOfThePlace) {
   Mission mission = square(3);
   mission.objects = {0, {{20, 60, 0}, {20.5, 60, 0}}};
-  const Objects one(mission), other(mission);
+  Objects one(mission), other(mission);
   int both = 0, any = 0;
   for (Tick tick = 0; tick < 4000; ++tick) {
     const ObjectSet set = one.detected(7, tick, {21, 60, 0});

@@ -249,7 +249,9 @@ INSTANTIATE_TEST_SUITE_P(
         Knowing{"FromRowsForgetting", "memory_half_life_s: 1.3", false, 7},
         Knowing{"ReckoningForgetting", "memory_half_life_s: 1.3", true, 7},
         Knowing{"Searching", "kind: SEARCH", true, 7},
-        Knowing{"SearchingForgetting", "kind: SEARCH memory_half_life_s: 1.3", true, 7}),
+        Knowing{"SearchingForgetting", "kind: SEARCH memory_half_life_s: 1.3", true, 7},
+        // Halved at the ticks at which one of them sends.
+        Knowing{"SearchingForgettingAsItSends", "kind: SEARCH memory_half_life_s: 2", true, 7}),
     [](const auto& knowing) { return std::string(knowing.param.name); });
 
 bool is_command_of(const Message& message, AgentId agent) {

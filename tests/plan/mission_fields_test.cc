@@ -61,6 +61,7 @@ TEST(MissionFields, AreAllMembers) {
   EXPECT_EQ(listed<VehicleLimits>(), members<VehicleLimits>());
   EXPECT_EQ(listed<Separation>(), members<Separation>());
   EXPECT_EQ(listed<HiddenObjects>(), members<HiddenObjects>());
+  EXPECT_EQ(listed<ObjectMotion>(), members<ObjectMotion>());
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ inline Mission rich_mission_in_space() {
 
 /// The mission with objects at known places; it must be in a plane, and without stations.
 inline Mission with_places(Mission mission) {
-  mission.objects = {0, {{20, 21, 0}, {22, 23, 0}}, 2};
+  mission.objects = {0, {{20, 21, 0}, {22, 23, 0}}, 2, {0.25, 70}};
   return mission;
 }
 

@@ -63,6 +63,33 @@ TEST_F(FindingObjects, AreFoundOnceInSpiteOfKills) {
   EXPECT_EQ(summary()["objects"], objects);
 }
 
+/// They drift: real processes find what one process finds, also after the world was replaced.
+TEST_F(FindingObjects, ThatDrift) {
+  const std::vector<std::string> set{"--set", kObjects, "--set", kRadius,
+                                     "--set", "world.objects.motion.speed_mps=6"};
+  const auto objects = simulated(set);
+  EXPECT_GT(objects["found"].get<int>(), 2);
+  std::vector<std::string> words{"--lockstep"};
+  words.insert(words.end(), set.begin(), set.end());
+  Child mission = launch_held(scenario(), words);
+  kill_next({"ergocast-sim"});
+  release();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_EQ(summary()["restarts"], 1);
+  EXPECT_EQ(summary()["objects"], objects);
+  EXPECT_EQ(text_of(out() / "trajectory.csv"), text_of(folder_ / "simulated" / "trajectory.csv"));
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  EXPECT_NE(text_of(out() / "scenario.textproto").find("speed_mps: 6"), std::string::npos);
+  const std::string drifts = "drift at 6 m/s, persistence 60 s";
+  EXPECT_NE(text_of(out() / "report.html").find(drifts), std::string::npos);
+
+  // At the same places, objects that stand still are found at other times.
+  std::vector<std::string> still = set;
+  still.resize(4);
+  std::filesystem::remove_all(folder_ / "simulated");
+  EXPECT_NE(simulated(still)["finds"], objects["finds"]);
+}
+
 /// The end is named at the same tick as in one process, and the record repeats.
 TEST_F(FindingObjects, EndTheMissionIfThatIsWanted) {
   const std::vector<std::string> set{"--set", kObjects, "--set", "world.objects.end_when_found=2",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/measure/drift.h"
 #include "tests/scenario/scenarios.h"
 
 namespace ergocast {
@@ -112,6 +113,32 @@ TEST(Defaults, AgentsWithoutDeadReckoningBroadcastEachTick) {
                 .mission()
                 .timing.broadcast_period_ticks,
             10);
+}
+
+/// The half-life of a scenario with drifting objects, in a domain of 100 m by 50 m.
+double half_life_s(const std::string& law, const std::string& motion) {
+  return good(small_with("law {", "world { objects { count: 1 " + motion +
+                                      " } } sensor { radius_m: 5 } law { " + law))
+      .mission()
+      .law.memory_half_life_s;
+}
+
+TEST(Defaults, ASearchForgetsWhereObjectsCanHaveDrifted) {
+  const std::string motion = "motion { speed_mps: 0.1 persistence_s: 20 }";
+  const double drifted_s = half_life_s("kind: SEARCH ", motion);
+  EXPECT_NEAR(std::sqrt(mean_square_m2({0.1, 20}, drifted_s)), 10, 0.05) << "two radii";
+  EXPECT_EQ(drifted_s, std::ceil(drifted_s));
+  EXPECT_EQ(half_life_s("kind: SEARCH ", ""), 0) << "nothing drifts";
+  EXPECT_EQ(half_life_s("kind: SEARCH memory_half_life_s: 0 ", motion), 0) << "as it is written";
+  EXPECT_EQ(half_life_s("kind: SEARCH memory_half_life_s: 77 ", motion), 77);
+  for (const char* kind : {"COVER", "MOW"})
+    EXPECT_EQ(half_life_s("kind: " + std::string(kind) + ' ', motion), 0) << kind;
+  const Scenario fast = good(small_with(
+      "law {", "world { objects { count: 1 motion { speed_mps: 5 } } } law { kind: SEARCH "));
+  const Mission& mission = fast.mission();
+  EXPECT_EQ(mission.law.memory_half_life_s,
+            std::ceil(mission.domain.size_m.maxCoeff() / mission.law.u_max_mps))
+      << "it takes an agent so long to come back";
 }
 
 TEST(Defaults, NameComesFromTheFileAndAlwaysNamesAFolder) {

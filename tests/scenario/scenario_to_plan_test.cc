@@ -103,6 +103,19 @@ TEST(MissionText, HasNoDefaultThatAScenarioWritesOut) {
   }
 }
 
+// With SEARCH the half-life 0 is a value of its own: objects that drift have another default.
+TEST(MissionText, HasTheHalfLifeOfASearch) {
+  for (const char* written : {"0", "40"}) {
+    const Scenario scenario = good(small_with(
+        "law {", "world { objects { count: 1 motion { speed_mps: 1 } } } law { kind: SEARCH "
+                 "memory_half_life_s: " +
+                     std::string(written) + ' '));
+    EXPECT_EQ(without_block(scenario.print(), "target"), mission_text(scenario.mission()));
+    EXPECT_NE(mission_text(scenario.mission()).find("memory_half_life_s: " + std::string(written)),
+              std::string::npos);
+  }
+}
+
 /// The names in the list of a mission's fields.
 class Names : public FieldVisitor {
  public:
@@ -114,9 +127,10 @@ class Names : public FieldVisitor {
   void flag(const Field& field, auto&) { add(field.name); }
   void choice(const Field& field, auto&, Words) { add(field.name); }
   void part(const Field& field, auto& part) {
-    part_ = std::string(field.name) + '.';
+    const std::string outer = part_;
+    part_ += std::string(field.name) + '.';
     list_fields(*this, part);
-    part_.clear();
+    part_ = outer;
   }
   void part(const Field&, const std::vector<AgentKind>&) {}
 
