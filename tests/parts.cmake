@@ -162,6 +162,13 @@ ergocast_test(NAME cot_tests LABELS unit
     cli/cot/events_test.cc
   LIBS ergocast_tak pugixml::pugixml)
 
+ergocast_test(NAME foxglove_tests LABELS unit
+  SOURCES
+    cli/foxglove/client_test.cc
+    cli/foxglove/live_topics_test.cc
+    cli/foxglove/websocket_test.cc
+  LIBS ergocast_foxglove nlohmann_json::nlohmann_json)
+
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
     cli/amend_order_test.cc

@@ -147,6 +147,14 @@ ergocast_test(NAME cot_process_tests LABELS process RUNS_PROGRAMS
   SOURCES process/cot_test.cc
   LIBS pugixml::pugixml)
 
+# The team for Foxglove.
+ergocast_test(NAME foxglove_process_tests LABELS process RUNS_PROGRAMS
+  SOURCES process/foxglove_test.cc support/http.cc support/tls.cc
+  LIBS OpenSSL::SSL
+  PROPERTIES FIXTURES_REQUIRED foxglove_client)
+target_compile_definitions(foxglove_process_tests PRIVATE
+  ERGOCAST_FOXGLOVE_CLIENT="${CMAKE_BINARY_DIR}/foxglove_client")
+
 # The page in Chromium.
 ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
   SOURCES
@@ -244,6 +252,9 @@ add_executable(cot-lines cli/cot/lines.cc)
 target_link_libraries(cot-lines PRIVATE ergocast_tak ergocast::plan nlohmann_json::nlohmann_json ergocast::warnings)
 ergocast_script_test(cot_reference process cli/cot/reference_test.sh
   $<TARGET_FILE:cot-lines> ${CMAKE_BINARY_DIR}/node_cot)
+# Fetches the client for foxglove_process_tests, whose network is their own.
+ergocast_script_test(foxglove_client process cli/foxglove/client/fetch ${CMAKE_BINARY_DIR}/foxglove_client)
+set_tests_properties(foxglove_client PROPERTIES FIXTURES_SETUP foxglove_client)
 ergocast_script_test(example_law process examples/law_test.sh ${CMAKE_BINARY_DIR})
 ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 # Installing Slurm starts services, so ./test does not install it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast watch`: serves a page of a record or of a running team. With --control, operators give
-// orders on the page. With --cot, it also sends the team to clients of TAK.
+// orders on the page. With --cot, it also sends the team to clients of TAK, with --foxglove to
+// Foxglove.
 #include <poll.h>
 
 #include <chrono>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/foxglove/foxglove_output.h"
 #include "cli/operate/controlled_page.h"
 #include "cli/operate/team_command.h"
 #include "cli/record/origin_option.h"
@@ -19,6 +21,7 @@
 #include "cli/watch/find_run.h"
 #include "cli/watch/live_watch.h"
 #include "cli/watch/serve_page.h"
+#include "report/target_density.h"
 #include "report/web_page.h"
 #include "runtime/bus/clock.h"
 #include "runtime/process/program_options.h"
@@ -48,6 +51,7 @@ struct WatchOptions : BusOptions {
   PageOptions page;
   bool control = false;
   CotOptions cot;
+  int foxglove_port = 0;  ///< 0: Foxglove is not served
 };
 
 void announce(const std::string& url) {
@@ -92,6 +96,33 @@ Result<CotOutput, int> open_cot(const CotOptions& options, const fs::path& run_d
   return *std::move(output);
 }
 
+/// The server for Foxglove; or prints an error, and returns the exit code.
+/// @param live  shows the clients in the page's log, as soon as there is one; outlives the server
+Result<std::unique_ptr<FoxgloveOutput>, int> open_foxglove(const WatchOptions& options,
+                                                           const fs::path& run_dir,
+                                                           const std::unique_ptr<LiveWatch>& live) {
+  if (options.foxglove_port == options.page.port)
+    return failure(report_error(kExitBadInput, "--foxglove and --port name the same port, " +
+                                                   std::to_string(options.foxglove_port) +
+                                                   "; the page needs its own"));
+  FoxgloveOutput::Setup setup{.port = options.foxglove_port,
+                              .page = options.page,
+                              .origin = options.cot.origin,
+                              .target = {},
+                              .note = [&live](const std::string& sentence) {
+                                print_message(sentence);
+                                if (live) live->log(sentence);
+                              }};
+  if (!run_dir.empty()) {
+    setup.target = read_target_density(run_dir / kTargetDensityFile).value_or(Field());
+    if (!setup.origin) setup.origin = recorded_origin(run_dir).value_or(std::nullopt);
+  }
+  auto output = FoxgloveOutput::open(std::move(setup));
+  if (!output) return failure(report_error(kExitUnavailable, output.error()));
+  std::printf("connect Foxglove to %s\n", (*output)->url().c_str());
+  return *std::move(output);
+}
+
 /// @param run_dir  the team's run directory; empty: not known here
 int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals& signals) {
   LiveWatch::Source source{options, run_dir, {}, {}};
@@ -100,19 +131,27 @@ int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals
     auto output = open_cot(options.cot, run_dir);
     if (!output) return output.error();
     cot = *std::move(output);
-    source.on_look = [&cot](const auto& picture, const Mission& mission) {
-      cot->show(picture, mission);
-    };
+    source.displays.push_back(&*cot);
+  }
+  std::unique_ptr<LiveWatch> live;
+  std::unique_ptr<FoxgloveOutput> foxglove;
+  if (options.foxglove_port > 0) {
+    auto output = open_foxglove(options, run_dir, live);
+    if (!output) return output.error();
+    foxglove = *std::move(output);
+    source.displays.push_back(foxglove.get());
   }
   auto opened = LiveWatch::open(std::move(source));
   if (!opened) return report_error(kExitUnavailable, opened.error());
-  LiveWatch& watch = **opened;
+  live = *std::move(opened);
+  LiveWatch& watch = *live;
   auto socket = PageSocket::open(options.page);
   if (!socket) return report_error(kExitUnavailable, socket.error());
   announce(socket->url());
   const auto server = PageServer::make(*std::move(socket), watch.content());
   serve_until_stop(*server, signals, [&] {
     watch.listen(server->fd());
+    if (foxglove) foxglove->serve(now());
     if (watch.over()) watch.finish();
   });
   if (cot && !cot->losses().empty()) print_message(cot->losses());
@@ -174,7 +213,8 @@ void add_watch(CLI::App& app, Action& action) {
   command->get_option("--control")->excludes("RUN_DIR");
   CLI::Option* const cot = add_cot_option(*command, options->cot);
   cot->excludes("RUN_DIR")->excludes("--control");
-  add_origin_option(*command, options->cot.origin)->needs(cot);
+  add_foxglove_option(*command, options->foxglove_port)->excludes("RUN_DIR")->excludes("--control");
+  add_origin_option(*command, options->cot.origin)->excludes("RUN_DIR");
   command->footer(
       "Serves the page until Ctrl-C. Sends the team nothing, unless --control is given. Exit "
       "codes:\n"
@@ -185,6 +225,9 @@ void add_watch(CLI::App& app, Action& action) {
       StopSignals signals;
       if (const auto problem = read_certificate(options->page, options->control))
         return report_error(kExitBadInput, *problem);
+      if (options->cot.origin && !options->cot.to && options->foxglove_port == 0)
+        return report_error(kExitBadInput,
+                            "--origin is for --cot and --foxglove; give one of them");
       if (command->count("RUN_DIR") > 0) return watch_record(*options, signals);
       fs::path run_dir;
       if (const auto code = find_run(*command, *options, &run_dir)) return *code;

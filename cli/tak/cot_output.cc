@@ -68,9 +68,10 @@ Result<CotOutput> CotOutput::open(const relay::HostAndPort& to, const GeoPlace& 
   return CotOutput(std::string(kScheme) + to_text(to), origin, *std::move(socket));
 }
 
-void CotOutput::show(const TeamPicture& picture, const Mission& mission) {
+void CotOutput::show(const TeamPicture& picture, const MissionFollower& team) {
   const WallTime time = std::chrono::system_clock::now();
-  for (const CotEvent& event : events_.due(picture, mission, now())) send(cot_xml(event, time));
+  for (const CotEvent& event : events_.due(picture, *team.mission(), now()))
+    send(cot_xml(event, time));
 }
 
 void CotOutput::send(const std::string& datagram) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/tak/team_events.h"
+#include "cli/team/team_display.h"
 #include "core/base/result.h"
 #include "relay/endpoint.h"
 #include "runtime/bus/socket.h"
@@ -23,7 +24,7 @@ struct CotOptions {
 CLI::Option* add_cot_option(CLI::App& app, CotOptions& options);
 
 /// Never waits for the network. What the kernel does not take is lost and counted.
-class CotOutput {
+class CotOutput final : public TeamDisplay {
  public:
   /// An error if the address has no place in this network, or the name is not known. Waits for the
   /// answer of a name server.
@@ -31,7 +32,7 @@ class CotOutput {
 
   /// Sends the events that are due; call it a few times a second. Complains once, about the first
   /// event that is lost.
-  void show(const TeamPicture& picture, const Mission& mission);
+  void show(const TeamPicture& picture, const MissionFollower& team) override;
   /// How many events were lost, for people; empty: none.
   std::string losses() const;
 

@@ -52,6 +52,7 @@ class LiveTeam {
   nlohmann::ordered_json incidents_json() const;
 
   RunId run() const { return me_.run(); }
+  const MissionFollower& follower() const { return me_.follower(); }
   /// Null until it is received.
   const Mission* mission() const { return me_.knows_mission() ? &me_.mission() : nullptr; }
   /// Whether the mission's end was reported.

@@ -18,6 +18,13 @@ class TeamHistory {
   /// is left out.
   static constexpr std::size_t kMostRows = 4000;
 
+  struct Row {
+    double t_s = 0, phi = 0, spread = 0, age_s = 0;
+    std::int64_t received = 0, lost = 0;
+  };
+  /// The team's values in a picture; NaN: not known.
+  static Row row_of(const TeamPicture& picture);
+
   /// Adds a row if φ² is known and time has advanced.
   void add(const TeamPicture& picture);
 
@@ -26,12 +33,6 @@ class TeamHistory {
   nlohmann::ordered_json json() const;
 
  private:
-  struct Row {
-    double t_s = 0, phi = 0, spread = 0, age_s = 0;
-    std::int64_t received = 0, lost = 0;
-  };
-  static Row row_of(const TeamPicture& picture);
-
   std::vector<Row> rows_;
   double newest_s_ = -1;  // of all that were offered
   std::size_t every_ = 1, offered_ = 0;

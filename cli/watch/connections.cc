@@ -2,6 +2,7 @@
 // An epoll of non-blocking sockets; each connection is in one phase, which has its own deadline.
 #include "cli/watch/connections.h"
 
+#include <netdb.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
 
@@ -47,6 +48,19 @@ std::array<unsigned char, 16> address_in(const sockaddr_storage& from) {
     std::memcpy(address.data(), &reinterpret_cast<const sockaddr_in&>(from).sin_addr, 4);
   }
   return address;
+}
+
+/// "127.0.0.1:50412" or "[::1]:50412".
+std::string peer_of(int fd) {
+  sockaddr_storage from{};
+  socklen_t length = sizeof from;
+  char host[NI_MAXHOST], port[NI_MAXSERV];
+  const bool known = getpeername(fd, reinterpret_cast<sockaddr*>(&from), &length) == 0 &&
+                     getnameinfo(reinterpret_cast<sockaddr*>(&from), length, host, sizeof host,
+                                 port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) == 0;
+  if (!known) return "unknown";
+  const std::string address = host;
+  return (address.find(':') == address.npos ? address : '[' + address + ']') + ':' + port;
 }
 
 }  // namespace
@@ -109,7 +123,11 @@ void Connections::react(Connection& one, std::uint32_t events, Instant now) {
   const int fd = one.fd();
   if ((events & EPOLLERR) != 0 || (one.deaf && (events & EPOLLHUP) != 0)) return drop(one);
   if ((events & (EPOLLIN | EPOLLHUP)) != 0 || one.bytes->owes()) {
-    one.phase == Phase::kHead ? read_head(one, now) : discard(one);
+    if (one.phase == Phase::kHead) {
+      read_head(one, now);
+    } else {
+      one.dialogue ? converse(one, now) : discard(one);
+    }
   }
   Connection* still = find(fd);
   if (still != nullptr && (events & EPOLLOUT) != 0) push(*still, now);
@@ -125,8 +143,13 @@ void Connections::read_head(Connection& one, Instant now) {
     one.head.append(bytes.data(), *count);
     const std::size_t end = one.head.find("\r\n\r\n", known < 3 ? 0 : known - 3);
     if (end != one.head.npos && end + 4 <= kLongestHead) {
+      const std::string rest = one.head.substr(end + 4);
       one.head.resize(end + 4);
-      return answer(one, handler_(one.head), now);
+      const int fd = one.fd();
+      answer(one, handler_(one.head), now);
+      Connection* still = rest.empty() ? nullptr : find(fd);
+      if (still != nullptr && still->dialogue) still->dialogue->receive(rest);
+      return;
     }
     if (one.head.size() >= kLongestHead) {
       return answer(one, refusal("431 Request Header Fields Too Large", "too long"), now);
@@ -144,12 +167,24 @@ void Connections::discard(Connection& one) {
   watch(one);
 }
 
+/// One portion in a call, so that no client delays another.
+void Connections::converse(Connection& one, Instant now) {
+  std::array<char, 16384> bytes;
+  const auto count = one.bytes->read(bytes);
+  if (!count) return drop(one);
+  if (*count > 0) one.dialogue->receive({bytes.data(), *count});
+  if (one.unsent().empty()) return take_text(one, now);
+  watch(one);
+}
+
 void Connections::answer(Connection& one, Answer answer, Instant now) {
-  enter(one, answer.stream ? Phase::kStream : Phase::kAnswer, now);
+  enter(one, answer.stream || answer.dialogue ? Phase::kStream : Phase::kAnswer, now);
   one.head.clear();
   one.out = std::move(answer.head);
   one.body = std::move(answer.body);
   one.stream = std::move(answer.stream);
+  one.dialogue = std::move(answer.dialogue);
+  if (one.dialogue) one.dialogue->begin(peer_of(one.fd()));
   one.next_text = now;
   one.next_sign = now + kSignPeriod;
   push(one, now);
@@ -188,6 +223,7 @@ void Connections::tend(Connection& one, Instant now) {
       if (stuck) drop(one);
       return;
     case Phase::kStream:
+      if (one.dialogue) return converse(one, now);
       if (stuck) return drop(one);
       if (one.unsent().empty() && now >= one.next_text) take_text(one, now);
       return;
@@ -199,20 +235,23 @@ void Connections::tend(Connection& one, Instant now) {
 /// Asks the stream only when the client has taken the previous text. A slow client gets a longer
 /// text less often.
 void Connections::take_text(Connection& one, Instant now) {
-  auto text = one.stream();
+  auto text = one.dialogue ? one.dialogue->next() : one.stream();
   one.next_text = now + kTextPeriod;
-  if (!text) {
-    one.stream = nullptr;
-    one.bytes->finish();
-    enter(one, Phase::kLeaving, now);
-    return watch(one);
-  }
-  if (text->empty() && now >= one.next_sign) *text = ":\n\n";
-  if (text->empty()) return;
+  if (!text) return end_stream(one, now);
+  if (text->empty() && now >= one.next_sign && one.stream) *text = ":\n\n";
+  if (text->empty()) return watch(one);
   one.next_sign = now + kSignPeriod;
   one.moved = now;
   one.out = std::move(*text);
   push(one, now);
+}
+
+void Connections::end_stream(Connection& one, Instant now) {
+  one.stream = nullptr;
+  one.dialogue.reset();
+  one.bytes->finish();
+  enter(one, Phase::kLeaving, now);
+  watch(one);
 }
 
 void Connections::enter(Connection& one, Phase phase, Instant now) {

@@ -55,10 +55,24 @@ class Connections {
   using Text = std::shared_ptr<const std::string>;
   /// Returns the next text of an event stream: empty if there is nothing new, nullopt at its end.
   using Stream = std::function<std::optional<std::string>()>;
+  /// Both directions of a connection after the answer's head, such as a WebSocket. It has a place
+  /// of a stream. A client that takes nothing keeps its place until a new one needs it.
+  class Dialogue {
+   public:
+    virtual ~Dialogue() = default;
+    /// Called once, and first. @param peer  the client's address and port, for people
+    virtual void begin(const std::string& peer) = 0;
+    /// What the client has sent; called often.
+    virtual void receive(std::string_view bytes) = 0;
+    /// The next bytes for a client that has taken the previous ones: empty if there is nothing new,
+    /// nullopt at the end.
+    virtual std::optional<std::string> next() = 0;
+  };
   struct Answer {
-    std::string head;  ///< up to the empty line, or with a short body
-    Text body;         ///< the rest, one copy for all clients; may be null
-    Stream stream;     ///< texts that follow `body`; null: there are none
+    std::string head;                      ///< up to the empty line, or with a short body
+    Text body;                             ///< the rest, one copy for all clients; may be null
+    Stream stream;                         ///< texts that follow `body`; null: there are none
+    std::unique_ptr<Dialogue> dialogue{};  ///< follows `head` in the place of a stream; may be null
   };
   /// Answers the head of a request, which ends with the empty line.
   using Handler = std::function<Answer(const std::string& head)>;
@@ -98,6 +112,7 @@ class Connections {
     Text body;         ///< follows `out`
     std::size_t sent = 0;
     Stream stream;
+    std::unique_ptr<Dialogue> dialogue;
     Instant next_text{}, next_sign{};
     bool deaf = false;  ///< the client has closed its side
     std::uint32_t watched = 0;
@@ -107,10 +122,12 @@ class Connections {
   void react(Connection& one, std::uint32_t events, Instant now);
   void read_head(Connection& one, Instant now);
   void discard(Connection& one);
+  void converse(Connection& one, Instant now);
   void answer(Connection& one, Answer answer, Instant now);
   void push(Connection& one, Instant now);
   void tend(Connection& one, Instant now);
   void take_text(Connection& one, Instant now);
+  void end_stream(Connection& one, Instant now);
   void enter(Connection& one, Phase phase, Instant now);
   void make_room(Phase phase);
   void let_go(Connection& one);

@@ -79,6 +79,9 @@ class Watch final : public LiveWatch {
             [this] { return record_; }, [this] { return stream(); }};
   }
   void listen(int wake_fd) override;
+  void log(const std::string& line) override {
+    if (team_) team_->log(line);
+  }
   bool over() const override { return over_; }
   void finish() override {
     if (source_.run_dir.empty() || !source_.mission) {
@@ -106,7 +109,11 @@ class Watch final : public LiveWatch {
     if (run == 0) return;
     if (!team_) adopt(run, replay);
     if (run == team_->run()) {
-      if (replay == replay_) team_->receive(message, bus, transmitter, now());
+      if (replay != replay_) return;
+      team_->receive(message, bus, transmitter, now());
+      const auto* world = std::get_if<WorldState>(&message);
+      if (world == nullptr) return;
+      for (TeamDisplay* display : source_.displays) display->show(*world, team_->follower());
     } else if (others_.size() < kMostRuns && others_.insert(run).second) {
       team_->log("run " + to_hex(run) + " is on this URL, too; --run-id " + to_hex(run) +
                  " shows it");
@@ -159,10 +166,13 @@ void Watch::listen(int wake_fd) {
 void Watch::look() {
   if (!team_) return;
   if (!source_.run_dir.empty()) {
-    for (const std::string& line : logs_.take()) team_->log(line);
+    const std::vector<std::string> lines = logs_.take();
+    for (const std::string& line : lines) team_->log(line);
+    for (TeamDisplay* display : source_.displays) display->show(lines);
   }
   const TeamPicture picture = team_->look(now());
-  if (source_.on_look && team_->mission() != nullptr) source_.on_look(picture, *team_->mission());
+  if (team_->mission() != nullptr)
+    for (TeamDisplay* display : source_.displays) display->show(picture, team_->follower());
   if (team_->over() && !over_since_) over_since_ = now();
   over_ = over_since_ && now() - *over_since_ >= kLastFrame;
 }

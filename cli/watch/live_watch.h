@@ -3,13 +3,13 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "cli/team/team_view.h"
+#include "cli/team/team_display.h"
 #include "cli/watch/page_server.h"
 #include "core/base/result.h"
 #include "core/mission/mission.h"
@@ -27,8 +27,7 @@ class LiveWatch {
     std::filesystem::path run_dir;   ///< its logs and record are shown; empty: there is none
     std::optional<Mission> mission;  ///< with its target density, if already known
     Field density = {};
-    /// Gets the team's picture a few times a second; empty: nobody does.
-    std::function<void(const TeamPicture&, const Mission&)> on_look = {};
+    std::vector<TeamDisplay*> displays = {};  ///< get the same; outlive the watch
   };
 
   /// Returns an error if LCM cannot be used.
@@ -39,6 +38,8 @@ class LiveWatch {
   virtual PageServer::Content content() = 0;
   /// Listens until messages arrive, `wake_fd` is readable, or 0.05 s have passed.
   virtual void listen(int wake_fd) = 0;
+  /// Shows a line of this process in the page's log, if a team was received.
+  virtual void log(const std::string& line) = 0;
   /// Whether the mission's end has been received.
   virtual bool over() const = 0;
   /// Makes the page show the record of `run_dir`, or the received data if there is none. A separate

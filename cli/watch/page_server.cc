@@ -24,15 +24,6 @@ constexpr std::size_t kLongest = 1024;  // of a request's target
 constexpr const char* kTokenHeader = "X-Ergocast-Token";
 constexpr const char* kRequestHeader = "X-Ergocast-Request";
 
-/// Takes equal time for every text of one length, right or wrong.
-bool same(const std::string& a, const std::string& b) {
-  unsigned difference = a.size() == b.size() ? 0 : 1;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
-  }
-  return difference == 0;
-}
-
 /// Always returns false, so that a check can return its result.
 bool refuse(Response& response, int status, const std::string& why) {
   response.status = status;
@@ -152,14 +143,14 @@ class Server final : public PageServer {
   /// because a cookie is sent to every port of a host.
   bool may_order(const Request& request, Response& response) const {
     if (!request.has_header("Origin")) return refuse(response, 403, "not for other sites");
-    if (same(request.get_header_value(kTokenHeader), content_.control_token)) return true;
+    if (same_secret(request.get_header_value(kTokenHeader), content_.control_token)) return true;
     return refuse(response, 403, "open the address that was printed, with all that follows #");
   }
 
   bool knows_token(const Request& request, Response& response) const {
     const std::string name = "ergocast-" + std::to_string(socket_.port());
     const std::string& token = socket_.token();
-    if (request.path == "/" && same(request.get_param_value("token"), token)) {
+    if (request.path == "/" && same_secret(request.get_param_value("token"), token)) {
       response.set_header("Set-Cookie", name + '=' + token + "; HttpOnly; SameSite=Strict; Path=/" +
                                             (socket_.encrypted() ? "; Secure" : ""));
       response.set_redirect("/", 303);  // removes the token from the address bar
@@ -170,7 +161,7 @@ class Server final : public PageServer {
     const auto at = cookies.find(begin);
     if (at != cookies.npos) {
       const auto value = at + begin.size();
-      if (same(cookies.substr(value, cookies.find(';', value) - value), token)) return true;
+      if (same_secret(cookies.substr(value, cookies.find(';', value) - value), token)) return true;
     }
     return refuse(response, 403, "open the address that was printed, with its token");
   }

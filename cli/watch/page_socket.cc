@@ -6,6 +6,7 @@
 #include <netdb.h>
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <iterator>
@@ -82,6 +83,14 @@ std::string random_token() {
   return text;
 }
 
+bool same_secret(const std::string& a, const std::string& b) {
+  unsigned difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  }
+  return difference == 0;
+}
+
 PageSocket::PageSocket(Socket socket, const PageOptions& options, std::string token)
     : socket_(std::move(socket)),
       address_(address_in(options)),
@@ -98,7 +107,7 @@ Result<PageSocket> PageSocket::open(const PageOptions& options) {
   }
   if (options.port > 0 && opened.error() != EADDRNOTAVAIL) {
     return failure("port " + std::to_string(options.port) + " of " + address +
-                   " is not free; choose another with --port");
+                   " is not free; choose another with " + options.port_option);
   }
   return failure("cannot listen on " + address + ": is it an address of this host?");
 }

@@ -17,10 +17,13 @@ struct PageOptions {
   int port = 0;        ///< 0: kUsualPort, or any
   TlsFiles tls_files = {};
   std::shared_ptr<const TlsServer> tls = {};  ///< of these files; null: not encrypted
+  const char* port_option = "--port";         ///< what a person changes if the port is taken
 };
 
 /// 128 random bits in hexadecimal digits. Throws std::runtime_error if the system has none.
 std::string random_token();
+/// Takes equal time for every text of one length, right or wrong.
+bool same_secret(const std::string& a, const std::string& b);
 
 class PageSocket {
  public:

@@ -24,7 +24,9 @@ std::string zone_text(const Zone& zone, double dt_s) {
   return closed + " on, free from " + at(zone.from) + " until " + at(zone.until);
 }
 
-std::string text_of(const ReceivedAmendment& one, const Mission& mission) {
+}  // namespace
+
+std::string change_text(const ReceivedAmendment& one, const Mission& mission) {
   const double dt_s = mission.timing.dt_s;
   switch (one.amendment.kind) {
     case AmendmentKind::kPause:
@@ -46,14 +48,12 @@ std::string text_of(const ReceivedAmendment& one, const Mission& mission) {
   return to_string(one.amendment.kind);
 }
 
-}  // namespace
-
 std::vector<ExportedChange> changes_of(const ExportRecord& record) {
   std::vector<ExportedChange> changes;
   for (const ReceivedAmendment& one : record.run.amendments.all()) {
     if (one.is_void) continue;
     const double t_s = static_cast<double>(one.amendment.from) * record.mission.timing.dt_s;
-    changes.push_back({one.amendment, t_s, text_of(one, record.mission)});
+    changes.push_back({one.amendment, t_s, change_text(one, record.mission)});
   }
   return changes;
 }

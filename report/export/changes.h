@@ -16,6 +16,9 @@ struct ExportedChange {
   std::string text;  ///< "law u_max_mps 8"
 };
 
+/// What an amendment changes, such as "the mission is paused".
+std::string change_text(const ReceivedAmendment& one, const Mission& mission);
+
 /// All amendments of the record that are not void, ascending by number.
 std::vector<ExportedChange> changes_of(const ExportRecord& record);
 

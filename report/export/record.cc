@@ -42,16 +42,10 @@ std::optional<std::int64_t> time_in(std::string_view text) {
   return seconds * kSecond_ns + milliseconds * (kSecond_ns / 1000);
 }
 
-/// "time level process: text"; other lines continue the previous one.
+/// Other lines than those of a log continue the previous one.
 void add_line(std::string_view line, std::vector<ExportedLine>& log) {
-  const auto time = time_in(line);
-  const std::size_t level = line.find(' ');
-  const std::size_t name = level == line.npos ? line.npos : line.find(' ', level + 1);
-  const std::size_t text = name == line.npos ? line.npos : line.find(": ", name);
-  if (time && *time >= 0 && text != line.npos) {
-    log.push_back(
-        {static_cast<std::uint64_t>(*time), std::string(line.substr(level + 1, name - level - 1)),
-         std::string(line.substr(name + 1, text - name - 1)), std::string(line.substr(text + 2))});
+  if (auto parsed = parse_log_line(line)) {
+    log.push_back(*std::move(parsed));
   } else if (!log.empty()) {
     log.back().text += '\n' + std::string(line);
   }
@@ -91,6 +85,17 @@ std::uint64_t start_of(const nlohmann::ordered_json& summary) {
 }
 
 }  // namespace
+
+std::optional<ExportedLine> parse_log_line(std::string_view line) {
+  const auto time = time_in(line);
+  const std::size_t level = line.find(' ');
+  const std::size_t name = level == line.npos ? line.npos : line.find(' ', level + 1);
+  const std::size_t text = name == line.npos ? line.npos : line.find(": ", name);
+  if (!time || *time < 0 || text == line.npos) return std::nullopt;
+  return ExportedLine{
+      static_cast<std::uint64_t>(*time), std::string(line.substr(level + 1, name - level - 1)),
+      std::string(line.substr(name + 1, text - name - 1)), std::string(line.substr(text + 2))};
+}
 
 Result<ExportRecord> read_export_record(const fs::path& run_dir, const Mission& mission,
                                         const std::optional<GeoPlace>& origin) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
@@ -22,6 +23,10 @@ struct ExportedLine {
   std::uint64_t time_ns = 0;
   std::string level, process, text;
 };
+
+/// A line "TIME LEVEL PROCESS: TEXT". Its time is local, as if it were UTC. Nothing for other
+/// lines.
+std::optional<ExportedLine> parse_log_line(std::string_view line);
 
 /// One value per cell, in multiples of the uniform density. Row i is along x, column j along y,
 /// both ascending from the domain's origin.

@@ -73,6 +73,25 @@ constexpr auto kPatience = std::chrono::seconds(60);
 constexpr const char* kHalf = "GET / HTTP/1.1\r\nX";
 constexpr const char* kPage = "GET / HTTP/1.1\r\n\r\n";
 constexpr const char* kEvents = "GET /events HTTP/1.1\r\n\r\n";
+constexpr const char* kTalk = "GET /talk HTTP/1.1\r\n\r\n";
+
+/// Repeats what the client sends, and has more of its own. It ends after a dot.
+class Echo final : public Connections::Dialogue {
+ public:
+  Echo(std::string more, int& open) : more_(std::move(more)), open_(open) { ++open_; }
+  ~Echo() override { --open_; }
+  void begin(const std::string& peer) override { out_ = peer.substr(0, peer.find(':')) + '\n'; }
+  void receive(std::string_view bytes) override { out_ += bytes; }
+  std::optional<std::string> next() override {
+    if (std::exchange(over_, out_.ends_with('.'))) return std::nullopt;
+    return std::exchange(out_, more_);
+  }
+
+ private:
+  std::string more_, out_;
+  int& open_;
+  bool over_ = false;
+};
 
 class PageConnections : public ::testing::Test {
  protected:
@@ -89,6 +108,9 @@ class PageConnections : public ::testing::Test {
       if (head.starts_with("GET /events")) {
         answer.body = nullptr;
         answer.stream = [this] { return stream_; };
+      } else if (head.starts_with("GET /talk")) {
+        answer.body = nullptr;
+        answer.dialogue = std::make_unique<Echo>(more_, dialogues_);
       }
       return answer;
     });
@@ -127,12 +149,57 @@ class PageConnections : public ::testing::Test {
 
   Connections::Text page_ = std::make_shared<const std::string>("the page");
   std::optional<std::string> stream_ = "news\n";
+  std::string more_;  // of each dialogue
+  int dialogues_ = 0;
   Instant now_{1h};
   std::uint16_t port_ = 0;
   Socket listener_;
   std::deque<Client> clients_;
   std::optional<Connections> connections_;
 };
+
+TEST_F(PageConnections, ADialogueGoesBothWaysUntilItEnds) {
+  Client& user = client(std::string(kTalk) + "at once ");  // also what follows the request
+  ASSERT_TRUE(gets(user, "127.0.0.1\nat once "));
+  user.send("later");
+  ASSERT_TRUE(gets(user, "later"));
+  user.send(" end.");
+  ASSERT_TRUE(ends(user));
+  EXPECT_TRUE(user.got(" end."));
+  EXPECT_FALSE(user.was_reset());
+  EXPECT_EQ(dialogues_, 0);
+}
+
+// The next bytes wait until it has taken the previous ones, and no time limit ends it.
+TEST_F(PageConnections, ADialogueWithAClientThatTakesNothingDelaysNobody) {
+  more_ = std::string(kLong, 'x');
+  Client& stuck = client(kTalk);
+  ASSERT_TRUE(gets(stuck, "\n"));
+  more_.clear();
+  for (int i = 0; i < 100; ++i) {
+    now_ += 1min;
+    connections_->serve(now_);
+  }
+  EXPECT_EQ(dialogues_, 1);
+  Client& user = client(std::string(kTalk) + "hello");
+  EXPECT_TRUE(gets(user, "hello"));
+  // A stuck one is the first to leave its place.
+  std::deque<Client*> others;
+  for (int i = 1; i < Connections::kMostStreams; ++i) {
+    others.push_back(&client(std::string(kTalk) + "hello"));
+    ASSERT_TRUE(gets(*others.back(), "hello"));
+  }
+  EXPECT_TRUE(ends(stuck));
+  EXPECT_FALSE(user.ended());
+  EXPECT_EQ(dialogues_, Connections::kMostStreams);
+}
+
+TEST_F(PageConnections, ADialogueEndsWithItsClient) {
+  client(kTalk);
+  ASSERT_TRUE(gets(clients_.back(), "\n"));
+  clients_.clear();
+  EXPECT_TRUE(comes([&] { return dialogues_ == 0; }));
+}
 
 TEST_F(PageConnections, AWholeRequestIsAnsweredAndTheConnectionEnds) {
   Client& user = client();

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Serves a running team to Foxglove and other clients of its WebSocket protocol.
+//
+// Any page in a browser may open a WebSocket to this host. So without a token only Foxglove's own
+// pages, pages of this host, and programs that are no browser get an answer. Other hosts need the
+// token in the address, as for the page (cli/watch/page_server.h).
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/foxglove/live_channels.h"
+#include "cli/foxglove/live_topics.h"
+#include "cli/team/team_display.h"
+#include "cli/watch/connections.h"
+#include "cli/watch/page_socket.h"
+#include "core/base/result.h"
+
+namespace ergocast::cli {
+
+/// --foxglove; `port` stays 0 without it.
+CLI::Option* add_foxglove_option(CLI::App& app, int& port);
+
+/// Serves only in serve(), and never waits for a client.
+class FoxgloveOutput final : public TeamDisplay {
+ public:
+  struct Setup {
+    int port = 0;
+    PageOptions page;                ///< the page's address and certificate, also for this server
+    std::optional<GeoPlace> origin;  ///< nothing: there are no locations
+    DensityCells target;             ///< the plan's; empty: not known here
+    /// Gets a sentence when a client comes, is too slow, or leaves.
+    std::function<void(const std::string&)> note;
+  };
+
+  /// An error if the port cannot be used.
+  static Result<std::unique_ptr<FoxgloveOutput>> open(Setup setup);
+
+  /// The address that a person gives Foxglove, with the token if there is one.
+  std::string url() const;
+  /// Call it at least ten times a second.
+  void serve(Instant now);
+
+  void show(const WorldState& world, const MissionFollower& team) override;
+  void show(const std::vector<std::string>& lines) override;
+  void show(const TeamPicture& picture, const MissionFollower& team) override;
+
+ private:
+  FoxgloveOutput(Setup setup, PageSocket socket);
+  Connections::Answer answer(const std::string& head);
+  void note(const std::string& sentence);
+
+  Setup setup_;
+  PageSocket socket_;
+  std::string session_;
+  LiveChannels channels_;
+  LiveTopics topics_;
+  Instant next_places_{}, second_{};
+  int notes_ = 0;  // since `second_`
+  Connections connections_;
+};
+
+}  // namespace ergocast::cli
