@@ -66,6 +66,8 @@ void FoxgloveClient::begin(const std::string& peer) {
 
 void FoxgloveClient::receive(std::string_view bytes) {
   if (over_) return;
+  notice_losses();
+  if (bytes.empty()) return;
   reader_.add(bytes);
   while (const auto message = reader_.next()) {
     handle(*message);
@@ -163,6 +165,7 @@ std::optional<std::string> FoxgloveClient::next() {
   std::string out = std::exchange(replies_, {});
   waiting_ = 0;
   if (over_) return out;
+  notice_losses();
   out += std::exchange(pong_, {});
   advertise(out);
   add_messages(out);
@@ -218,10 +221,18 @@ bool FoxgloveClient::add_message(ByChannel::value_type& one, std::string& out) {
   return true;
 }
 
+/// Also while the client takes nothing.
+void FoxgloveClient::notice_losses() {
+  if (is_slow_) return;
+  is_slow_ = std::ranges::any_of(subscriptions_, [this](const auto& one) {
+    return one.second.next < channels_.get(one.first).first();
+  });
+  if (is_slow_) note_(name_ + " is too slow, and loses messages; nothing waits for it");
+}
+
 /// The first time, and whenever the losses have doubled.
 void FoxgloveClient::report_losses() {
   if (lost_ == 0 || lost_ < 2 * reported_) return;
-  if (reported_ == 0) note_(name_ + " is too slow, and loses messages; nothing waits for it");
   reported_ = lost_;
   status(Level::kWarning, std::to_string(lost_) +
                               " messages were left out: the connection or the client is too slow");

@@ -59,6 +59,7 @@ class FoxgloveClient final : public Connections::Dialogue {
   void advertise(std::string& out);
   void add_messages(std::string& out);
   bool add_message(ByChannel::value_type& one, std::string& out);
+  void notice_losses();
   void report_losses();
   void end(std::string last_frame);
 
@@ -78,6 +79,7 @@ class FoxgloveClient final : public Connections::Dialogue {
   std::uint64_t seen_ = 0;         // LiveChannels::published(), when all was sent
   bool has_new_channels_ = false;  // subscriptions since then
   std::uint64_t lost_ = 0, reported_ = 0;
+  bool is_slow_ = false;  // it has lost messages, and people know
 };
 
 }  // namespace ergocast::cli

@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 constexpr int kPlacesPerSecond = 20;
 /// The kernel keeps about this much for a client that reads nothing, so that what a slow client
 /// gets is not old.
-constexpr int kKernelBuffer = 256 << 10;
+constexpr int kKernelBuffer = 64 << 10;
 /// Sentences about clients in a second; a program that connects again and again must not fill the
 /// log.
 constexpr int kMostNotes = 4;

@@ -172,7 +172,7 @@ void Connections::converse(Connection& one, Instant now) {
   std::array<char, 16384> bytes;
   const auto count = one.bytes->read(bytes);
   if (!count) return drop(one);
-  if (*count > 0) one.dialogue->receive({bytes.data(), *count});
+  one.dialogue->receive({bytes.data(), *count});
   if (one.unsent().empty()) return take_text(one, now);
   watch(one);
 }

@@ -62,7 +62,7 @@ class Connections {
     virtual ~Dialogue() = default;
     /// Called once, and first. @param peer  the client's address and port, for people
     virtual void begin(const std::string& peer) = 0;
-    /// What the client has sent; called often.
+    /// What the client has sent since the last call; often nothing.
     virtual void receive(std::string_view bytes) = 0;
     /// The next bytes for a client that has taken the previous ones: empty if there is nothing new,
     /// nullopt at the end.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "runtime/bus/socket.h"
 #include "tests/cli/foxglove/client_frames.h"
 #include "tests/process/support/mission.h"
 #include "tests/support/http.h"
@@ -121,7 +122,8 @@ class ShownInFoxglove : public RunningMission {
   /// Foxglove's client reads all topics; their last values, by topic.
   std::map<std::string, json> read(const std::string& url = kAddress, int messages = 5,
                                    const std::string& protocol = "foxglove.websocket.v1") {
-    Child reader = begin({"node", ERGOCAST_SOURCE_DIR "/tests/cli/foxglove/client/read_team.cjs",
+    Child reader = begin({"/usr/bin/env", "node",
+                          ERGOCAST_SOURCE_DIR "/tests/cli/foxglove/client/read_team.cjs",
                           ERGOCAST_FOXGLOVE_CLIENT, url, std::to_string(messages), protocol});
     const auto log = log_;
     EXPECT_EQ(wait_for(reader), 0) << text_of(log) << shown();
@@ -155,7 +157,7 @@ TEST_F(ShownInFoxglove, HasTheTopicsAndSchemasOfAnExport) {
   ASSERT_EQ(ergocast({"pause"}), 0) << output();
   ASSERT_EQ(ergocast({"resume"}), 0) << output();
   auto topics = read();
-  EXPECT_EQ(topics.size(), 5U + 2 * 8);
+  ASSERT_EQ(topics.size(), 5U + 2 * 8);
   for (const auto& [name, topic] : topics) {
     const json& value = topic["value"];
     if (name.ends_with("/pose")) {
@@ -210,7 +212,7 @@ TEST_F(ShownInFoxglove, LosesMessagesOfASlowClientAndNothingElse) {
   ASSERT_TRUE(shows("is too slow, and loses messages")) << shown();
   const double before_mib = peak_mib(server.pid());
   const auto bytes = recorded_bytes();
-  EXPECT_EQ(read().size(), 5U + 2 * 8 - 1);  // without /amendments
+  ASSERT_EQ(read().size(), 5U + 2 * 8 - 1);  // without /amendments
   EXPECT_TRUE(moves_on(60000)) << printed();
   EXPECT_GT(recorded_bytes(), bytes);
   EXPECT_LT(peak_mib(server.pid()) - before_mib, 32);

@@ -133,6 +133,19 @@ TEST_F(FoxgloveClients, ThatAreSlowLoseTheOldestAndLearnOfIt) {
   EXPECT_EQ(notes_.size(), 2U);  // people read it once
 }
 
+TEST_F(FoxgloveClients, ThatTakeNothingAreNamedOnce) {
+  subscribe(8, target_);
+  ASSERT_TRUE(take());
+  for (std::size_t i = 0; i < LiveChannels::kMostStates; ++i) channels_.publish(target_, 5, "{}");
+  client_->receive("");
+  EXPECT_EQ(notes_.size(), 1U);
+  for (int i = 0; i < 9; ++i) {
+    channels_.publish(target_, 5, "{}");
+    client_->receive("");
+  }
+  EXPECT_EQ(notes_.size(), 2U);
+}
+
 TEST_F(FoxgloveClients, GetPortionsInWhichNoChannelWaitsForLong) {
   constexpr std::size_t kLarge = 100'000;
   subscribe(8, target_);

@@ -82,7 +82,6 @@ client.on('message', ({ subscriptionId, timestamp, data }) => {
   topic.count += 1;
   topic.value = value;
   if (!isComplete()) return;
-  for (const [name, one] of topics) console.log(JSON.stringify({ topic: name, ...one }));
-  client.close();
-  process.exit(0);
+  const lines = [...topics].map(([name, one]) => JSON.stringify({ topic: name, ...one }) + '\n');
+  process.stdout.write(lines.join(''), () => process.exit(0));
 });
