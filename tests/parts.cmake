@@ -279,6 +279,15 @@ ergocast_test(NAME mavlink_tests LABELS unit
     bridges/mavlink/take_command_test.cc
     bridges/mavlink/vehicle_test.cc
   LIBS ergocast_mavlink ergocast::geo)
+if(TARGET ergocast_ros2)
+  ergocast_test(NAME ros2_tests LABELS unit
+    SOURCES
+      bridges/ros2/bridge_file_test.cc
+      bridges/ros2/positions_test.cc
+      bridges/ros2/robot_test.cc
+      bridges/ros2/steering_test.cc
+    LIBS ergocast_ros2)
+endif()
 
 ergocast_test(NAME doctor_tests LABELS unit
   SOURCES

@@ -248,6 +248,7 @@ ergocast_test(NAME mavlink_flight_tests LABELS process RUNS_PROGRAMS
   SOURCES bridges/mavlink/flight_test.cc
   PROPERTIES FIXTURES_REQUIRED node_mavlink)
 target_compile_definitions(mavlink_flight_tests PRIVATE ERGOCAST_NODE_MAVLINK="${CMAKE_BINARY_DIR}/node_mavlink")
+include(bridges/ros2/tests.cmake)
 add_executable(cot-lines cli/cot/lines.cc)
 target_link_libraries(cot-lines PRIVATE ergocast_tak ergocast::plan nlohmann_json::nlohmann_json ergocast::warnings)
 ergocast_script_test(cot_reference process cli/cot/reference_test.sh

@@ -18,6 +18,7 @@
 #include <limits>
 #include <thread>
 
+#include "tests/bridges/order_socket.h"
 #include "tests/process/support/mission.h"
 #include "tests/process/support/record.h"
 
@@ -36,41 +37,9 @@ sockaddr_in loopback(int port) {
 bool stands(const json& state) { return state["setpoint"][0] == 0 && state["setpoint"][1] == 0; }
 
 /// The pilot of one mock: sends orders, and reads the vehicle's state.
-class Pilot {
+class Pilot : public OrderSocket {
  public:
-  explicit Pilot(int port) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
-    const sockaddr_in to = loopback(port);
-    connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to);
-  }
-  Pilot(const Pilot&) = delete;
-  Pilot& operator=(const Pilot&) = delete;
-  ~Pilot() { close(socket_); }
-
-  /// The vehicle's state after the order. An order or an answer may be lost, or late.
-  json orders(const std::string& order) const {
-    const std::string text = "pilot " + order + " #" + std::to_string(++orders_);
-    json state;
-    EXPECT_TRUE(eventually([&] {
-      send(socket_, text.data(), text.size(), 0);
-      for (pollfd ready{socket_, POLLIN, 0}; poll(&ready, 1, 2000) > 0;) {
-        std::array<char, 4096> in;
-        const auto size = recv(socket_, in.data(), in.size(), 0);
-        if (size <= 0) return false;  // the mock does not listen yet
-        state = json::parse(in.data(), in.data() + size);
-        if (state["order"] == text) return true;
-      }
-      return false;
-    })) << order;
-    return state;
-  }
-  json state() const { return orders("state"); }
-  bool sees(const std::function<bool(const json&)>& condition) const {
-    return eventually([&] { return condition(state()); });
-  }
-
- private:
-  int socket_;
-  mutable int orders_ = 0;
+  explicit Pilot(int port) : OrderSocket(port, "pilot ") {}
 };
 
 class MavlinkVehicles : public ByHand {
