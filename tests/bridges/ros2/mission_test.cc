@@ -31,7 +31,7 @@ constexpr const char* kRobotOne = R"(
 
 class RosRobots : public ByHand {
  protected:
-  static constexpr double kDistance_m = 1;
+  static constexpr double kDistance_m = 2;
 
   /// Two robots over a floor of 20 m × 20 m.
   std::filesystem::path floor(const std::string& duration_s, int robots) const {
@@ -40,12 +40,12 @@ class RosRobots : public ByHand {
                            "target { gaussians { mean_x_m: 10 mean_y_m: 10 sigma_m: 4 } }\n"
                            "basis { modes_x: 8 modes_y: 8 }\n"
                            "law { u_max_mps: 1 anticipation: 0 }\n"
-                           "time { dt_s: 0.1 pace: REALTIME command_hold_s: 0.5 "
+                           "time { dt_s: 0.1 pace: REALTIME command_hold_s: 0.4 "
                            "admission_timeout_s: 600 duration_s: "
                         << duration_s << " }\nagents { starts { x_m: 5 y_m: 5 } "
                         << (robots > 1 ? "starts { x_m: 15 y_m: 5 }" : "")
                         << " }\nworld { speed_limit_mps: 1 }\n"
-                           "separation { distance_m: 1 lease_s: 3 response_s: 0.5 "
+                           "separation { distance_m: 2 lease_s: 3 response_s: 0.5 "
                            "position_error_m: 0.1 }\n";
     return file;
   }
