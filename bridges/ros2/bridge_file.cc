@@ -182,8 +182,8 @@ BridgedRobot robot_of(const proto::Robot& robot, const Block& block, const Frame
   BridgedRobot bridged;
   if (!robot.has_id()) block.refuse("id", "is missing; the number of the robot's agent");
   if (robot.id() < 0 || robot.id() >= kMaxAgents)
-    block.refuse("id", std::to_string(robot.id()) + " is not from 0 to " +
-                           std::to_string(kMaxAgents - 1));
+    block.refuse(
+        "id", std::to_string(robot.id()) + " is not from 0 to " + std::to_string(kMaxAgents - 1));
   bridged.id = robot.id();
   bridged.limits = limits_of(robot, block);
   bridged.topics = topics_of(robot, block);

@@ -20,10 +20,10 @@ inline constexpr std::size_t kMostFileBytes = std::size_t{1} << 18;
 
 struct RobotTopics {
   std::string cmd_vel;
-  std::string position;         ///< odom or pose
-  bool has_odometry = true;     ///< nav_msgs/Odometry; else geometry_msgs/PoseStamped
-  bool stamped_command = false; ///< geometry_msgs/TwistStamped
-  bool reliable = false;        ///< what the bridge requests of the position's publisher
+  std::string position;          ///< odom or pose
+  bool has_odometry = true;      ///< nav_msgs/Odometry; else geometry_msgs/PoseStamped
+  bool stamped_command = false;  ///< geometry_msgs/TwistStamped
+  bool reliable = false;         ///< what the bridge requests of the position's publisher
 };
 
 struct BridgedRobot {

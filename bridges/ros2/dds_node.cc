@@ -86,8 +86,8 @@ Offer offer_of(const Quality& quality) {
 std::string mismatch(const Offer& publisher, const Offer& subscriber, const std::string& offers,
                      const std::string& requests) {
   const auto differ = [&](const char* policy, const std::string& one, const std::string& other) {
-    return std::string(policy) + ": " + offers + " offers " + one + ", " + requests +
-           " requests " + other;
+    return std::string(policy) + ": " + offers + " offers " + one + ", " + requests + " requests " +
+           other;
   };
   constexpr std::array kReliabilities{"BEST_EFFORT", "RELIABLE"};
   constexpr std::array kDurabilities{"VOLATILE", "TRANSIENT_LOCAL", "TRANSIENT", "PERSISTENT"};
@@ -139,10 +139,10 @@ Result<std::unique_ptr<DdsNode>> DdsNode::open(int domain_id) {
   });
   dds_set_listener(node->participant_, listener);
   dds_delete_listener(listener);
-  node->publications_ = dds_create_reader(node->participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION,
-                                          nullptr, nullptr);
-  node->subscriptions_ = dds_create_reader(node->participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION,
-                                           nullptr, nullptr);
+  node->publications_ =
+      dds_create_reader(node->participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr);
+  node->subscriptions_ =
+      dds_create_reader(node->participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr);
   if (node->publications_ < 0 || node->subscriptions_ < 0)
     return failure(problem_of("DDS", std::min(node->publications_, node->subscriptions_)));
   return node;
@@ -173,8 +173,7 @@ bool DdsNode::take_changes(dds_entity_t reader, bool publishers) {
                  }) > 0;
       if (!infos[i].valid_data || infos[i].instance_state != DDS_IST_ALIVE) continue;
       const auto& found = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
-      const bool own =
-          std::memcmp(&found.participant_key, &guid_, sizeof guid_) == 0;
+      const bool own = std::memcmp(&found.participant_key, &guid_, sizeof guid_) == 0;
       if (own || !followed_.contains(found.topic_name) || known_.size() >= kMostKnown) continue;
       auto known = std::make_unique<Known>();
       known->handle = infos[i].instance_handle;

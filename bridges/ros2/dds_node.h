@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A participant of DDS with topics as ROS 2 names them, on CycloneDDS.
 //
-// Topic robot1/odom is "rt/robot1/odom", its type "nav_msgs::msg::dds_::Odometry_", and messages are
-// plain CDR (XCDR1). User data have the type's hash, which ROS 2 from Iron on expects. Threads of
-// CycloneDDS only make a descriptor readable; all else happens in the caller's thread.
+// Topic robot1/odom is "rt/robot1/odom", its type "nav_msgs::msg::dds_::Odometry_", and messages
+// are plain CDR (XCDR1). User data have the type's hash, which ROS 2 from Iron on expects. Threads
+// of CycloneDDS only make a descriptor readable; all else happens in the caller's thread.
 #pragma once
 
 #include <dds/dds.h>

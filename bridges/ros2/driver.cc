@@ -89,8 +89,9 @@ std::optional<std::string> Driver::why_not(AgentId id, const Robot& robot) const
   const Mission& mission = me_.mission();
   const std::string name = "robot " + std::to_string(id);
   if (!motion_of(mission, id).is_point())
-    return name + " follows velocities of points: give the mission vehicle { kind: POINT }, and "
-                  "separation { response_s } for how late robots follow";
+    return name +
+           " follows velocities of points: give the mission vehicle { kind: POINT }, and "
+           "separation { response_s } for how late robots follow";
   if (!mission.domain.planar() && robot.limits().kind == DriveKind::kDifferential)
     return name + " cannot climb, and the mission is in a box: leave out size_z_m";
   return std::nullopt;

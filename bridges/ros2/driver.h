@@ -52,8 +52,8 @@ class Driver {
   };
   struct Slot {
     Robot robot;
-    Author author{};                ///< the agent that may command it; incarnation 0: none
-    std::deque<Answered> answers{}; ///< the newest command last
+    Author author{};                 ///< the agent that may command it; incarnation 0: none
+    std::deque<Answered> answers{};  ///< the newest command last
     Eigen::Vector3d commanded_mps{0, 0, 0};
 
     Tick answered() const { return answers.empty() ? -1 : answers.back().tick; }

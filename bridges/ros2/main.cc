@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bridges/ros2/dds_node.h"
+#include "bridges/ros2/display_topics.h"
 #include "bridges/ros2/driver.h"
 #include "bridges/ros2/options.h"
 #include "bridges/ros2/robot_topics.h"
@@ -27,6 +28,9 @@ namespace ergocast::ros2 {
 namespace {
 
 using namespace std::chrono_literals;
+
+/// The greatest time between two looks at what the display receives.
+constexpr std::chrono::nanoseconds kShowTurn = 100ms;
 
 Moment present() {
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
@@ -126,7 +130,45 @@ class Drive {
   Outbox out_;
 };
 
-int drive(const Options& options, DdsNode& node, StopSignals& signals) {
+/// The team's displays.
+class Show {
+ public:
+  explicit Show(const Options& options)
+      : display_(options.node.run, now(), options.node.authenticator.keyed()) {}
+
+  /// The exit code if it cannot begin.
+  std::optional<int> open(const Options& options, DdsNode& node) {
+    auto made = DisplayConnection::make(node, *options.bridge.display);
+    if (!made) return spdlog::error("{}", made.error()), kExitUnavailable;
+    connection_ = *std::move(made);
+    transport_ = connect(display_, options.node);
+    if (!transport_) return kExitUnavailable;
+    return std::nullopt;
+  }
+
+  /// Reads the buses, waiting at most until `deadline` or for `wake_fd`.
+  void act(Instant deadline, int wake_fd) {
+    transport_->deliver_until(deadline, wake_fd);
+    const Moment at = present();
+    if (!display_.begun() || at.now < next_) return;
+    next_ = at.now + kShowPeriod;
+    connection_->show(display_, at);
+    if (display_.over() && !over_since_) over_since_ = at.now;
+  }
+  /// Whether the mission's end has been shown.
+  bool finished() const { return over_since_ && now() - *over_since_ > kLinger; }
+
+ private:
+  static constexpr auto kShowPeriod = 1s, kLinger = 2s;
+
+  Display display_;
+  std::optional<DisplayConnection> connection_;
+  std::unique_ptr<Transport> transport_;
+  Instant next_{};
+  std::optional<Instant> over_since_;
+};
+
+int drive(const Options& options, DdsNode& node, Show* show, StopSignals& signals) {
   Drive drive(options);
   if (const auto code = drive.open(options, node)) return *code;
   spdlog::info("waits for a mission on {}, with {} robots in ROS domain {}",
@@ -134,13 +176,21 @@ int drive(const Options& options, DdsNode& node, StopSignals& signals) {
   const AnyOf wakers{signals.fd(), node.fd()};
   for (drive.act(); !drive.driver().finished(); drive.act()) {
     const Instant before = now();
-    const Instant planned =
-        std::clamp(drive.driver().next_wakeup(), before, before + kLongestWait);
+    const Instant latest = before + (show != nullptr ? kShowTurn : kLongestWait);
+    const Instant planned = std::clamp(drive.driver().next_wakeup(), before, latest);
     drive.transport().deliver_until(planned, wakers.fd());
     if (signals.take() > 0) drive.driver().stop("a signal stopped the bridge");
     if (node.clear()) drive.examine();
+    if (show != nullptr) show->act(now(), -1);
   }
   return drive.report();
+}
+
+int only_show(const Options& options, Show& show, StopSignals& signals) {
+  spdlog::info("waits for a mission on {}, to show it in ROS domain {}", options.node.url.base(),
+               options.domain_id);
+  while (signals.take() == 0 && !show.finished()) show.act(now() + kShowTurn, signals.fd());
+  return kExitDone;
 }
 
 int run(const Options& options) {
@@ -150,7 +200,13 @@ int run(const Options& options) {
     spdlog::error("{}", node.error());
     return kExitUnavailable;
   }
-  return drive(options, **node, signals);
+  std::optional<Show> show;
+  if (options.bridge.display) {
+    show.emplace(options);
+    if (const auto code = show->open(options, **node)) return *code;
+  }
+  if (options.bridge.robots.empty()) return only_show(options, *show, signals);
+  return drive(options, **node, show ? &*show : nullptr, signals);
 }
 
 }  // namespace

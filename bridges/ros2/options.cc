@@ -41,8 +41,7 @@ std::string read_file(const std::filesystem::path& file, const std::vector<Agent
     });
     options.bridge.display.reset();
   }
-  const auto domain =
-      options.bridge.domain_id ? options.bridge.domain_id : domain_of_environment();
+  const auto domain = options.bridge.domain_id ? options.bridge.domain_id : domain_of_environment();
   if (!domain) return "ROS_DOMAIN_ID is not a number from 0 to 232: correct or unset it";
   options.domain_id = *domain;
   return "";

@@ -27,7 +27,7 @@ struct PoseMessage {
   std::string frame;
   std::optional<std::string> child_frame{};  ///< of an Odometry
   Eigen::Vector3d position_m{0, 0, 0};
-  Eigen::Vector4d orientation{0, 0, 0, 1};              ///< x, y, z, w
+  Eigen::Vector4d orientation{0, 0, 0, 1};             ///< x, y, z, w
   std::optional<Eigen::Vector3d> body_velocity_mps{};  ///< of an Odometry, in the child frame
 };
 

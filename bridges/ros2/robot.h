@@ -45,7 +45,9 @@ class Robot {
   /// The velocity to send at `now`; nothing while none is due. It is sent 20 times a second from
   /// begin() to done(), and at once when it changes.
   std::optional<BodyVelocity> due(Instant now);
-  Instant next_wakeup() const { return (running_ || finishing_) && !done_ ? next_ : Instant::max(); }
+  Instant next_wakeup() const {
+    return (running_ || finishing_) && !done_ ? next_ : Instant::max();
+  }
 
   /// The newest position, if it can be trusted.
   std::optional<Fix> fix(Instant now) const;

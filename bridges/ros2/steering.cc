@@ -22,8 +22,7 @@ BodyVelocity body_velocity(const DriveLimits& limits, double heading_rad,
   }
   const double wanted_rad = std::atan2(allowed_mps.y(), allowed_mps.x());
   const double slant_rad = std::remainder(wanted_rad - heading_rad, 2 * M_PI);
-  const double share =
-      exactly ? 1 - std::abs(slant_rad) / kGreatestSlant_rad : std::cos(slant_rad);
+  const double share = exactly ? 1 - std::abs(slant_rad) / kGreatestSlant_rad : std::cos(slant_rad);
   body.linear_mps.x() = allowed_mps.head<2>().norm() * std::max(0.0, share);
   body.turn_radps =
       std::clamp(slant_rad / kTurnTime_s, -limits.max_turn_radps, limits.max_turn_radps);

@@ -7,8 +7,8 @@
 //     ω = e/τ, at most max_turn_radps;   v = |velocity| · share(e), at most max_speed_mps
 //
 //   share(e) = max(0, cos e). Where distances are kept or walls stand, only the commanded direction
-//   is safe. Then share(e) = max(0, 1 − |e|/0.2): it turns on the spot first, and its speed aside is
-//   at most 5 % of |velocity|. It never moves backwards.
+//   is safe. Then share(e) = max(0, 1 − |e|/0.2): it turns on the spot first, and its speed aside
+//   is at most 5 % of |velocity|. It never moves backwards.
 #pragma once
 
 #include <Eigen/Core>

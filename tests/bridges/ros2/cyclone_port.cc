@@ -23,12 +23,12 @@ class CyclonePort final : public RobotPort {
     dds_qos_t* commands = dds_create_qos();
     dds_qset_reliability(commands, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
     if (options.latched_commands) dds_qset_durability(commands, DDS_DURABILITY_TRANSIENT_LOCAL);
-    reader_ = must(dds_create_reader(
-        participant_,
-        topic(options.stamped ? geometry_msgs_msg_dds__TwistStamped__desc
-                              : geometry_msgs_msg_dds__Twist__desc,
-              options.name + "/cmd_vel"),
-        commands, nullptr));
+    reader_ =
+        must(dds_create_reader(participant_,
+                               topic(options.stamped ? geometry_msgs_msg_dds__TwistStamped__desc
+                                                     : geometry_msgs_msg_dds__Twist__desc,
+                                     options.name + "/cmd_vel"),
+                               commands, nullptr));
     dds_delete_qos(commands);
     const std::string position = options.name + (options.pose ? "/pose" : "/odom");
     position_ = topic(
@@ -76,8 +76,7 @@ class CyclonePort final : public RobotPort {
 
  private:
   dds_entity_t topic(const dds_topic_descriptor_t& type, const std::string& name) const {
-    return must(
-        dds_create_topic(participant_, &type, ("rt/" + name).c_str(), nullptr, nullptr));
+    return must(dds_create_topic(participant_, &type, ("rt/" + name).c_str(), nullptr, nullptr));
   }
   dds_entity_t new_writer() const {
     dds_qos_t* qos = dds_create_qos();
@@ -89,9 +88,8 @@ class CyclonePort final : public RobotPort {
   }
   TwistNumbers numbers_of(const void* sample) const {
     const auto& twist =
-        options_.stamped
-            ? static_cast<const geometry_msgs_msg_dds__TwistStamped_*>(sample)->twist
-            : *static_cast<const geometry_msgs_msg_dds__Twist_*>(sample);
+        options_.stamped ? static_cast<const geometry_msgs_msg_dds__TwistStamped_*>(sample)->twist
+                         : *static_cast<const geometry_msgs_msg_dds__Twist_*>(sample);
     return {twist.linear.x, twist.linear.y, twist.angular.z};
   }
   static std_msgs_msg_dds__Header_ header_of(const PositionNumbers& at) {

@@ -38,18 +38,16 @@ class FastPort final : public RobotPort {
     dds::DataReaderQos commands;
     commands.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
     commands.history().depth = 1;
-    if (options.latched_commands)
-      commands.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
+    if (options.latched_commands) commands.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
     dds::TypeSupport twist = options.stamped
                                  ? dds::TypeSupport(new geometry::TwistStamped_PubSubType())
                                  : dds::TypeSupport(new geometry::Twist_PubSubType());
-    reader_ = must(subscriber_->create_datareader(topic(twist, options.name + "/cmd_vel"),
-                                                  commands));
+    reader_ =
+        must(subscriber_->create_datareader(topic(twist, options.name + "/cmd_vel"), commands));
     const std::string position = options.name + (options.pose ? "/pose" : "/odom");
     dds::TypeSupport type = options.pose ? dds::TypeSupport(new geometry::PoseStamped_PubSubType())
                                          : dds::TypeSupport(new nav::Odometry_PubSubType());
-    position_ =
-        topic(type, options.position_topic.empty() ? position : options.position_topic);
+    position_ = topic(type, options.position_topic.empty() ? position : options.position_topic);
     writer_ = new_writer();
   }
 
@@ -104,13 +102,13 @@ class FastPort final : public RobotPort {
  private:
   dds::Topic* topic(dds::TypeSupport type, const std::string& name) {
     type.register_type(participant_);
-    return must(participant_->create_topic("rt/" + name, type.get_type_name(),
-                                           dds::TOPIC_QOS_DEFAULT));
+    return must(
+        participant_->create_topic("rt/" + name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT));
   }
   dds::DataWriter* new_writer() {
     dds::DataWriterQos qos;
-    qos.reliability().kind = options_.best_effort ? dds::BEST_EFFORT_RELIABILITY_QOS
-                                                  : dds::RELIABLE_RELIABILITY_QOS;
+    qos.reliability().kind =
+        options_.best_effort ? dds::BEST_EFFORT_RELIABILITY_QOS : dds::RELIABLE_RELIABILITY_QOS;
     qos.durability().kind = dds::VOLATILE_DURABILITY_QOS;
     return must(publisher_->create_datawriter(position_, qos));
   }

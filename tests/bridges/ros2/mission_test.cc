@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mock robots behind cmd_vel and odom in a real team: agents over LCM, the bridge, and each robot in
-// a DDS participant of its own.
+// Mock robots behind cmd_vel and odom in a real team: agents over LCM, the bridge, and each robot
+// in a DDS participant of its own.
+#include "tests/process/support/mission.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "tests/bridges/order_socket.h"
-#include "tests/process/support/mission.h"
 #include "tests/process/support/record.h"
 
 namespace ergocast::test {
@@ -128,6 +129,65 @@ TEST_F(RosRobots, DriveAWholeMissionAndStandAtItsEnd) {
 
 #ifdef ERGOCAST_HAS_FAST_DDS
 TEST_F(RosRobots, DriveAWholeMissionOnFastDds) { drive_a_whole_mission("fast"); }
+
+/// The bytes that Fast DDS receives, read by Foxglove's reader with ROS 2's own definitions.
+TEST_F(RosRobots, SendMessagesThatOthersCanRead) {
+  std::filesystem::create_directory(out());
+  mock_zero();
+  mock_one();
+  const OrderSocket one(14561);
+  hand("ergocast-logger", {"--out", out()});
+  Program& driver = bridge(std::string(kRobotZero) + kRobotOne +
+                           "display { prefix: \"ergocast\" frame: \"map\" }");
+  for (const char* id : {"0", "1"}) hand("ergocast-agent", {"--id", id});
+  hand("ergocast-coordinator", {floor("1000000", 2)});
+  ASSERT_TRUE(one.sees(moves)) << driver.printed();
+  // The target was sent before this program began.
+  const std::string file = folder_ / "recorded.json";
+  Child recorder =
+      begin({ERGOCAST_BIN_DIR "/fast-recorder", file, "robot0/cmd_vel",
+             "geometry_msgs::msg::dds_::Twist_", "robot1/cmd_vel",
+             "geometry_msgs::msg::dds_::TwistStamped_", "ergocast/coverage",
+             "nav_msgs::msg::dds_::OccupancyGrid_", "ergocast/target",
+             "nav_msgs::msg::dds_::OccupancyGrid_", "ergocast/agent1/path",
+             "nav_msgs::msg::dds_::Path_", "ergocast/phi2", "std_msgs::msg::dds_::Float64_",
+             "ergocast/status", "std_msgs::msg::dds_::String_"});
+  EXPECT_EQ(wait_for(recorder), 0) << driver.printed();
+  Child reader = begin({"/usr/bin/env", "node",
+                        ERGOCAST_SOURCE_DIR "/tests/bridges/ros2/reference/read_cdr.cjs",
+                        ERGOCAST_NODE_ROS2, file});
+  ASSERT_EQ(wait_for(reader), 0) << output();
+  const json read = json::parse(output());
+  EXPECT_EQ(read["robot0/cmd_vel"]["linear"]["y"], 0) << "a differential drive";
+  EXPECT_LE(std::abs(read["robot1/cmd_vel"]["twist"]["linear"]["x"].get<double>()), 1);
+  EXPECT_EQ(read["robot1/cmd_vel"]["header"]["frame_id"], "robot1/base_link");
+  EXPECT_GT(read["robot1/cmd_vel"]["header"]["stamp"]["sec"], 1'700'000'000);
+  for (const char* name : {"coverage", "target"}) {
+    const json& grid = read[std::string("ergocast/") + name];
+    EXPECT_EQ(grid["header"]["frame_id"], "map");
+    EXPECT_EQ(grid["info"]["width"], 64);
+    EXPECT_EQ(grid["info"]["height"], 64);
+    EXPECT_EQ(grid["info"]["resolution"], 0.3125);
+    EXPECT_EQ(grid["info"]["origin"]["orientation"]["w"], 1);
+    const auto cells = grid["data"].get<std::vector<int>>();
+    ASSERT_EQ(cells.size(), 64U * 64U);
+    EXPECT_GE(*std::ranges::min_element(cells), 0);
+    EXPECT_EQ(*std::ranges::max_element(cells), 100) << name;
+    const std::size_t middle = 32 * 64 + 32, corner = 0;
+    if (name == std::string("target")) {
+      EXPECT_GT(cells[middle], 95);
+      EXPECT_LT(cells[corner], 20);
+    }
+  }
+  const json& path = read["ergocast/agent1/path"];
+  ASSERT_FALSE(path["poses"].empty());
+  EXPECT_NEAR(path["poses"][0]["pose"]["position"]["x"].get<double>(), 15, 2);
+  EXPECT_EQ(path["poses"][0]["header"]["frame_id"], "map");
+  EXPECT_GT(read["ergocast/phi2"]["data"], 0);
+  const std::string status = read["ergocast/status"]["data"];
+  EXPECT_NE(status.find("floor: running, tick "), status.npos) << status;
+  EXPECT_NE(status.find("2 of 2 agents"), status.npos) << status;
+}
 #endif
 
 /// A mission that does not end, with robot 0 alone.
@@ -165,10 +225,12 @@ class OneRosRobot : public RosRobots {
 };
 
 TEST_F(OneRosRobot, StandsWhileItsPositionCannotBeTrusted) {
-  stands_after("frame odom", "robot0/odom is in the frame 'odom', and this bridge's file says "
-                             "frame: 'map'");
-  stands_after("base base_link", "robot0/odom is of the frame 'base_link', and this bridge's file "
-                                 "says base_frame: 'robot0/base_link'");
+  stands_after("frame odom",
+               "robot0/odom is in the frame 'odom', and this bridge's file says "
+               "frame: 'map'");
+  stands_after("base base_link",
+               "robot0/odom is of the frame 'base_link', and this bridge's file "
+               "says base_frame: 'robot0/base_link'");
   stands_after("nan", "robot0/odom has a value that is no number");
   stands_after("clock -1000", "s before this machine's clock: synchronise the clocks");
   stands_after("clock 1000", "s in the future: synchronise the clocks");
@@ -220,18 +282,19 @@ TEST_F(RosRobots, NameBothSidesOfATopicThatDoesNotConnect) {
            "/cmd_vel\" odom: \"robot" + number + "/odom\" frame: \"map\" max_speed_mps: 1 " +
            fields + " }\n";
   };
-  Program& driver = bridge(std::string(kRobotZero) + kRobotOne + more("2", "reliability: RELIABLE") +
-                           more("3", "") + more("4", ""));
-  for (const char* sentence :
-       {"robot 0: QoS of robot0/cmd_vel does not match, durability: the bridge offers VOLATILE, its "
-        "subscriber requests TRANSIENT_LOCAL",
-        "robot 1: robot1/pose is published as nav_msgs/msg/Odometry, the bridge expects "
-        "geometry_msgs/msg/PoseStamped",
-        "robot 2: QoS of robot2/odom does not match, reliability: its publisher offers BEST_EFFORT, "
-        "the bridge requests RELIABLE",
-        "robot 3: a subscriber of robot3/cmd_vel expects geometry_msgs/msg/TwistStamped, the bridge "
-        "sends geometry_msgs/msg/Twist",
-        "robot 4: nobody publishes robot4/odom"})
+  Program& driver = bridge(std::string(kRobotZero) + kRobotOne +
+                           more("2", "reliability: RELIABLE") + more("3", "") + more("4", ""));
+  for (
+      const char* sentence :
+      {"robot 0: QoS of robot0/cmd_vel does not match, durability: the bridge offers VOLATILE, its "
+       "subscriber requests TRANSIENT_LOCAL",
+       "robot 1: robot1/pose is published as nav_msgs/msg/Odometry, the bridge expects "
+       "geometry_msgs/msg/PoseStamped",
+       "robot 2: QoS of robot2/odom does not match, reliability: its publisher offers BEST_EFFORT, "
+       "the bridge requests RELIABLE",
+       "robot 3: a subscriber of robot3/cmd_vel expects geometry_msgs/msg/TwistStamped, the bridge "
+       "sends geometry_msgs/msg/Twist",
+       "robot 4: nobody publishes robot4/odom"})
     EXPECT_TRUE(driver.prints(sentence)) << sentence << '\n' << driver.printed();
 }
 

@@ -74,10 +74,14 @@ class Robot {
     if (what == "jump") words >> faults_.jump_m;
     if (what == "clock") words >> faults_.clock_s;
     if (what == "second") port_->set_second(true);
-    const nlohmann::json state = {
-        {"order", text},         {"x", x_m_},           {"y", y_m_},
-        {"path", path_m_},       {"command", command_}, {"commands", commands_},
-        {"speed", std::hypot(twist_[0], twist_[1])},    {"timeouts", timeouts_}};
+    const nlohmann::json state = {{"order", text},
+                                  {"x", x_m_},
+                                  {"y", y_m_},
+                                  {"path", path_m_},
+                                  {"command", command_},
+                                  {"commands", commands_},
+                                  {"speed", std::hypot(twist_[0], twist_[1])},
+                                  {"timeouts", timeouts_}};
     return state.dump();
   }
 
@@ -119,8 +123,7 @@ void answer(int fd, Robot& robot) {
   char text[256];
   sockaddr_in from{};
   socklen_t size = sizeof from;
-  const auto length =
-      recvfrom(fd, text, sizeof text, 0, reinterpret_cast<sockaddr*>(&from), &size);
+  const auto length = recvfrom(fd, text, sizeof text, 0, reinterpret_cast<sockaddr*>(&from), &size);
   if (length <= 0) return;
   const std::string state = robot.order({text, static_cast<std::size_t>(length)});
   sendto(fd, state.data(), state.size(), 0, reinterpret_cast<const sockaddr*>(&from), size);

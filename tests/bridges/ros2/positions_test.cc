@@ -38,10 +38,8 @@ class RosPositions : public ::testing::Test {
   }
 
   Moment at_;
-  Positions positions_{"robot0/odom",
-                       {"robot0/odom", {10, 20, 0}, M_PI / 2},
-                       "robot0/base_link",
-                       1};
+  Positions positions_{
+      "robot0/odom", {"robot0/odom", {10, 20, 0}, M_PI / 2}, "robot0/base_link", 1};
 };
 
 TEST_F(RosPositions, AreTurnedIntoTheScenariosFrame) {
@@ -72,8 +70,7 @@ TEST_F(RosPositions, AreRefusedWithASentenceEach) {
     PoseMessage message = odometry(0, 0);
     message.stamp_ns = kStart_ns;
     change(message);
-    EXPECT_NE(problem_of(message).find(sentence), std::string::npos)
-        << positions_.problem(at_.now);
+    EXPECT_NE(problem_of(message).find(sentence), std::string::npos) << positions_.problem(at_.now);
     EXPECT_FALSE(positions_.at(at_.now));
     EXPECT_EQ(problem_of(odometry(0, 0)), "");
   };

@@ -10,7 +10,12 @@ add_executable(mock-robot-cyclone bridges/ros2/cyclone_port.cc bridges/ros2/mock
 target_link_libraries(mock-robot-cyclone PRIVATE
   ergocast_ros2_types nlohmann_json::nlohmann_json ergocast::warnings)
 ergocast_test(NAME ros2_mission_tests LABELS process RUNS_PROGRAMS
-  SOURCES bridges/ros2/mission_test.cc)
+  SOURCES bridges/ros2/mission_test.cc
+  PROPERTIES FIXTURES_REQUIRED node_ros2)
+# It fetches a reader of ROS 2 messages.
+add_test(NAME ros2_reference
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/bridges/ros2/reference/fetch ${CMAKE_BINARY_DIR}/node_ros2)
+set_tests_properties(ros2_reference PROPERTIES LABELS process FIXTURES_SETUP node_ros2)
 add_dependencies(ros2_mission_tests ergocast-ros2 mock-robot-cyclone)
 
 find_program(FASTDDSGEN fastddsgen)
@@ -32,6 +37,10 @@ if(FASTDDSGEN AND FASTRTPS_LIBRARY AND FASTCDR_LIBRARY)
   add_executable(mock-robot-fast bridges/ros2/fast_port.cc bridges/ros2/mock_robot.cc)
   target_link_libraries(mock-robot-fast PRIVATE
     fast_dds_types nlohmann_json::nlohmann_json ergocast::warnings)
-  add_dependencies(ros2_mission_tests mock-robot-fast)
-  target_compile_definitions(ros2_mission_tests PRIVATE ERGOCAST_HAS_FAST_DDS)
+  add_executable(fast-recorder bridges/ros2/fast_recorder.cc)
+  target_link_libraries(fast-recorder PRIVATE
+    fast_dds_types nlohmann_json::nlohmann_json ergocast::warnings)
+  add_dependencies(ros2_mission_tests mock-robot-fast fast-recorder)
+  target_compile_definitions(ros2_mission_tests PRIVATE
+    ERGOCAST_HAS_FAST_DDS ERGOCAST_NODE_ROS2="${CMAKE_BINARY_DIR}/node_ros2")
 endif()
