@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace ergocast::ros2 {
@@ -29,11 +30,12 @@ class RosPositions : public ::testing::Test {
     message.body_velocity_mps = Eigen::Vector3d(0.5, 0, 0);
     return message;
   }
-  std::string problem_of(const PoseMessage& message) {
+  /// The problem after a message with a new stamp, changed by `change`.
+  std::string problem_of(double x_m, const std::function<void(PoseMessage&)>& change = {}) {
     advance(0.02);
-    PoseMessage now = message;
-    if (now.stamp_ns == kStart_ns) now.stamp_ns = at_.wall_ns;
-    positions_.take(now, at_);
+    PoseMessage message = odometry(x_m, 0);
+    if (change) change(message);
+    positions_.take(message, at_);
     return positions_.problem(at_.now);
   }
 
@@ -65,14 +67,13 @@ TEST_F(RosPositions, WithoutAVelocityHaveThatOfTheLastTwo) {
 }
 
 TEST_F(RosPositions, AreRefusedWithASentenceEach) {
-  ASSERT_EQ(problem_of(odometry(0, 0)), "");
-  const auto says = [&](auto change, const std::string& sentence) {
-    PoseMessage message = odometry(0, 0);
-    message.stamp_ns = kStart_ns;
-    change(message);
-    EXPECT_NE(problem_of(message).find(sentence), std::string::npos) << positions_.problem(at_.now);
+  ASSERT_EQ(problem_of(0), "");
+  const auto says = [&](const std::function<void(PoseMessage&)>& change,
+                        const std::string& sentence) {
+    EXPECT_NE(problem_of(0, change).find(sentence), std::string::npos)
+        << positions_.problem(at_.now);
     EXPECT_FALSE(positions_.at(at_.now));
-    EXPECT_EQ(problem_of(odometry(0, 0)), "");
+    EXPECT_EQ(problem_of(0), "");
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   says([](PoseMessage& m) { m.frame = "map"; }, "is in the frame 'map'");
@@ -104,12 +105,12 @@ TEST_F(RosPositions, AreTooOldAfterHalfASecond) {
 }
 
 TEST_F(RosPositions, WaitAfterAJumpUntilTheyAreSteady) {
-  ASSERT_EQ(problem_of(odometry(0, 0)), "");
-  EXPECT_EQ(problem_of(odometry(0.5, 0)), "") << "no more than the limit";
-  EXPECT_NE(problem_of(odometry(3, 0)).find("jumped by 2.5 m"), std::string::npos);
-  for (int i = 0; i < 140; ++i) EXPECT_NE(problem_of(odometry(3, 0)), "") << i;
-  for (int i = 0; i < 20; ++i) problem_of(odometry(3, 0));
-  EXPECT_EQ(problem_of(odometry(3, 0)), "");
+  ASSERT_EQ(problem_of(0), "");
+  EXPECT_EQ(problem_of(0.5), "") << "no more than the limit";
+  EXPECT_NE(problem_of(3).find("jumped by 2.5 m"), std::string::npos);
+  for (int i = 0; i < 140; ++i) EXPECT_NE(problem_of(3), "") << i;
+  for (int i = 0; i < 20; ++i) problem_of(3);
+  EXPECT_EQ(problem_of(3), "");
 }
 
 TEST_F(RosPositions, ThatWereOvertakenHaveNoEffect) {
