@@ -32,6 +32,7 @@ enum class Outside {
   kEarth,        // PROJ
   kXml,          // pugixml
   kPhysics,      // MuJoCo, and EGL for its pictures
+  kDds,          // CycloneDDS, and what its idlc makes
   kFiles,        // files and standard streams
   kSystem,       // sockets, signals, processes, threads, the machine's clocks and dice
 };
@@ -209,6 +210,16 @@ inline const std::vector<Rule> kRules = {
      {"text", "core", "plan", "target", "team", "scenario", "scenario/rules", "runtime/process",
       "logger", "report", "lab", "studies", "cli", "cli/team", "cli/record"},
      {kPython, kFiles}},
+    // Robots and displays with ROS 2. Robot, driver and display are values.
+    {"bridges/ros2", {"text", "core", "team", "cli/team"}, {}},
+    {"bridges/ros2/bridge_file.h", {"core", "bridges/ros2"}, {kFiles}},
+    {"bridges/ros2/bridge_file.cc", {"text", "bridges/ros2"}, {kProtobuf}},
+    {"bridges/ros2/dds_node.h", {"core"}, {kDds}},
+    {"bridges/ros2/dds_node.cc", {"text", "bridges/ros2"}, {kDds, kSystem}},
+    {"bridges/ros2/message_types.h", {"bridges/ros2"}, {kDds}},
+    {"bridges/ros2/options.h", {"runtime/process", "bridges/ros2"}, {kFiles}},
+    {"bridges/ros2/options.cc", {"bridges/ros2"}, {}},
+    {"bridges/ros2/main.cc", {"runtime/bus", "runtime/process", "bridges/ros2"}, {kLog, kSystem}},
     // What the generated reference says of fields and messages.
     {"docs/reference",
      {"text", "core", "plan", "team", "lcmtypes", "scenario", "scenario/parse"},
@@ -268,6 +279,7 @@ inline const std::vector<Kind> kKinds = {
     {kEarth, {"proj.h"}},
     {kXml, {"pugixml.hpp"}},
     {kPhysics, {"mujoco/*", "EGL/*"}},
+    {kDds, {"dds/*", "ros_types.h"}},
     {kFiles, {"fstream", "filesystem", "iostream", "syncstream", "ext/stdio_filebuf.h"}},
     {kSystem, {"thread",     "mutex",     "shared_mutex", "condition_variable",
                "future",     "semaphore", "latch",        "barrier",

@@ -48,6 +48,12 @@ TEST(BridgeFile, HasRobotsFramesAndADisplay) {
   EXPECT_EQ(file->display->prefix, "ergocast");
 }
 
+TEST(BridgeFile, OfTheExampleIsRight) {
+  const auto file = read_bridge_file(ERGOCAST_SOURCE_DIR "/examples/ros2/two_robots.textproto");
+  ASSERT_TRUE(file) << file.error();
+  EXPECT_EQ(file->robots.size(), 2U);
+}
+
 TEST(BridgeFile, NamesLineAndFieldOfWhatIsWrong) {
   const std::array<std::array<std::string, 3>, 22> wrong{{
       {"frame: \"robot1/odom\"", "frame: \"odom\"",

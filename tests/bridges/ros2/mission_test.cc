@@ -272,6 +272,11 @@ TEST_F(OneRosRobot, HasOneBridge) {
   EXPECT_TRUE(robot_->sees(moves));
 }
 
+TEST_F(RosRobots, HaveAnExampleOfAScenario) {
+  EXPECT_EQ(ergocast({"check", ERGOCAST_SOURCE_DIR "/examples/ros2/floor.textproto"}), 0)
+      << output();
+}
+
 TEST_F(RosRobots, NameBothSidesOfATopicThatDoesNotConnect) {
   mock(14560, {"--name", "robot0", "--latched-commands"});
   mock(14561, {"--name", "robot1", "--topic", "robot1/pose", "--stamped"});
