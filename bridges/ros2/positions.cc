@@ -106,7 +106,8 @@ std::string Positions::problem(Instant now) const {
   if (at(now)) return "";
   if (!newest_) return problem_;
   if (!unsteady_.empty()) return unsteady_;
-  return topic_ + " is silent: its newest position is older than " + rounded(oldest_s_) + " s";
+  return topic_ + " is silent or too slow: its newest position is older than " +
+         rounded(oldest_s_) + " s";
 }
 
 }  // namespace ergocast::ros2

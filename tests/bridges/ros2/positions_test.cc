@@ -96,7 +96,7 @@ TEST_F(RosPositions, AreTooOldAfterHalfASecond) {
   advance(0.1);
   EXPECT_FALSE(positions_.at(at_.now));
   EXPECT_EQ(positions_.problem(at_.now),
-            "robot0/odom is silent: its newest position is older than 0.5 s");
+            "robot0/odom is silent or too slow: its newest position is older than 0.5 s");
   positions_.take(odometry(0, 0), at_);
   EXPECT_TRUE(positions_.at(at_.now));
   positions_.set_oldest(0.2);

@@ -12,6 +12,8 @@ target_link_libraries(mock-robot-cyclone PRIVATE
 ergocast_test(NAME ros2_mission_tests LABELS process RUNS_PROGRAMS
   SOURCES bridges/ros2/mission_test.cc
   PROPERTIES FIXTURES_REQUIRED node_ros2)
+add_test(NAME ros2_type_hashes COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/bridges/ros2/type_hashes_test.py)
+set_tests_properties(ros2_type_hashes PROPERTIES LABELS process)
 # It fetches a reader of ROS 2 messages.
 add_test(NAME ros2_reference
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/bridges/ros2/reference/fetch ${CMAKE_BINARY_DIR}/node_ros2)
