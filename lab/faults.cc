@@ -11,6 +11,8 @@
 namespace ergocast::lab {
 namespace {
 
+constexpr double kMostSites = 64;
+
 constexpr FaultField kFields[] = {
     {"loss", &Faults::loss, 1},
     {"duplication", &Faults::duplication, 1},
@@ -43,6 +45,12 @@ constexpr FaultField kFields[] = {
     {"zones_per_s", &Faults::zones_per_s, 1},
     {"laws_per_s", &Faults::laws_per_s, 1},
     {"cancels_per_s", &Faults::cancels_per_s, 1},
+    {"sites", &Faults::sites, kMostSites},
+    {"link_delay_s", &Faults::link_delay_s, 60},
+    {"link_jitter_s", &Faults::link_jitter_s, 60},
+    {"link_loss", &Faults::link_loss, 1},
+    {"site_cut_s", &Faults::site_cut_s, 600},
+    {"site_cut_at_s", &Faults::site_cut_at_s, 1e6},
 };
 
 /// Random streams, so that one kind of fault does not change what another draws.
@@ -58,7 +66,8 @@ enum Stream : std::uint32_t {
   kEnds,
   kZones,
   kLaws,
-  kCancels
+  kCancels,
+  kSites
 };
 
 }  // namespace
@@ -118,16 +127,25 @@ Faults drawn(std::uint64_t seed) {
   return faults;
 }
 
+int site_count(const Faults& faults) { return std::max(1, static_cast<int>(faults.sites)); }
+
+int site_of(int node, int agents, int sites) { return node < agents ? node * sites / agents : 0; }
+
+bool has_bad_links(const Faults& f) {
+  return site_count(f) > 1 &&
+         (f.link_delay_s > 0 || f.link_jitter_s > 0 || f.link_loss > 0 || f.site_cut_s > 0);
+}
+
 bool spares_the_record(const Faults& f) {
   const bool messages = f.loss > 0 || f.duplication > 0 || f.corruption > 0 || f.delay_mean_s > 0 ||
-                        f.reordering > 0 || f.clogging > 0 || f.replay > 0;
+                        f.reordering > 0 || f.clogging > 0 || f.replay > 0 || has_bad_links(f);
   return f.partitions_per_s <= 0 && f.world_crashes_per_s <= 0 &&
          (!messages || f.swarm_bus_only > 0);
 }
 
 bool only_wishes(const Faults& f) {
   const bool messages = f.loss > 0 || f.duplication > 0 || f.corruption > 0 || f.delay_mean_s > 0 ||
-                        f.reordering > 0 || f.clogging > 0 || f.replay > 0;
+                        f.reordering > 0 || f.clogging > 0 || f.replay > 0 || has_bad_links(f);
   const bool processes = f.partitions_per_s > 0 || f.agent_crashes_per_s > 0 ||
                          f.coordinator_crashes_per_s > 0 || f.world_crashes_per_s > 0;
   const bool clocks = f.clock_rate_error > 0 || f.clock_offset_max_s > 0;
@@ -138,8 +156,11 @@ bool hinders(const Faults& f, double patience_s) {
   // The awaited process may lack four messages in a row, each repeated once a second.
   constexpr int kInARow = 4;
   constexpr double kNever = 1e-6;
-  const double arrives = std::pow(std::max(0.0, 1 - f.loss - f.corruption), kInARow);
-  const double latest_s = kInARow * (f.delay_max_s + f.reordering_max_s + f.clog_max_s);
+  const double link_loss = has_bad_links(f) ? f.link_loss : 0;
+  const double link_s = has_bad_links(f) ? f.link_delay_s + f.link_jitter_s : 0;
+  const double arrives =
+      std::pow(std::max(0.0, 1 - f.loss - f.corruption) * (1 - link_loss), kInARow);
+  const double latest_s = kInARow * (f.delay_max_s + f.reordering_max_s + f.clog_max_s + link_s);
   return std::pow(1 - arrives, patience_s / 2) > kNever || latest_s > patience_s / 2;
 }
 
@@ -184,6 +205,10 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
        [](RandomStream& random) { return std::pair(kLaw, random.word()); });
   draw(kCancels, faults.cancels_per_s, 0,
        [](RandomStream& random) { return std::pair(kCancel, random.word()); });
+  if (const int sites = site_count(faults); sites > 1 && faults.site_cut_s > 0) {
+    const auto which = RandomStream(seed, kSites).word() % static_cast<std::uint64_t>(sites - 1);
+    all.push_back({kSiteCut, faults.site_cut_at_s, faults.site_cut_s, 1 + which});
+  }
   std::stable_sort(all.begin(), all.end(),
                    [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;

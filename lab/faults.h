@@ -44,10 +44,23 @@ struct Faults {
   double clock_rate_error = 0;    ///< a process's clock runs at a rate of 1 ± so much, uniform
   double clock_offset_max_s = 0;  ///< and started up to so long before, uniform
   double swarm_bus_only = 0;      ///< above 0: a vehicle and its agent share a wire, not a radio
+  double sites = 0;               ///< above 1: so many networks, joined by relays; see site_of()
+  double link_delay_s = 0;        ///< a message from one site to another: late by this, …
+  double link_jitter_s = 0;       ///< … ± up to so much, uniform, so that it may overtake, …
+  double link_loss = 0;           ///< … or lost for all processes of the other site
+  double site_cut_s = 0;          ///< one site, but not site 0, is cut off for so long, …
+  double site_cut_at_s = 0;       ///< … from this time on
   /// The share of the mission's time after which all is healed. 1: nothing is healed, and no
   /// process has to recover.
   double lasting_share = 0.6;
 };
+
+/// At least 1.
+int site_count(const Faults& faults);
+/// Agents fill sites in the order of their numbers. All other processes are at site 0.
+int site_of(int node, int agents, int sites);
+/// Whether messages between sites are late or lost.
+bool has_bad_links(const Faults& faults);
 
 /// Whether no fault affects the world, the logger, or messages between them.
 bool spares_the_record(const Faults& faults);
@@ -85,14 +98,15 @@ struct FaultEvent {
     kEnd,
     kZone,
     kLaw,
-    kCancel
+    kCancel,
+    kSiteCut
   };
   Kind kind;
   double at_s;  ///< after the start of the mission
   double lasts_s;
   std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash or recall:
                       ///< which agent; target, end, zone, law or
-                      ///< what is undone: which one
+                      ///< what is undone: which one; cut site: which
 };
 
 /// The events of `horizon_s` seconds, by time.

@@ -14,7 +14,7 @@ namespace {
 
 /// Random streams beside those of lab/faults.cc: one for each link and purpose.
 constexpr std::uint32_t kWhether = 1U << 20, kHowLong = 2U << 20, kDamage = 3U << 20,
-                        kReplay = 4U << 20;
+                        kReplay = 4U << 20, kCrossing = 5U << 20;
 
 /// A link's draws of one kind.
 std::uint32_t stream(std::uint32_t kind, std::uint32_t link) {
@@ -26,19 +26,24 @@ double unit(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
 
 bool quiet(const Faults& f) {
   return f.loss <= 0 && f.duplication <= 0 && f.corruption <= 0 && f.delay_mean_s <= 0 &&
-         f.reordering <= 0 && f.clogging <= 0 && f.replay <= 0;
+         f.reordering <= 0 && f.clogging <= 0 && f.replay <= 0 && !has_bad_links(f);
 }
 
 }  // namespace
 
-Network::Network(std::uint64_t seed, const Faults& faults, int nodes, PacingClock::duration latency)
+Network::Network(std::uint64_t seed, const Faults& faults, int agents, int nodes,
+                 PacingClock::duration latency)
     : seed_(seed),
       faults_(faults),
       quiet_(quiet(faults)),
+      agents_(agents),
       nodes_(nodes),
+      sites_(site_count(faults)),
       latency_(latency),
       links_(static_cast<std::size_t>(nodes * nodes * kBusCount)),
-      link_cuts_(static_cast<std::size_t>(nodes * nodes)) {}
+      link_cuts_(static_cast<std::size_t>(nodes * nodes)),
+      crossed_(static_cast<std::size_t>(nodes * sites_ * kBusCount)),
+      crossings_(static_cast<std::size_t>(sites_)) {}
 
 int Network::send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId transmitter,
                   std::shared_ptr<Decoded> read) {
@@ -46,6 +51,7 @@ int Network::send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId 
     push(now + latency_, {bus, transmitter, to, std::move(read)});
     return 0;
   }
+  start_crossings(from, to, bus);
   NodeSet at_once;  // all nodes that the message reaches without a fault
   int corrupted = 0;
   for (NodeId node = 0; node < nodes_; ++node) {
@@ -55,21 +61,56 @@ int Network::send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId 
       at_once.set(bit);
       continue;
     }
-    const Fate fate = fate_of(now, pair_index(from, node), bus);
+    Crossing& crossing = crossings_[static_cast<std::size_t>(site_of(node, agents_, sites_))];
+    if (!crossing.takes) continue;
+    const Instant at_site = now + *crossing.takes;
+    const Fate fate = fate_of(at_site, pair_index(from, node), bus);
     corrupted += fate.corrupted ? 1 : 0;
     for (const auto& arrival : {fate.arrives, fate.arrives_again, fate.is_replayed}) {
       if (!arrival) continue;
-      if (*arrival == now + latency_ && !at_once.test(bit)) {
-        at_once.set(bit);
+      NodeSet& together = *crossing.takes == PacingClock::duration(0) ? at_once : crossing.to;
+      if (*arrival == at_site + latency_ && !together.test(bit)) {
+        together.set(bit);
       } else {
         push(*arrival, {bus, transmitter, NodeSet().set(bit), read});
       }
+    }
+  }
+  for (const Crossing& crossing : crossings_) {
+    if (crossing.to.any()) {
+      push(now + *crossing.takes + latency_, {bus, transmitter, crossing.to, read});
     }
   }
   if (at_once.any()) {
     push(now + latency_, {bus, transmitter, at_once, std::move(read)});
   }
   return corrupted;
+}
+
+/// What the relays' links do to a message. One datagram reaches a site, or none does.
+void Network::start_crossings(NodeId from, const NodeSet& to, Bus bus) {
+  const int home = site_of(from, agents_, sites_);
+  const bool wired = faults_.swarm_bus_only > 0 && bus != Bus::kSwarm;
+  for (int site = 0; site < sites_; ++site) {
+    Crossing& crossing = crossings_[static_cast<std::size_t>(site)];
+    crossing = {PacingClock::duration(0), {}};
+    if (site == home || wired || quiet_) continue;
+    const auto index = static_cast<std::uint32_t>((from * sites_ + site) * kBusCount) +
+                       static_cast<std::uint32_t>(bus);
+    const auto draw =
+        uniform_pair(seed_, Purpose::kFault, stream(kCrossing, index), ++crossed_[index]);
+    const double late_s = faults_.link_delay_s + faults_.link_jitter_s * (2 * draw.y() - 1);
+    crossing.takes = seconds(std::max(0.0, late_s));
+    const bool cut = cut_site_ && (site == *cut_site_ || home == *cut_site_);
+    if (!cut && draw.x() >= faults_.link_loss) continue;
+    crossing.takes.reset();
+    // For each process, as all other faults are counted.
+    for (NodeId node = 0; node < nodes_; ++node) {
+      if (!to.test(static_cast<std::size_t>(node)) || site_of(node, agents_, sites_) != site)
+        continue;
+      ++(cut ? counted_.cut : counted_.lost);
+    }
+  }
 }
 
 Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
@@ -154,6 +195,7 @@ void Network::heal(Instant now) {
   quiet_ = true;
   std::fill(link_cuts_.begin(), link_cuts_.end(), 0);
   cuts_ = 0;
+  cut_site_.reset();
   // Messages that are still held back arrive in the order in which they would have arrived.
   for (auto& [when, delivery] : std::exchange(queue_, {})) {
     push(std::min(when.first, now + latency_), std::move(delivery));

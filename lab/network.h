@@ -42,8 +42,10 @@ struct Delivery {
 
 class Network {
  public:
+  /// @param agents  the first nodes; sites differ by them
   /// @param latency  how long a message without faults takes
-  Network(std::uint64_t seed, const Faults& faults, int nodes, PacingClock::duration latency);
+  Network(std::uint64_t seed, const Faults& faults, int agents, int nodes,
+          PacingClock::duration latency);
 
   /// Puts a message on its way from one node to others.
   /// @param transmitter  as receivers see it
@@ -58,6 +60,9 @@ class Network {
   /// From now on `to` receives nothing from `from`, until join() has been called as often.
   void cut(NodeId from, NodeId to) { ++link_cuts_[pair_index(from, to)], ++cuts_; }
   void join(NodeId from, NodeId to) { --link_cuts_[pair_index(from, to)], --cuts_; }
+  /// From now on nothing passes between that site and the others, until it is joined again.
+  void cut_site(int site) { cut_site_ = site, ++cuts_; }
+  void join_site() { cut_site_.reset(), --cuts_; }
   /// No more faults: cuts end, and what clogged links hold arrives within the latency.
   void heal(Instant now);
 
@@ -77,6 +82,12 @@ class Network {
     const int index = from * nodes_ + to;
     return static_cast<std::size_t>(index);
   }
+  /// The messages of one send() that arrive at the same site together.
+  struct Crossing {
+    std::optional<PacingClock::duration> takes;  // nothing: lost
+    NodeSet to;                                  // where no other fault applies
+  };
+  void start_crossings(NodeId from, const NodeSet& to, Bus bus);
   Fate fate_of(Instant now, std::size_t pair, Bus bus);
   Instant arrival(Instant now, Link& link, std::uint32_t link_index, double reorders, double clogs);
   void push(Instant at, Delivery delivery);
@@ -84,11 +95,14 @@ class Network {
   std::uint64_t seed_;
   Faults faults_;
   bool quiet_;  // the only possible fault is a cut link
-  int nodes_;
+  int agents_, nodes_, sites_;
   PacingClock::duration latency_;
   std::vector<Link> links_;
   std::vector<int> link_cuts_;
-  int cuts_ = 0;  // their sum
+  int cuts_ = 0;                             // their sum, with that of a site
+  std::optional<int> cut_site_;
+  std::vector<std::uint32_t> crossed_;       // messages by node, site and bus
+  std::vector<Crossing> crossings_;          // by site, of the message that is sent now
   std::map<std::pair<Instant, std::uint64_t>, Delivery> queue_;
   std::uint64_t pushed_ = 0;
   MessageFaults counted_;

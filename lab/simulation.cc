@@ -31,7 +31,7 @@ Simulation::Simulation(SimulationOptions options, std::ostream& trajectory, std:
       mission_(decode_plan_with_table(options_.plan).value()),
       run_(identity(mission_, ~0U, 0)),
       agent_count_(static_cast<int>(mission_.starts_m.size())),
-      network_(mission_.seed, options_.faults, node_count(), options_.latency),
+      network_(mission_.seed, options_.faults, agent_count_, node_count(), options_.latency),
       wire_(run_, mission_.seed),
       faults_(options_.faults, mission_),
       nodes_(static_cast<std::size_t>(node_count())) {

@@ -93,6 +93,11 @@ void Simulation::begin(const FaultEvent& event) {
     case kCancel:
       want_cancel(event.who);
       return;
+    case kSiteCut:
+      ++counts_.splits;
+      cut(event, false);
+      faults_.end_at(now_ + seconds(event.lasts_s), event);
+      return;
     case kRecall:
     case kDeparture:
       ++counts_.recalls;
@@ -102,6 +107,8 @@ void Simulation::begin(const FaultEvent& event) {
 }
 
 void Simulation::cut(const FaultEvent& event, bool join) {
+  if (event.kind == FaultEvent::Kind::kSiteCut)
+    return join ? network_.join_site() : network_.cut_site(static_cast<int>(event.who));
   const auto first = [&](NodeId node) { return (event.who >> (node % 64) & 1) != 0; };
   for (NodeId from = 0; from < node_count(); ++from) {
     for (NodeId to = 0; to < node_count(); ++to) {

@@ -110,7 +110,8 @@ std::array<std::uint8_t, 16> our_address(msghdr& message) {
                   sizeof(in6_addr));
     } else if (note->cmsg_level == IPPROTO_IP && note->cmsg_type == IP_PKTINFO) {
       sockaddr_in at{};
-      std::memcpy(&at.sin_addr, CMSG_DATA(note) + offsetof(in_pktinfo, ipi_addr),
+      // ipi_addr has where the packet was sent, which may be a broadcast address.
+      std::memcpy(&at.sin_addr, CMSG_DATA(note) + offsetof(in_pktinfo, ipi_spec_dst),
                   sizeof at.sin_addr);
       ours = from_system(at);
     }

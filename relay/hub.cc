@@ -33,7 +33,7 @@ Hub::Hub(const Settings& settings, const MessageAuthenticator& authenticator)
 
 void Hub::take_local(Bus bus, std::span<const std::byte> datagram, Instant now) {
   const auto admitted = carrier_.from_group(bus, datagram, !members_.empty(), now);
-  if (admitted) queue(*admitted, {bus, {datagram.begin(), datagram.end()}}, nullptr);
+  if (admitted) queue(*admitted, {bus, {datagram.begin(), datagram.end()}}, nullptr, now);
 }
 
 void Hub::receive(std::span<const std::byte> packet, const Address& from, Instant now,
@@ -60,14 +60,21 @@ void Hub::on_data(Member& member, std::span<const std::byte> packet, Instant now
       member.sender.remove(*admitted);
       continue;
     }
-    queue(*admitted, datagram, &member);
+    queue(*admitted, datagram, &member, now);
     if (settings_.has_group) carrier_.put(std::move(datagram), *admitted, now, out);
   }
 }
 
-void Hub::queue(const Admitted& admitted, const GroupDatagram& datagram, const Member* from) {
+/// Commands go only where a process receives them, if it is known where that is.
+void Hub::queue(const Admitted& admitted, const GroupDatagram& datagram, Member* from,
+                Instant now) {
+  if (admitted.commanded) {
+    commanded_until_ = now + kCommanded;
+    if (from != nullptr) from->commanded_until = commanded_until_;
+  }
+  const bool to_few = admitted.urgency == Urgency::kCommand && now < commanded_until_;
   for (auto& [address, member] : members_) {
-    if (&member == from) continue;
+    if (&member == from || (to_few && now >= member.commanded_until)) continue;
     member.sender.add(admitted, datagram.bus, datagram.bytes);
   }
 }
@@ -180,7 +187,7 @@ Counts Hub::counts() const {
 
 std::string Hub::report(Instant now) const {
   constexpr std::string_view kMore = "; and 999 more";
-  std::string text = std::to_string(members_.size()) + " sites";
+  std::string text = std::to_string(members_.size()) + (members_.size() == 1 ? " site" : " sites");
   std::size_t left = members_.size();
   for (const auto& [address, member] : members_) {
     std::array<char, 256> line{};

@@ -33,6 +33,9 @@ class Hub {
   /// again.
   static constexpr std::chrono::nanoseconds kSilence = std::chrono::seconds(10);
 
+  /// How long a site receives commands after a world, driver or logger there has sent anything.
+  static constexpr std::chrono::nanoseconds kCommanded = std::chrono::seconds(10);
+
   Hub(const Settings& settings, const MessageAuthenticator& authenticator);
 
   /// A datagram of the local group.
@@ -54,10 +57,11 @@ class Hub {
           count(join.count),
           last_received(now),
           joined(now),
+          commanded_until(now + kCommanded),
           sender(most_bytes_per_s) {}
     SiteId site;
     std::int64_t count;  // of its newest Join or Ping
-    Instant last_received, joined;
+    Instant last_received, joined, commanded_until;
     Sender sender;
     FlowCounts ours, theirs;             // theirs as of the newest Ping
     std::int64_t received_by_ping = 0;   // of ours.packets_received, when that Ping came
@@ -75,7 +79,8 @@ class Hub {
   void on(const auto&, const Address&, Instant, Outbox&) {}
   void on_data(Member& member, std::span<const std::byte> packet, Instant now, Outbox& out);
   void send(const Control& control, const Address& to, Outbox& out) const;
-  void queue(const Admitted& admitted, const GroupDatagram& datagram, const Member* from);
+  /// @param from  null: the local group
+  void queue(const Admitted& admitted, const GroupDatagram& datagram, Member* from, Instant now);
   void remove(Members::iterator member);
   bool is_replay(SiteId site, std::int64_t count) const;
 
@@ -84,6 +89,7 @@ class Hub {
   CookieJar jar_;
   Carrier carrier_;
   Members members_;
+  Instant commanded_until_{};  // the latest of all sites, with the local group
 };
 
 }  // namespace ergocast::relay

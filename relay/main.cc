@@ -203,8 +203,9 @@ int run_hub(const Options& options, std::unique_ptr<LocalGroup> group) {
   StopSignals signals;
   Process process(signals, *std::move(endpoint), std::move(group));
   process.run(hub, -1, [&](Instant) {
-    if (hub.sites() != sites) spdlog::info("{} sites have joined", hub.sites());
+    if (hub.sites() == sites) return;
     sites = hub.sites();
+    spdlog::info("{} joined", sites == 1 ? "1 site has" : std::to_string(sites) + " sites have");
   });
   return kExitDone;
 }

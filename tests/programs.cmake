@@ -230,6 +230,12 @@ function(ergocast_nightly_script_test NAME LABEL SCRIPT)
 endfunction()
 ergocast_script_test(deployed_over_ssh hosts hosts/deploy_ssh_test.sh
   ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto)
+# Four sites behind routers, with links that delay, lose, repeat and forge; and inside WireGuard.
+ergocast_script_test(relay_sites hosts hosts/relay_sites.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+  ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto --lockstep --agents 8 --dt 0.5
+  --duration 100 --delay-ms 5 --jitter-ms 4 --loss-percent 3)
+ergocast_script_test(relay_wireguard hosts hosts/relay_wireguard_test.sh
+  ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto)
 # The pages of docs/reference/ are what the code prints now.
 add_test(NAME reference_is_current
   COMMAND ${CMAKE_SOURCE_DIR}/docs/reference/make --check ${CMAKE_BINARY_DIR})

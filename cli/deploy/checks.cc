@@ -51,12 +51,46 @@ void check_single_roles(const Hosts& hosts, const std::string& file,
   }
 }
 
+void check_relays(const Hosts& hosts, const DeployMission& mission, const std::string& file,
+                  std::vector<Problem>& problems) {
+  const bool relays = !names_with(hosts, &DeployHost::relay).empty();
+  const bool hubs = std::ranges::any_of(hosts, [](const auto& host) { return !host.hub.empty(); });
+  if (relays && !hubs) {
+    problems.push_back({file, "no host is the hub that the relays join",
+                        "give the role hub=HOST:PORT to a host that all sites reach there by UDP"});
+  }
+  if (hubs && !relays) {
+    problems.push_back(
+        {file, "a hub has no relays", "give the role relay to one host of each site"});
+  }
+  if ((relays || hubs) && mission.keys.empty()) {
+    problems.push_back({file, "relays carry only messages with the team's key",
+                        "run `ergocast keygen NAME`, and give --keys NAME"});
+  }
+}
+
+/// The options of a host's relay, hub, or peer, which is both.
+std::vector<std::string> relay_options(const DeployHost& host) {
+  std::vector<std::string> options;
+  if (host.hub.empty()) {
+    options.push_back("--to");
+    options.insert(options.end(), host.hubs.begin(), host.hubs.end());
+  } else {
+    if (!host.relay) options.push_back("--hub");
+    options.insert(options.end(), {"--listen", host.hub.substr(host.hub.rfind(':'))});
+  }
+  if (host.relay_kbit_per_s > 0)
+    options.insert(options.end(), {"--max-rate", std::to_string(host.relay_kbit_per_s)});
+  return options;
+}
+
 }  // namespace
 
 std::vector<Problem> problems_of(const Hosts& hosts, const DeployMission& mission,
                                  const std::string& file, bool apart) {
   std::vector<Problem> problems;
   check_single_roles(hosts, file, problems);
+  check_relays(hosts, mission, file, problems);
   std::size_t agents = 0;
   for (const DeployHost& host : hosts) agents += host.agents.size();
   if (agents < static_cast<std::size_t>(mission.quorum)) {
@@ -88,6 +122,8 @@ std::string roles_of(const DeployHost& host) {
   if (host.logger) roles.push_back("logger");
   if (host.sim) roles.push_back("simulated world");
   if (host.driver) roles.push_back("driver (your program)");
+  if (!host.hub.empty()) roles.push_back("hub " + host.hub);
+  if (host.relay) roles.push_back("relay");
   std::string ids;
   for (const int id : host.agents) ids += ' ' + std::to_string(id);
   if (!ids.empty()) roles.push_back((host.agents.size() == 1 ? "agent" : "agents") + ids);
@@ -96,6 +132,12 @@ std::string roles_of(const DeployHost& host) {
 
 std::vector<DeployProcess> processes_of(const DeployHost& host) {
   std::vector<DeployProcess> processes;
+  if (host.relay || !host.hub.empty()) {
+    DeployProcess relay{kRelayProcess, {"ergocast-relay"}};
+    const auto options = relay_options(host);
+    relay.command.insert(relay.command.end(), options.begin(), options.end());
+    processes.push_back(std::move(relay));
+  }
   if (host.logger) processes.push_back({"logger", {"ergocast-logger", "--out", "record"}});
   if (host.sim) processes.push_back({"sim", {"ergocast-sim"}});
   for (const int id : host.agents) {

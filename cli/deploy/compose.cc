@@ -125,8 +125,10 @@ std::vector<TextFile> compose_files(const std::vector<DeployHost>& hosts,
   std::vector<TextFile> files;
   for (const DeployHost& host : hosts) {
     if (processes_of(host).empty() && !host.coordinator) continue;
-    const bool alone = hosts.size() == 1;
-    const std::string name = (alone ? "" : host.name + '.') + "compose.yaml";
+    // The sites join a hub through the host's network.
+    const bool relays = host.relay || !host.hub.empty();
+    const bool alone = hosts.size() == 1 && !relays;
+    const std::string name = (hosts.size() == 1 ? "" : host.name + '.') + "compose.yaml";
     files.push_back({name, head(host, mission, name) + compose_text(host, mission, alone)});
   }
   return files;

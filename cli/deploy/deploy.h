@@ -19,6 +19,10 @@ struct DeployHost {
   std::string address;  ///< "user@computer" for ssh; the name, if the file gives none
   bool coordinator = false, logger = false, sim = false;
   bool driver = false;      ///< a program of the user replaces the world
+  std::string hub;          ///< "HOST:PORT" where relays join it; empty: it is no hub
+  bool relay = false;       ///< it carries the messages of its site
+  int relay_kbit_per_s = 0;       ///< --max-rate of that relay; 0: no limit
+  std::vector<std::string> hubs;  ///< of all hosts, in the order of the file
   std::vector<int> agents;  ///< ascending
 };
 
@@ -26,8 +30,8 @@ struct DeployHost {
 std::string roles_of(const DeployHost& host);
 
 /// Reads a hosts file, one computer in each line: `name [user@computer] role…` with the roles
-/// `coordinator`, `logger`, `sim`, `driver`, `agent N…` and `agents=COUNT` (which takes free
-/// numbers). `#` begins a comment. Returns all problems at once; they name the file as `file`.
+/// `coordinator`, `logger`, `sim`, `driver`, `agent N…`, `agents=COUNT` (which takes free numbers),
+/// `hub=HOST:PORT`, `relay` and `relay=KBIT/S`. `#` begins a comment. Returns all problems at once; they name the file as `file`.
 Result<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::string_view text,
                                                                   const std::string& file);
 
@@ -58,6 +62,9 @@ struct DeployProcess {
   std::string name;                  ///< "agent-3", "logger", "sim"
   std::vector<std::string> command;  ///< program and arguments, without the URL
 };
+
+/// The name of the process that is a host's relay, hub or both. It does not end with the mission.
+inline constexpr const char* kRelayProcess = "relay";
 
 /// All processes but the coordinator, in the order of their start. Records go into "record".
 std::vector<DeployProcess> processes_of(const DeployHost& host);

@@ -171,6 +171,7 @@ int deploy(const DeployOptions& options) {
   const bool apart = hosts.size() > 1 || options.to == "compose";
   if (apart) mission.url.ttl = 1;
   mission.url = options.url.value_or(mission.url);
+  if (!options.keys.empty()) mission.keys = fs::absolute(options.keys).lexically_normal();
   for (Problem& problem : problems_of(hosts, mission, options.hosts.string(), apart)) {
     problems.push_back(std::move(problem));
   }
@@ -178,7 +179,6 @@ int deploy(const DeployOptions& options) {
   if (!options.keys.empty()) {
     if (const auto problem = problem_of_key_pair(options.keys))
       return report_error(kExitBadInput, *problem);
-    mission.keys = fs::absolute(options.keys).lexically_normal();
   }
   const Basis& basis = scenario->mission().basis;
   if (basis.free_domain && !options.out.empty()) mission.modes = table_file_name(basis.table_hash);
@@ -206,7 +206,8 @@ void add_deploy(CLI::App& app, Action& action) {
   command
       ->add_option("--hosts", options->hosts,
                    "One host a line: name [user@computer] roles, which are coordinator, logger, "
-                   "sim, driver (your program that moves vehicles), agent N… and agents=COUNT")
+                   "sim, driver (your program that moves vehicles), agent N…, agents=COUNT, "
+                   "hub=HOST:PORT where relays join, and relay or relay=KBIT/S, one for each site")
       ->required()
       ->type_name("FILE");
   command

@@ -14,7 +14,8 @@ namespace ergocast {
 namespace {
 
 constexpr std::size_t kLongestName = 63;
-constexpr const char* kRoles = "coordinator, logger, sim, driver, agent N… or agents=COUNT";
+constexpr const char* kRoles =
+    "coordinator, logger, sim, driver, agent N…, agents=COUNT, relay or hub=HOST:PORT";
 
 bool is_letter_or_digit(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -33,6 +34,21 @@ bool is_address(std::string_view text) {
   const auto at = text.find('@');
   return at == text.npos ? is_plain(text)
                          : is_plain(text.substr(0, at)) && is_plain(text.substr(at + 1));
+}
+
+constexpr std::string_view kHub = "hub=", kRate = "relay=";
+
+/// HOST:PORT, where HOST is plain, or an IPv6 address in brackets.
+bool is_hub(std::string_view text) {
+  const auto colon = text.rfind(':');
+  if (colon == text.npos) return false;
+  std::string_view host = text.substr(0, colon);
+  const auto port = read_number<int>(text.substr(colon + 1));
+  if (!port || *port < 1 || *port > 65535) return false;
+  if (!host.starts_with('[') || !host.ends_with(']')) return is_plain(host);
+  host = host.substr(1, host.size() - 2);
+  constexpr std::string_view kOfIpv6 = "0123456789abcdefABCDEF:.";
+  return host.size() >= 2 && host.find_first_not_of(kOfIpv6) == host.npos;
 }
 
 struct Word {
@@ -68,7 +84,10 @@ class HostsReader {
       problems_.push_back(
           {file_, "names no host", "write one host a line: name user@computer roles"});
     }
-    if (problems_.empty()) number_agents();
+    if (problems_.empty()) {
+      number_agents();
+      tell_hubs();
+    }
     if (!problems_.empty()) return failure(std::move(problems_));
     return std::move(hosts_);
   }
@@ -91,7 +110,8 @@ class HostsReader {
     }
     std::size_t next = 1;
     host.address = host.name;
-    if (words.size() > 1 && words[1].text.find_first_of("@.") != std::string_view::npos) {
+    if (words.size() > 1 && !words[1].text.starts_with(kHub) &&
+        words[1].text.find_first_of("@.") != std::string_view::npos) {
       host.address = words[next++].text;
       if (!is_address(host.address)) {
         object(words[1], '"' + host.address + "\" is no address", "write user@computer");
@@ -110,7 +130,8 @@ class HostsReader {
     const std::map<std::string_view, bool*> flags = {{"coordinator", &host.coordinator},
                                                      {"logger", &host.logger},
                                                      {"sim", &host.sim},
-                                                     {"driver", &host.driver}};
+                                                     {"driver", &host.driver},
+                                                     {"relay", &host.relay}};
     constexpr std::string_view kCount = "agents=";
     if (const auto flag = flags.find(word.text); flag != flags.end()) {
       *flag->second = true;
@@ -126,11 +147,31 @@ class HostsReader {
       } else {
         wanted_.back() += *count;
       }
+    } else if (word.text.starts_with(kRate)) {
+      read_rate(word, host);
+    } else if (word.text.starts_with(kHub)) {
+      host.hub = word.text.substr(kHub.size());
+      if (!is_hub(host.hub)) {
+        object(word, '"' + host.hub + "\" is no place where sites can join",
+               "write hub=HOST:PORT, such as hub=hub.example.org:7700");
+      }
     } else {
       object(word, '"' + std::string(word.text) + "\" is no role",
              std::string("write ") + kRoles + (at == 1 ? "; an address has an @ or a dot" : ""));
     }
     return at + 1;
+  }
+
+  void read_rate(const Word& word, DeployHost& host) {
+    constexpr int kLeast = 8, kMost = 10'000'000;  // of ergocast-relay --max-rate
+    const auto rate = read_number<int>(word.text.substr(kRate.size()));
+    host.relay = true;
+    host.relay_kbit_per_s = rate.value_or(0);
+    if (host.relay_kbit_per_s >= kLeast && host.relay_kbit_per_s <= kMost) return;
+    object(word,
+           '"' + std::string(word.text) + "\" has no rate from " + std::to_string(kLeast) + " to " +
+               std::to_string(kMost) + " kbit/s",
+           "write relay=1000, or relay for one without a limit");
   }
 
   std::size_t read_agents(const std::vector<Word>& words, std::size_t at, DeployHost& host) {
@@ -168,6 +209,14 @@ class HostsReader {
       problems_.push_back(
           {file_, "there are more agents than " + std::to_string(kMaxAgents), "leave some out"});
     }
+  }
+
+  void tell_hubs() {
+    std::vector<std::string> hubs;
+    for (const DeployHost& host : hosts_) {
+      if (!host.hub.empty()) hubs.push_back(host.hub);
+    }
+    for (DeployHost& host : hosts_) host.hubs = hubs;
   }
 
   std::string file_;

@@ -13,7 +13,7 @@ constexpr const char* kHead = R"sh(#!/usr/bin/env bash
 #
 #   %SCRIPT% start           copy scenario and keys and start every process, the coordinator last
 #   %SCRIPT% status          what runs where
-#   %SCRIPT% stop            end the mission in order
+#   %SCRIPT% stop            end the mission in order, then the relays
 #   %SCRIPT% collect [DIR]   fetch record and logs of the latest mission
 #
 # Needs ssh without a password to every host, and on each the same version of Ergocast and a route
@@ -83,18 +83,25 @@ note_if_running() {
   if [ "$code" = 0 ] || [ "$code" = 255 ]; then left="$left $2"; fi
 }
 
-# Waits up to $1 seconds until nothing runs.
-wait_for_all() {
+# Waits up to $1 seconds until none of $2, each_process or each_relay, runs.
+wait_for() {
   local deadline=$((SECONDS + $1))
-  while left='' && each_process note_if_running && [ -n "$left" ]; do
+  while left='' && "$2" note_if_running && [ -n "$left" ]; do
     if [ "$SECONDS" -ge "$deadline" ]; then return 1; fi
     sleep 1
   done
 }
 
+# Ends all of $1, and fails if that is in vain.
+end_all() {
+  "$1" end
+  wait_for 20 "$1" || { echo "still running, or on a host that does not answer:$left" >&2; exit 1; }
+}
+
 case ${1:-} in
   start)
     each_process refuse_if_running
+    end_all each_relay   # of the last mission
     now=$(date -u +%Y%m%d-%H%M%S)
     for host in "${hosts[@]}"; do prepare "$host"; done
     tar -C "$scenario_folder" -cf - -- "${scenario_files[@]}" |
@@ -106,18 +113,18 @@ case ${1:-} in
     if [ -n "$modes" ]; then
       for host in "${hosts[@]}"; do copy_modes "$host"; done
     fi
+    each_relay launch
     each_process launch
     ;;
   status)
+    each_relay show
     each_process show
     ;;
   stop)
     # The coordinator ends the mission for all. Processes that do not receive this are ended next.
     end "$coordinator" coordinator
-    if ! wait_for_all 10; then
-      each_process end
-      wait_for_all 20 || { echo "still running, or on a host that does not answer:$left" >&2; exit 1; }
-    fi
+    wait_for 10 each_process || end_all each_process
+    end_all each_relay
     ;;
   collect)
     to=${2:-$mission}
@@ -140,7 +147,8 @@ std::string process_line(const DeployHost& host, const DeployProcess& process,
   std::string line = "  \"$1\" " + shell_word(host.address) + ' ' + process.name;
   for (const std::string& word : process.command) line += ' ' + shell_word(word);
   if (!mission.keys.empty()) line += std::string(" --key-file ../") + key;
-  if (!mission.modes.empty() && process.name != "sim")
+  const bool computes = process.name != "sim" && process.name != kRelayProcess;
+  if (!mission.modes.empty() && computes)
     line += " --modes ../" + shell_word(mission.modes);
   return line + '\n';
 }
@@ -153,13 +161,15 @@ std::string names(const std::vector<DeployHost>& hosts) {
 }
 
 std::string process_table(const std::vector<DeployHost>& hosts, const DeployMission& mission) {
+  std::string relays =
+      "\n# Calls \"$1 HOST PROCESS COMMAND…\" for every relay.\neach_relay() {\n  :\n";
   std::string text =
-      "\n# Calls \"$1 HOST PROCESS COMMAND…\" for every process.\neach_process() {\n";
+      "\n# Calls \"$1 HOST PROCESS COMMAND…\" for every other process.\neach_process() {\n";
   std::string last;
   for (const DeployHost& host : hosts) {
     text += "  # " + host.name + ": " + roles_of(host) + '\n';
     for (const DeployProcess& process : processes_of(host)) {
-      text += process_line(host, process, mission);
+      (process.name == kRelayProcess ? relays : text) += process_line(host, process, mission);
     }
     if (!host.coordinator) continue;
     DeployProcess coordinator{"coordinator",
@@ -168,7 +178,7 @@ std::string process_table(const std::vector<DeployHost>& hosts, const DeployMiss
                                mission.overrides.end());
     last = process_line(host, coordinator, mission, "mission.coordinator.key");
   }
-  return text + "  # The coordinator starts the mission.\n" + last + "}\n";
+  return relays + "}\n" + text + "  # The coordinator starts the mission.\n" + last + "}\n";
 }
 
 }  // namespace

@@ -29,9 +29,10 @@ failed=no
 write_settings() {
   local table=${modes:+$'\n'ERGOCAST_MODES=/etc/ergocast/mission/$modes}
   local options=${overrides:+$'\n'ERGOCAST_OVERRIDES=$overrides}
+  local relay=${2:+$'\n'ERGOCAST_RELAY=$2}
   ssh "$1" 'sudo tee /etc/ergocast/ergocast.env >/dev/null' <<END
 LCM_DEFAULT_URL=$url
-ERGOCAST_SCENARIO=/etc/ergocast/mission/${scenario_files[0]}$options$table
+ERGOCAST_SCENARIO=/etc/ergocast/mission/${scenario_files[0]}$options$table$relay
 END
 }
 
@@ -60,7 +61,7 @@ on_services() {
 
 case ${1:-} in
   setup)
-    for host in "${hosts[@]}"; do write_settings "$host"; done
+    for i in "${!hosts[@]}"; do write_settings "${hosts[i]}" "${relays[i]}"; done
     # The services run under a user without rights, so the scenario must be readable for all users.
     tar -C "$scenario_folder" --mode=a+rX -cf - -- "${scenario_files[@]}" |
       ssh "$coordinator" 'sudo mkdir -p /etc/ergocast/mission &&
@@ -98,9 +99,28 @@ esac
 [ "$failed" = no ]
 )sh";
 
+/// The options of a host's relay, which its service splits at spaces; empty: it has none.
+std::string relay_setting(const DeployHost& host) {
+  std::string text;
+  for (const DeployProcess& process : processes_of(host)) {
+    if (process.name != kRelayProcess) continue;
+    for (auto word = process.command.begin() + 1; word != process.command.end(); ++word)
+      text += (text.empty() ? "" : " ") + *word;
+  }
+  return text;
+}
+
+std::string relay_settings(const std::vector<DeployHost>& hosts) {
+  std::string text = "relays=(";
+  for (const DeployHost& host : hosts) text += shell_word(relay_setting(host)) + ' ';
+  text.back() = ')';
+  return text + '\n';
+}
+
 /// The services of a host, except the coordinator's.
 std::string services_of(const DeployHost& host) {
   std::string services;
+  if (!relay_setting(host).empty()) services += " ergocast-relay";
   if (host.logger) services += " ergocast-logger";
   if (host.sim) services += " ergocast-sim";
   for (const int id : host.agents) services += " ergocast-agent@" + std::to_string(id);
@@ -131,7 +151,7 @@ std::vector<TextFile> systemd_files(const std::vector<DeployHost>& hosts,
   const std::string name = mission.name + "-systemd.sh";
   return {{name,
            script_head(kUnitHead, name, mission) + script_settings(hosts, mission) +
-               overrides_setting(mission) + service_table(hosts) + kUnitBody,
+               overrides_setting(mission) + relay_settings(hosts) + service_table(hosts) + kUnitBody,
            true}};
 }
 

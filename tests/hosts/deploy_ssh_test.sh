@@ -70,10 +70,10 @@ use_scenario() {
   folder=$work/$1
   sed "s/duration_s: 600/duration_s: $1/" "$2" >"$scenario"
   shift 2
-  cat >"$work/hosts.txt" <<'END'
-ground  ops@10.0.0.1   coordinator logger sim
-rover1  pi@10.0.0.11   agent 0 2
-rover2  pi@10.0.0.12   agents=2   # 1 and 3
+  cat >"$work/hosts.txt" <<END
+ground  ops@10.0.0.1   coordinator logger sim ${at_ground:-}
+rover1  pi@10.0.0.11   agent 0 2 ${at_rovers:-}
+rover2  pi@10.0.0.12   agents=2 ${at_rovers:-}   # 1 and 3
 END
   "$bin/ergocast" deploy "$scenario" --hosts "$work/hosts.txt" --to ssh --out "$folder" "$@" >/dev/null
   script=$folder/quadrimodal_corners-ssh.sh
@@ -120,4 +120,20 @@ grep -q '"result": "stopped"' "$work/home/10.0.0.1/ergocast/quadrimodal_corners/
   fail 'the missions share a folder'
 "$script" collect "$work/collected"
 [ -z "$(find "$work/collected" -name '*.key*')" ] || fail 'keys were collected'
+
+# Over relays: no multicast passes from one host to another.
+nft 'table bridge sites { chain forward { type filter hook forward priority 0; ether type ip meta pkttype multicast drop; }; }'
+at_ground='hub=10.0.0.1:7700 relay' at_rovers='relay=5000'
+use_scenario 20 "$2" --keys "$work/our team's"
+"$script" start
+mission_ended() { [ "$("$script" status | grep ' running ' | grep -cv ' relay ' || true)" = 0 ]; }
+eventually mission_ended
+[ "$("$script" status | grep -c ' relay .* running ')" = 3 ] || fail 'relays do not wait for the next mission'
+"$script" start
+eventually mission_ended
+"$script" stop
+all_ended || fail 'stop leaves relays'
+"$script" collect "$work/relayed"
+grep -q 'joined the hub 10.0.0.1:7700' "$work/relayed/rover1/log/relay.log" || fail 'the relay has not joined'
+"$bin/ergocast" verify "$work/relayed/ground/record" || fail 'the record over relays is not what the simulation gives'
 echo 'the printed script runs, shows, stops and collects'

@@ -1,75 +1,26 @@
-#!/usr/bin/env python3
+#!/usr/bin/env -S python3 -B
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures a mission over a relay whose link delays and loses packets. By hand:
 
     tests/hosts/relay_link.py build/release/bin scenarios/quadrimodal_corners.textproto
 
 Two sites on one machine, as in docs/relays.md. World, coordinator, logger and half of the agents
-are at the ground site, the others at the field site. A kernel without netem cannot delay packets,
-so the field's relay joins a program here, not the hub: it passes each UDP packet on after the delay,
-in order, or loses it. It has no rate and no queue of its own; the relays' --max-rate is the only
-one. The last lines are the figures, as JSON.
+are at the ground site, the others at the field site, whose relay joins relay_shim.py in the place
+of the hub. The last lines are the figures, as JSON.
 """
 import argparse
-import heapq
 import json
 import os
 import pathlib
-import random
 import re
-import selectors
 import signal
-import socket
 import subprocess
 import tempfile
-import threading
-import time
+
+from relay_shim import Faults, Links
 
 GROUND, FIELD = "udpm://239.255.76.67:24600?ttl=0", "udpm://239.255.76.67:24610?ttl=0"
 HUB, LINK = 7790, 7791
-IP_AND_UDP_BYTES = 28
-
-
-class Link(threading.Thread):
-    """Between one site and the hub."""
-
-    def __init__(self, delay_s, loss, seed):
-        super().__init__(daemon=True)
-        self.delay_s, self.loss, self.dice = delay_s, loss, random.Random(seed)
-        self.site_side, self.hub_side = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
-        self.site_side.bind(("127.0.0.1", LINK))
-        self.site = None
-        self.bytes = {"from_field": 0, "to_field": 0}
-        self.late_s = 0  # the most that this program was late itself
-
-    def run(self):
-        selector = selectors.DefaultSelector()
-        for one in (self.site_side, self.hub_side):
-            one.setblocking(False)
-            selector.register(one, selectors.EVENT_READ)
-        waiting, count = [], 0
-        while True:
-            selector.select(max(0, waiting[0][0] - time.monotonic()) if waiting else 1)
-            for one in (self.site_side, self.hub_side):
-                while True:
-                    try:
-                        packet, sender = one.recvfrom(65535)
-                    except BlockingIOError:
-                        break
-                    if one is self.site_side:
-                        self.site = sender
-                    way = "from_field" if one is self.site_side else "to_field"
-                    self.bytes[way] += len(packet) + IP_AND_UDP_BYTES
-                    if self.dice.random() >= self.loss:
-                        count += 1
-                        heapq.heappush(waiting, (time.monotonic() + self.delay_s, count, way, packet))
-            while waiting and waiting[0][0] <= time.monotonic():
-                due, _, way, packet = heapq.heappop(waiting)
-                self.late_s = max(self.late_s, time.monotonic() - due)
-                if way == "from_field":
-                    self.hub_side.sendto(packet, ("127.0.0.1", HUB))
-                elif self.site:
-                    self.site_side.sendto(packet, self.site)
 
 
 def scenario_of(text, options):
@@ -106,14 +57,15 @@ class Programs:
 
 
 def start_relays(programs, options):
-    link = Link(options.delay_ms / 1000, options.loss_percent / 100, options.seed)
-    link.start()
+    faults = Faults(delay_s=options.delay_ms / 1000, loss=options.loss_percent / 100)
+    links = Links("127.0.0.1", [LINK], ("127.0.0.1", HUB), faults, options.seed)
+    links.start()
     rate = ["--max-rate", options.max_rate] if options.max_rate else []
     relay = "ergocast-relay"
     programs.start(relay, "--hub", "--listen", f"127.0.0.1:{HUB}", *rate, name="hub")
     programs.start(relay, "--to", f"127.0.0.1:{HUB}", "--lcm-url", GROUND, name="ground")
     programs.start(relay, "--to", f"127.0.0.1:{LINK}", "--lcm-url", FIELD, *rate, name="field")
-    return link
+    return links
 
 
 def run_mission(programs, options, out, field):
@@ -123,7 +75,7 @@ def run_mission(programs, options, out, field):
     coordinator = programs.start("ergocast-coordinator", programs.folder / "scenario.textproto", "--lcm-url", GROUND,
                                  "--key-file", programs.folder / "team.coordinator.key")
     for agent in range(options.agents):
-        url = GROUND if agent < options.agents // 2 else field
+        url = GROUND if agent < options.agents - options.field_agents else field
         programs.start("ergocast-agent", "--id", agent, "--lcm-url", url, name=f"agent{agent}")
     if coordinator.wait() != 0:
         raise SystemExit(programs.log("ergocast-coordinator").read_text())
@@ -134,9 +86,10 @@ def measure(options, folder, relayed):
     out = folder / ("relayed" if relayed else "direct")
     out.mkdir()
     with Programs(options, folder, out.name) as programs:
-        link = start_relays(programs, options) if relayed else None
+        links = start_relays(programs, options) if relayed else None
         run_mission(programs, options, out, FIELD if relayed else GROUND)
-        carried_bytes = dict(link.bytes) if link else {}
+        carried_bytes = dict(links.links[0].bytes) if links else {}
+        channels = dict(links.links[0].channels.most_common()) if links else {}
     summary = json.loads((out / "summary.json").read_text())
     commands = summary["ticks"] * options.agents
     figures = {"agents": options.agents, "result": summary["result"], "ticks": summary["ticks"],
@@ -146,7 +99,9 @@ def measure(options, folder, relayed):
     if relayed:
         figures["kbit_per_s"] = {way: round(8e-3 * count / summary["wall_time_s"], 1)
                                  for way, count in carried_bytes.items()}
-        figures["link_late_ms"] = round(1e3 * link.late_s, 1)
+        figures["received_kbit_per_s"] = {channel: round(8e-3 * count / summary["wall_time_s"], 1)
+                                          for channel, count in channels.items()}
+        figures["link_late_ms"] = round(1e3 * links.late_s, 1)
         figures["relays"] = {name: programs.log(name).read_text().splitlines()[-1]
                              for name in ("ground", "field", "hub")}
     return figures
@@ -166,7 +121,10 @@ def main():
     parser.add_argument("--in-agents", default="", help="more fields of `agents`")
     parser.add_argument("--seed", type=int, default=1, help="of the losses")
     parser.add_argument("--direct", action="store_true", help="also measure without a relay, to compare")
+    parser.add_argument("--field-agents", type=int, help="at the field site (default: half)")
     options = parser.parse_args()
+    if options.field_agents is None:
+        options.field_agents = options.agents - options.agents // 2
     with tempfile.TemporaryDirectory(prefix="relay-link-") as name:
         folder = pathlib.Path(name)
         subprocess.run([options.bin / "ergocast", "keygen", folder / "team"], check=True, stdout=subprocess.DEVNULL)

@@ -32,6 +32,40 @@ TEST_F(Relays, DoNotCarryWhatHasAnotherKey) {
   EXPECT_TRUE(network.arrived(3).empty());
 }
 
+TEST_F(Relays, CarryCommandsOnlyToSitesWhereAProcessReceivesThem) {
+  network.add_hub(1);
+  for (const int host : {2, 3, 4, 5}) network.add_site(host, {1}, host);
+  network.settle();
+  std::int64_t sequence = 0;
+  const auto send = [&](int site, Message message, Bus bus) {
+    std::visit([&](auto& m) { m.header.sequence = ++sequence; }, message);
+    network.send(site, datagram_of(message, key(1)), bus);
+  };
+  const auto commands_at = [&] {
+    for (const int site : {2, 3, 4, 5}) network.arrived(site).clear();
+    Command command = test::command();
+    for (const Incarnation asked_by : {0, 7}) {
+      command.asked_by = asked_by;
+      send(5, command, Bus::kCommand);
+    }
+    std::vector<std::size_t> counts;
+    for (const int site : {2, 3, 4}) counts.push_back(network.arrived(site).size());
+    return counts;
+  };
+  const std::vector<std::size_t> all{2, 2, 2}, few{2, 0, 2};
+  network.pass(11s);
+  EXPECT_EQ(commands_at(), all) << "nobody knows where the world is";
+  send(2, test::world_state(), Bus::kWorld);
+  send(4, test::record_ack(), Bus::kCommand);
+  EXPECT_EQ(commands_at(), few);
+  network.add_site(6, {1}, 6);
+  network.settle();
+  EXPECT_EQ(commands_at(), few);
+  EXPECT_EQ(network.arrived(6).size(), 2U) << "a new site may have a world that has yet to send";
+  network.pass(11s);
+  EXPECT_EQ(commands_at(), all) << "the world may have moved to another site";
+}
+
 TEST_F(Relays, CarryACopyOnlyAfterASecond) {
   network.add_hub(1);
   network.add_site(2, {1}, 2);

@@ -111,6 +111,57 @@ TEST_F(DeployFiles, TheSshScriptGivesEveryProcessItsOwnKey) {
             "ops@10.0.0.1 key\npi@10.0.0.2 key\nops@10.0.0.1 coordinator.key\n");
 }
 
+/// A server, and two sites with a relay each.
+constexpr const char* kSites =
+    "server ops@10.9.0.1 hub=hub.example.org:7700\n"
+    "ground ops@10.0.0.1 relay coordinator logger sim\n"
+    "rover pi@10.0.0.2 relay=500 agent 0 3\n";
+
+TEST_F(DeployFiles, TheSshScriptStartsRelaysFirstAndEndsThemLast) {
+  make_keys();
+  hosts_ = parse_hosts(kSites, "hosts").value();
+  // A fake ssh for which a process runs from its start until it is ended.
+  const std::string script =
+      "ssh() { case $* in"
+      "  *nohup*) local p=${3#*echo *>}; p=${p%%.pid*}; touch \"$file.$2.$p\"; echo \"start $2 $p\";;"
+      "  *kill*) local p=${3%%.pid*}; p=${p##*/}; rm \"$file.$2.$p\"; echo \"end $2 $p\";;"
+      "  *pid=*) local p=${3%%.pid*}; p=${p##*/}; [ -e \"$file.$2.$p\" ];;"
+      "  *-n*) ;; *) cat >/dev/null;; esac; }\n"
+      "tar() { :; }\nsleep() { rm -f \"$file\".*.{sim,logger,agent-*}; }\n" +
+      ssh_files(hosts_, mission_)[0].text;
+  const std::string start = output("set -- start; . \"$file\" | grep ^start", script);
+  EXPECT_TRUE(start.starts_with("start ops@10.9.0.1 relay\nstart ops@10.0.0.1 relay\n"
+                                "start pi@10.0.0.2 relay\nstart ops@10.0.0.1 logger\n"))
+      << start;
+  EXPECT_TRUE(start.ends_with("start ops@10.0.0.1 coordinator\n")) << start;
+  const std::string again = output("set -- start; . \"$file\"", script);
+  EXPECT_TRUE(has(again, "logger is still running") && !has(again, "end ")) << again;
+  EXPECT_EQ(output("set -- stop; . \"$file\"", script),
+            "end ops@10.0.0.1 coordinator\nend ops@10.9.0.1 relay\n"
+            "end ops@10.0.0.1 relay\nend pi@10.0.0.2 relay\n");
+}
+
+TEST_F(DeployFiles, ServicesAndContainersHaveTheRelaysOptions) {
+  make_keys();
+  hosts_ = parse_hosts(kSites, "hosts").value();
+  const std::string script = systemd_files(hosts_, mission_)[0].text;
+  const std::string ssh =
+      "ssh() { if [ \"$1\" = -n ]; then echo \"$3\"; else case $2 in *tee*) grep RELAY;; *) cat "
+      ">/dev/null;; esac; fi; }\ntar() { :; }\n";
+  EXPECT_EQ(output("set -- setup; . \"$file\"", ssh + script),
+            "ERGOCAST_RELAY=--hub --listen :7700\n"
+            "ERGOCAST_RELAY=--to hub.example.org:7700\n"
+            "ERGOCAST_RELAY=--to hub.example.org:7700 --max-rate 500\n");
+  EXPECT_TRUE(has(output("set -- start; . \"$file\"", ssh + script),
+                  "sudo systemctl start ergocast-relay\n"
+                  "sudo systemctl start ergocast-relay ergocast-logger ergocast-sim\n"));
+  const auto files = compose_files(hosts_, mission_);
+  ASSERT_EQ(files.size(), 3U);
+  EXPECT_TRUE(has(files[0].text, "\"ergocast-relay\", \"--hub\", \"--listen\", \":7700\"]"));
+  EXPECT_TRUE(has(files[0].text, "source: \"./mission.key\""));
+  EXPECT_TRUE(has(files[2].text, "\"--max-rate\", \"500\"]")) << files[2].text;
+}
+
 TEST_F(DeployFiles, TheTableOfModesGoesToEveryHostAndToAllButTheWorld) {
   mission_.modes = "modes-0123456789abcdef.bin";
   std::ofstream(folder_ / mission_.modes) << "table";
@@ -234,6 +285,9 @@ TEST_F(DeployFiles, ComposeOfOneHostHasABridge) {
   ASSERT_EQ(files.size(), 1U);
   EXPECT_EQ(files[0].name, "compose.yaml");
   EXPECT_FALSE(has(files[0].text, "network_mode"));
+  const auto site = parse_hosts("box hub=box:7700 relay coordinator sim agents=2", "hosts").value();
+  EXPECT_TRUE(has(compose_files(site, mission_)[0].text, "network_mode: host"))
+      << "the other sites join there";
 }
 
 TEST_F(DeployFiles, ComposeReadsWhatItIsGiven) {

@@ -51,6 +51,40 @@ TEST(HostsFile, AssignsTheRoles) {
   EXPECT_EQ(hosts[3].address, "10.0.0.13");
 }
 
+TEST(HostsFile, NamesHubsAndTheRelaysOfSites) {
+  const auto hosts = hosts_in(
+      "server hub=hub.example.org:7700\n"
+      "ground ops@10.0.0.1 relay coordinator\n"
+      "rover relay=1000 agent 0\n"
+      "second 10.0.0.9 hub=[2001:db8::1]:7701 relay\n"
+      "alone agent 1\n");
+  ASSERT_EQ(hosts.size(), 5U);
+  const std::vector<std::string> hubs{"hub.example.org:7700", "[2001:db8::1]:7701"};
+  EXPECT_EQ(hosts[0].address, "server");
+  EXPECT_EQ(hosts[0].hub, hubs[0]);
+  EXPECT_FALSE(hosts[0].relay);
+  EXPECT_TRUE(hosts[1].relay && hosts[1].coordinator);
+  EXPECT_EQ(hosts[1].relay_kbit_per_s, 0);
+  EXPECT_TRUE(hosts[2].relay);
+  EXPECT_EQ(hosts[2].relay_kbit_per_s, 1000);
+  EXPECT_EQ(hosts[3].hub, hubs[1]);
+  const auto relay_of = [&](std::size_t host) {
+    std::string words;
+    for (const DeployProcess& process : processes_of(hosts[host])) {
+      if (process.name != kRelayProcess) continue;
+      for (const std::string& word : process.command) words += ' ' + word;
+    }
+    return words;
+  };
+  EXPECT_EQ(relay_of(0), " ergocast-relay --hub --listen :7700");
+  EXPECT_EQ(relay_of(1), " ergocast-relay --to hub.example.org:7700 [2001:db8::1]:7701");
+  EXPECT_EQ(relay_of(2),
+            " ergocast-relay --to hub.example.org:7700 [2001:db8::1]:7701 --max-rate 1000");
+  EXPECT_EQ(relay_of(3), " ergocast-relay --listen :7701") << "it is a site itself";
+  EXPECT_EQ(relay_of(4), "");
+  EXPECT_EQ(roles_of(hosts[3]), "hub [2001:db8::1]:7701, relay");
+}
+
 TEST(HostsFile, CountedAgentsGetTheNumbersThatAreFreeInItsOrder) {
   const auto hosts = hosts_in("a agents=2\nb agent 0 2\nc agents=1 agent 7\nd agents=1");
   ASSERT_EQ(hosts.size(), 4U);
@@ -69,7 +103,8 @@ TEST(HostsFile, AllItsProblemsAreNamedAtOnceWithLineColumnAndRemedy) {
       "other agent\n"
       "third agent 0 0 agents=0 agents=x\n"
       "fourth\n"
-      "fifth pi agent 3\n");
+      "fifth pi agent 3\n"
+      "sixth relay=7 hub=here\n");
   for (const char* part :
        {"hosts:1:20: \"pilot\" is no role (write coordinator, logger",
         "hosts:2:1: \"ground\" is already in line 1",
@@ -79,6 +114,8 @@ TEST(HostsFile, AllItsProblemsAreNamedAtOnceWithLineColumnAndRemedy) {
         "hosts:5:7: \"agent\" without a number", "hosts:6:15: agent 0 is named twice",
         "hosts:6:17: \"agents=0\" has no count", "hosts:6:26: \"agents=x\" has no count",
         "hosts:7:1: \"fourth\" has no role", "hosts:8:7: \"pi\" is no role",
+        "hosts:9:7: \"relay=7\" has no rate from 8 to 10000000 kbit/s (write relay=1000",
+        "hosts:9:15: \"here\" is no place where sites can join (write hub=HOST:PORT",
         "an address has an @ or a dot"}) {
     EXPECT_TRUE(has(printed, part)) << part << " in\n" << printed;
   }
@@ -93,16 +130,26 @@ TEST(HostsFile, NothingThatAShellOrSshWouldReadIsAnAddress) {
   }
 }
 
+TEST(HostsFile, NothingThatAShellWouldReadIsAHub) {
+  for (const char* hub :
+       {"", "h", ":7700", "h:", "h:0", "h:65536", "h:x", "-h:1", "h;x:1", "$(h):1", "h i:1", "[]:1",
+        "[::1;x]:1", "[h]:1", "2001:db8::1:7700", "h:1:2", "h*:1", "h/i:1"}) {
+    EXPECT_TRUE(has(problems_in("host hub=" + std::string(hub)), "where sites can join")) << hub;
+  }
+}
+
 TEST(HostsFile, IsNotEmptyAndNotEndless) {
   EXPECT_TRUE(has(problems_in("# nobody\n"), "hosts: names no host (write one host a line"));
   EXPECT_TRUE(has(problems_in("a agents=1000\nb agents=25"), "more agents than 1024"));
   EXPECT_EQ(problems_in("a agents=100\nb agents=28"), "");
 }
 
-std::string lacks(const std::string& text, const std::string& url = "udpm://239.1.2.3:7000?ttl=1") {
+std::string lacks(const std::string& text, const std::string& url = "udpm://239.1.2.3:7000?ttl=1",
+                  const std::string& keys = "") {
   DeployMission mission;
   mission.name = "mission";
   mission.quorum = 2;
+  mission.keys = keys;
   mission.url = LcmUrl::parse(url).value();
   const auto hosts = hosts_in(text);
   return joined(problems_of(hosts, mission, "hosts", hosts.size() > 1));
@@ -118,6 +165,15 @@ TEST(Deployment, NeedsOneOfEachAndAQuorum) {
   EXPECT_TRUE(has(lacks("a coordinator sim agents=2\nb driver"), "a simulated world and drivers"));
   EXPECT_TRUE(has(lacks("a coordinator sim logger agents=2\nb logger"), "logger is the role of"));
   EXPECT_TRUE(has(lacks("a coordinator sim agent 5"), "1 agents are fewer than the quorum of 2"));
+}
+
+TEST(Deployment, OverRelaysNeedsAHubAndAKey) {
+  const std::string url = "udpm://239.1.2.3:7000?ttl=1", keys = "/team";
+  const std::string team = "a coordinator sim agents=2", hub = "\nb hub=b:7700";
+  EXPECT_EQ(lacks(team + " relay" + hub, url, keys), "");
+  EXPECT_TRUE(has(lacks(team + " relay" + hub), "relays carry only messages with the team's key"));
+  EXPECT_TRUE(has(lacks(team + " relay", url, keys), "no host is the hub that the relays join"));
+  EXPECT_TRUE(has(lacks(team + hub, url, keys), "a hub has no relays (give the role relay"));
 }
 
 TEST(Deployment, OfSeveralHostsNeedsMessagesThatReachThem) {
