@@ -273,6 +273,7 @@ ergocast_test(NAME mavlink_tests LABELS unit
   SOURCES
     bridges/mavlink/codec_test.cc
     bridges/mavlink/driver_test.cc
+    bridges/mavlink/fence_test.cc
     bridges/mavlink/fixes_test.cc
     bridges/mavlink/link_test.cc
     bridges/mavlink/places_test.cc

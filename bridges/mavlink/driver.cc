@@ -63,7 +63,7 @@ void Driver::begin(Tick tick, Instant now) {
   // The separation assumes that a vehicle follows a command at most so late after its position.
   const double oldest_fix_s = mission.separation.response_s + mission.timing.dt_s;
   vehicle_.begin(mission.domain, limit_mps > 0 ? limit_mps : mission.law.u_max_mps,
-                 keeps_distance(mission) ? oldest_fix_s : kOldestFix_s);
+                 keeps_distance(mission) ? oldest_fix_s : kOldestFix_s, mission.walls);
 }
 
 /// The reason why it cannot take part.

@@ -225,9 +225,108 @@ struct Statustext {
   }
 };
 
-using Packet = std::variant<Heartbeat, SysStatus, LocalPositionNed, GlobalPositionInt,
-                            GpsGlobalOrigin, CommandLong, CommandAck, SetPositionTargetLocalNed,
-                            Timesync, ExtendedSysState, Statustext>;
+// ---- the mission protocol: lists of items, of which a fence is one ----
+
+struct MissionRequest {
+  static constexpr std::uint32_t kId = 40;
+  static constexpr const char* kName = "MISSION_REQUEST";
+  std::uint16_t seq = 0;
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
+  static void list(auto& io, auto& m) {
+    io.field("seq", m.seq);
+    io.field("target_system", m.target_system);
+    io.field("target_component", m.target_component);
+    io.extension("mission_type", m.mission_type);
+  }
+};
+
+/// Asks how many items there are.
+struct MissionRequestList {
+  static constexpr std::uint32_t kId = 43;
+  static constexpr const char* kName = "MISSION_REQUEST_LIST";
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
+  static void list(auto& io, auto& m) {
+    io.field("target_system", m.target_system);
+    io.field("target_component", m.target_component);
+    io.extension("mission_type", m.mission_type);
+  }
+};
+
+struct MissionCount {
+  static constexpr std::uint32_t kId = 44;
+  static constexpr const char* kName = "MISSION_COUNT";
+  std::uint16_t count = 0;
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
+  std::uint32_t opaque_id = 0;
+  static void list(auto& io, auto& m) {
+    io.field("count", m.count);
+    io.field("target_system", m.target_system);
+    io.field("target_component", m.target_component);
+    io.extension("mission_type", m.mission_type);
+    io.extension("opaque_id", m.opaque_id);
+  }
+};
+
+struct MissionAck {
+  static constexpr std::uint32_t kId = 47;
+  static constexpr const char* kName = "MISSION_ACK";
+  std::uint8_t target_system = 0, target_component = 0, type = 0, mission_type = 0;
+  std::uint32_t opaque_id = 0;
+  static void list(auto& io, auto& m) {
+    io.field("target_system", m.target_system);
+    io.field("target_component", m.target_component);
+    io.field("type", m.type);
+    io.extension("mission_type", m.mission_type);
+    io.extension("opaque_id", m.opaque_id);
+  }
+};
+
+struct MissionRequestInt {
+  static constexpr std::uint32_t kId = 51;
+  static constexpr const char* kName = "MISSION_REQUEST_INT";
+  std::uint16_t seq = 0;
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
+  static void list(auto& io, auto& m) {
+    io.field("seq", m.seq);
+    io.field("target_system", m.target_system);
+    io.field("target_component", m.target_component);
+    io.extension("mission_type", m.mission_type);
+  }
+};
+
+struct MissionItemInt {
+  static constexpr std::uint32_t kId = 73;
+  static constexpr const char* kName = "MISSION_ITEM_INT";
+  float param1 = 0, param2 = 0, param3 = 0, param4 = 0;
+  std::int32_t x = 0, y = 0;  ///< latitude and longitude in 1e-7 degrees, in global frames
+  float z = 0;
+  std::uint16_t seq = 0, command = 0;
+  std::uint8_t target_system = 0, target_component = 0, frame = 0, current = 0, autocontinue = 0,
+               mission_type = 0;
+  static void list(auto& io, auto& m) {
+    io.field("param1", m.param1);
+    io.field("param2", m.param2);
+    io.field("param3", m.param3);
+    io.field("param4", m.param4);
+    io.field("x", m.x);
+    io.field("y", m.y);
+    io.field("z", m.z);
+    io.field("seq", m.seq);
+    io.field("command", m.command);
+    io.field("target_system", m.target_system);
+    io.field("target_component", m.target_component);
+    io.field("frame", m.frame);
+    io.field("current", m.current);
+    io.field("autocontinue", m.autocontinue);
+    io.extension("mission_type", m.mission_type);
+  }
+};
+
+using Packet =
+    std::variant<Heartbeat, SysStatus, LocalPositionNed, GlobalPositionInt, MissionRequest,
+                 MissionRequestList, MissionCount, MissionAck, GpsGlobalOrigin, MissionRequestInt,
+                 MissionItemInt, CommandLong, CommandAck, SetPositionTargetLocalNed, Timesync,
+                 ExtendedSysState, Statustext>;
 
 /// What a receiver must know of a type of message to check and read it.
 struct Type {

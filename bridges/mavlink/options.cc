@@ -139,6 +139,12 @@ void add_vehicle_options(CLI::App& app, Options& options) {
                  "Height above home: of a mission in a plane, and after a take-off [m]")
       ->check(CLI::Range(1.0, 500.0).description(""))
       ->type_name("M");
+  app.add_option(
+         "--fence", vehicle.fence_margin_m,
+         "Give the autopilot a fence, which replaces its own: so far outside the domain [m], "
+         "and around the walls. The vehicle stands until the autopilot has it")
+      ->check(CLI::Range(0.0, 1000.0).description(""))
+      ->type_name("M");
   app.add_flag("--take-command", vehicle.take_command,
                "Arm, take off and choose the mode; without: the pilot does, and the driver waits");
   app.add_option_function<std::string>(
@@ -172,6 +178,8 @@ int read_command_line(int argc, char** argv, Options& options) {
     if (!options.vehicle.origin && !options.vehicle.local_origin_m)
       throw CLI::ValidationError(
           "--origin", "give the place of the scenario's (0, 0), or --local-origin without GPS");
+    if (options.vehicle.fence_margin_m && !options.vehicle.origin)
+      throw CLI::ValidationError("--fence", "is a place on the earth, so it needs --origin");
     const char* key_file = std::getenv("ERGOCAST_KEY_FILE");
     if (key_file != nullptr && *key_file == '\0' && app.get_option("--key-file")->count() == 0)
       throw CLI::ValidationError("ERGOCAST_KEY_FILE",

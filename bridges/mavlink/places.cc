@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace ergocast::mavlink {
@@ -18,6 +19,8 @@ constexpr double kMinor_m = kMajor_m * (1 - kFlattening);
 
 constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
+constexpr double degrees(double radians) { return radians * 180 / std::numbers::pi; }
+
 /// Vincenty's A and B for the length of the geodesic.
 struct Series {
   explicit Series(double u2)
@@ -25,6 +28,9 @@ struct Series {
         b(u2 / 1024 * (256 + u2 * (-128 + u2 * (74 - 47 * u2)))) {}
   double a, b;
 };
+
+/// u², of a geodesic with that cos² of the azimuth at the equator.
+double u2_of(double cos2_a) { return cos2_a * (kMajor_m * kMajor_m / (kMinor_m * kMinor_m) - 1); }
 
 std::optional<Eigen::Vector2d> in_plane_m(const EarthPlace& from, const EarthPlace& to) {
   constexpr double f = kFlattening;
@@ -51,7 +57,7 @@ std::optional<Eigen::Vector2d> in_plane_m(const EarthPlace& from, const EarthPla
       lambda = next;
       continue;
     }
-    const Series series(cos2_a * (kMajor_m * kMajor_m / (kMinor_m * kMinor_m) - 1));
+    const Series series(u2_of(cos2_a));
     const double b = series.b;
     const double bent = b * sin_s *
                         (cos_2m + b / 4 *
@@ -86,6 +92,42 @@ std::optional<Eigen::Vector3d> local_m(const EarthPlace& origin, const EarthPlac
   const auto plane_m = in_plane_m(origin, place);
   if (!plane_m || !(plane_m->norm() <= kFarthestVehicle_m)) return std::nullopt;
   return Eigen::Vector3d(plane_m->x(), plane_m->y(), place.altitude_m - origin.altitude_m);
+}
+
+EarthPlace place_at(const EarthPlace& origin, const Eigen::Vector2d& x_m) {
+  constexpr double f = kFlattening;
+  const double way_m = x_m.norm();
+  if (way_m == 0) return origin;
+  const double sin_1 = x_m.x() / way_m, cos_1 = x_m.y() / way_m;  // of the azimuth at the origin
+  const double u1 = std::atan((1 - f) * std::tan(radians(origin.latitude_deg)));
+  const double sin_u = std::sin(u1), cos_u = std::cos(u1);
+  const double from_equator = std::atan2(std::tan(u1), cos_1);
+  const double sin_a = cos_u * sin_1, cos2_a = 1 - sin_a * sin_a;
+  const Series series(u2_of(cos2_a));
+  const double b = series.b, first = way_m / (kMinor_m * series.a);
+  double s = first, cos_2m = 1;
+  for (int round = 0; round < 50; ++round) {
+    cos_2m = std::cos(2 * from_equator + s);
+    const double sin_s = std::sin(s), square = 2 * cos_2m * cos_2m - 1;
+    const double bent =
+        b * sin_s *
+        (cos_2m + b / 4 *
+                      (std::cos(s) * square -
+                       b / 6 * cos_2m * (4 * sin_s * sin_s - 3) * (4 * cos_2m * cos_2m - 3)));
+    if (std::abs(first + bent - std::exchange(s, first + bent)) < 1e-14) break;
+  }
+  const double sin_s = std::sin(s), cos_s = std::cos(s), square = 2 * cos_2m * cos_2m - 1;
+  const double inward = sin_u * sin_s - cos_u * cos_s * cos_1;
+  const double latitude =
+      std::atan2(sin_u * cos_s + cos_u * sin_s * cos_1, (1 - f) * std::hypot(sin_a, inward));
+  const double lambda = std::atan2(sin_s * sin_1, cos_u * cos_s - sin_u * sin_s * cos_1);
+  const double c = f / 16 * cos2_a * (4 + f * (4 - 3 * cos2_a));
+  const double east =
+      lambda - (1 - c) * f * sin_a * (s + c * sin_s * (cos_2m + c * cos_s * square));
+  EarthPlace there = origin;
+  there.latitude_deg = degrees(latitude);
+  there.longitude_deg = std::remainder(origin.longitude_deg + degrees(east), 360);
+  return there;
 }
 
 Result<EarthPlace> read_place(std::string_view text) {

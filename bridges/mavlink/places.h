@@ -35,6 +35,11 @@ inline constexpr double kFarthestVehicle_m = 100e3;
 /// farther away than kFarthestVehicle_m. Wrong by less than 1 mm.
 std::optional<Eigen::Vector3d> local_m(const EarthPlace& origin, const EarthPlace& place);
 
+/// The place at such a point of the plane around `origin`: the inverse of local_m(). Wrong by less
+/// than 1 mm.
+/// @pre |x_m| ≤ kFarthestVehicle_m
+EarthPlace place_at(const EarthPlace& origin, const Eigen::Vector2d& x_m);
+
 /// "47.6535,9.175" or "47.6535,9.175,402.5".
 Result<EarthPlace> read_place(std::string_view text);
 /// "1.5,-2" or "1.5,-2,0".

@@ -5,10 +5,10 @@
 // it only sends velocities, which the autopilot obeys in OFFBOARD (PX4) or GUIDED (ArduPilot). The
 // vehicle follows its agent if all of why_not() hold, and else stands.
 //
-// Setpoints are sent every 0.1 s, whatever the mission's tick is, and at once when they change. PX4
-// gets them in every mode, because it enters OFFBOARD only while they arrive, and ignores them in
-// all other modes. ArduPilot gets them only in GUIDED, in the air and from the mission's begin on,
-// so they disturb neither a take-off nor a pilot in GUIDED before that.
+// Setpoints are sent every 0.05 s, whatever the mission's tick is, and at once when they change.
+// PX4 gets them in every mode, because it enters OFFBOARD only while they arrive, and ignores them
+// in all other modes. ArduPilot gets them only in GUIDED, in the air and from the mission's begin
+// on, so they disturb neither a take-off nor a pilot in GUIDED before that.
 //
 // No socket, thread or clock.
 #pragma once
@@ -25,8 +25,11 @@
 #include <utility>
 #include <vector>
 
+#include "bridges/mavlink/autopilots.h"
+#include "bridges/mavlink/fence.h"
 #include "bridges/mavlink/fixes.h"
 #include "bridges/mavlink/frame_reader.h"
+#include "bridges/mavlink/orders.h"
 
 namespace ergocast::mavlink {
 
@@ -36,6 +39,8 @@ struct VehicleOptions {
   std::optional<EarthPlace> origin;
   std::optional<Eigen::Vector3d> local_origin_m;
   std::optional<double> altitude_m;  ///< above home, for planes and for take-off
+  /// How far outside the domain the autopilot's fence is; nothing: it gets none. Needs `origin`.
+  std::optional<double> fence_margin_m;
 };
 
 /// A vehicle that is slower stands [m/s].
@@ -46,9 +51,6 @@ struct Note {
   bool warning = false;
   std::string text;
 };
-
-enum class Make { kPx4, kArduPilot };
-enum class Body { kCopter, kRover };
 
 class Vehicle {
  public:
@@ -63,7 +65,9 @@ class Vehicle {
 
   /// The mission runs: from now on the vehicle may follow.
   /// @param oldest_fix_s  the age from which positions are too old for this mission
-  void begin(const Box& domain, double speed_limit_mps, double oldest_fix_s = kOldestFix_s);
+  /// @param walls         for the fence
+  void begin(const Box& domain, double speed_limit_mps, double oldest_fix_s = kOldestFix_s,
+             const IndexedRings& walls = {});
   /// The velocity that the agent wants; 0: stand.
   void fly(const Eigen::Vector3d& velocity_mps);
   /// The mission is over: zero velocity until it stands, for 1 s to 10 s, then done().
@@ -91,6 +95,20 @@ class Vehicle {
   void on(const SysStatus& status, Instant now);
   void on(const Statustext& text, Instant now);
   void on(const CommandAck& ack, Instant now);
+  void on(const MissionRequest& m, Instant now) { take_for_fence(m, now); }
+  void on(const MissionRequestInt& m, Instant now) { take_for_fence(m, now); }
+  void on(const MissionAck& m, Instant now) { take_for_fence(m, now); }
+  void on(const MissionCount& m, Instant now) { take_for_fence(m, now); }
+  void on(const MissionItemInt& m, Instant now) { take_for_fence(m, now); }
+  /// 0 names everybody.
+  bool is_for_us(const auto& m) const {
+    const Source me = source();
+    return (m.target_system == 0 || m.target_system == me.system) &&
+           (m.target_component == 0 || m.target_component == me.component);
+  }
+  void take_for_fence(const auto& m, Instant now) {
+    if (is_for_us(m)) fence_.receive(m, now);
+  }
   void take_heartbeat(const Received& received, const Heartbeat& heartbeat, Instant now);
   void adopt(const Source& from, const Heartbeat& heartbeat);
   void meet_driver(const Heartbeat& other);
@@ -99,11 +117,11 @@ class Vehicle {
 
   bool known() const { return autopilot_.component != 0; }
   bool listened() const;
-  bool in_external_mode() const;
+  bool in_external_mode() const { return mode_ == external_mode_of(make_, body_); }
   bool in_the_air() const;
   bool obeys_setpoints() const;
-  std::string external_mode() const { return make_ == Make::kPx4 ? "OFFBOARD" : "GUIDED"; }
-  std::string mode_name() const;
+  std::string external_mode() const { return external_mode_name(make_); }
+  std::string mode_name() const { return mavlink::mode_name(make_, body_, mode_); }
   std::string why_it_waits_for_the_pilot() const;
   std::string why_wrong_place(Instant now) const;
   std::string why_wrong_height(Instant now) const;
@@ -113,9 +131,10 @@ class Vehicle {
   double climb_mps(Instant now) const;
   void note_change(Instant now);
   void each_second(Instant now, std::vector<Packet>& out);
+  void advance_fence(Instant now, std::vector<Packet>& out);
   void ask_for_messages(std::vector<Packet>& out) const;
   std::optional<CommandLong> next_order() const;
-  bool waits_until_armed() const;
+  bool may_order() const { return options_.take_command && !taken_over_; }
   void take_command(std::vector<Packet>& out);
   CommandLong command(std::uint16_t number, float one, float two = 0, float seven = 0) const;
 
@@ -144,10 +163,9 @@ class Vehicle {
   std::int64_t setpoints_ = 0;
   Instant next_setpoint_{}, next_second_{};
 
+  Fence fence_;
   bool taken_over_ = false;  // by the pilot, or a failsafe
-  int requests_ = 0;         // for the same step of taking command
-  std::uint16_t requested_ = 0;
-  std::optional<std::int64_t> accepted_at_heartbeat_;  // that step
+  Orders orders_;            // of a driver that takes command
   std::string last_why_ = "-", fatal_;
   std::vector<Note> notes_;
 };

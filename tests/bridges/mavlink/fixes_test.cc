@@ -44,19 +44,19 @@ TEST(MavlinkVehicle, TakesLocalPositionsOnlyWithAKnownOrigin) {
   Flight flight;
   flight.positions = false;
   flight.local = true;
-  flight.near.x = 10;
+  flight.near.x = 8;
   flight.near.z = -20;
   flight.pass(5);
   EXPECT_FALSE(flight.vehicle.fix(flight.now)) << "two vehicles would both be at 0";
   EXPECT_TRUE(flight.said("counts from the vehicle's own start")) << flight.log;
   GpsGlobalOrigin start;
-  start.latitude = 476535000 + 900;  // 10 m north of the scenario's
+  start.latitude = 476535000 + 450;  // 5 m north of the scenario's
   start.longitude = 91750000;
   start.altitude = 400000;
   flight.hear(start);
   flight.pass(0.2);
   ASSERT_TRUE(flight.vehicle.fix(flight.now)) << flight.log;
-  EXPECT_NEAR(flight.vehicle.fix(flight.now)->position_m.y(), 20, 0.02);
+  EXPECT_NEAR(flight.vehicle.fix(flight.now)->position_m.y(), 13, 0.02);
   flight.positions = true;
   GlobalPositionInt somewhere = flight.at;
   flight.at.lat = flight.at.lon = 0;

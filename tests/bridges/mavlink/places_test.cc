@@ -24,6 +24,10 @@ TEST(MavlinkPlaces, AreWhereScenariosHaveThemToAMillimetre) {
       EXPECT_NEAR(found->x(), x_m.x(), 1e-3) << latitude << " " << far_m;
       EXPECT_NEAR(found->y(), x_m.y(), 1e-3) << latitude << " " << far_m;
       EXPECT_EQ(found->z(), 112.5);
+      const EarthPlace back = place_at(origin, x_m);
+      EXPECT_NEAR(back.latitude_deg, there.latitude_deg, 1e-8) << latitude << " " << far_m;
+      const double apart_deg = std::remainder(back.longitude_deg - there.longitude_deg, 360);
+      EXPECT_NEAR(apart_deg * std::cos(there.latitude_deg * 0.0174533), 0, 1e-8) << far_m;
     }
   }
 }

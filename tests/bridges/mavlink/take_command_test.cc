@@ -57,16 +57,17 @@ Flight parked(std::uint8_t make = kPx4) {
 Flight armed(std::uint8_t make = kPx4, std::uint8_t landed_state = 1) {
   Flight flight = parked(make);
   flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
-  flight.pass(6);
+  flight.pass(6.5);
   flight.begin();
   flight.pass(1);
   EXPECT_EQ(flight.orders(400), 1) << flight.log;
+  flight.answer(400, 0);
   flight.sent.clear();
   flight.heartbeat.base_mode = 128;
   flight.landed.landed_state = landed_state;
   flight.hear(flight.landed);
   flight.hear(flight.heartbeat);
-  flight.pass(1);
+  flight.pass(0.4);
   return flight;
 }
 
@@ -75,7 +76,7 @@ TEST(MavlinkVehicle, IsThePilotsIfAnAcceptedOrderIsNotSeen) {
     for (const std::uint16_t order : {176, 400}) {
       Flight flight = parked(make);
       if (order == 400) flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
-      flight.pass(6);
+      flight.pass(6.5);
       flight.begin();
       flight.pass(1);
       ASSERT_EQ(flight.orders(order), 1) << flight.log;
@@ -127,6 +128,62 @@ TEST(MavlinkVehicle, IsThePilotsIfItIsArmedAfterTheDriverHasAskedInVain) {
   flight.at.relative_alt = 20'000;
   flight.pass(1);
   EXPECT_TRUE(flight.follows()) << flight.log;
+}
+
+/// On the ground, in the driver's mode, asked to arm, and armed by the pilot before an answer.
+Flight armed_by_the_pilot(std::uint8_t make) {
+  Flight flight = parked(make);
+  flight.heartbeat.custom_mode = make == kPx4 ? kOffboard : kGuided;
+  flight.pass(6.5);
+  flight.begin();
+  flight.pass(1);
+  EXPECT_EQ(flight.orders(400), 1) << flight.log;
+  flight.heartbeat.base_mode = 128;
+  return flight;
+}
+
+bool takes_off(const Flight& flight) { return flight.orders(22) > 0 || flight.setpoint().z() > 0; }
+
+TEST(MavlinkVehicle, IsThePilotsIfItIsArmedAndNoOrderOfTheDriverWasAccepted) {
+  for (const std::uint8_t make : {kPx4, kArduPilot}) {
+    Flight flight = armed_by_the_pilot(make);
+    for (int i = 0; i < 60; ++i) {
+      flight.pass(0.1);
+      ASSERT_FALSE(takes_off(flight)) << i << ": the pilot stands beside it";
+    }
+    flight.answer(400, 0);  // of an order that arrived after the pilot's
+    flight.pass(3);
+    EXPECT_FALSE(takes_off(flight)) << "the vehicle is the pilot's by then";
+
+    Flight refused = armed_by_the_pilot(make);
+    refused.answer(400, 1);
+    refused.pass(1);
+    refused.answer(400, 0);
+    refused.pass(2);
+    EXPECT_FALSE(takes_off(refused)) << "the driver's order was refused before";
+  }
+}
+
+TEST(MavlinkVehicle, IsTheDriversIfTheAnswerIsOvertakenByAHeartbeat) {
+  for (const std::uint8_t make : {kPx4, kArduPilot}) {
+    Flight flight = armed_by_the_pilot(make);
+    flight.pass(1);  // with a heartbeat that says it is armed
+    EXPECT_FALSE(takes_off(flight));
+    flight.answer(400, 0);
+    flight.pass(1.1);
+    EXPECT_TRUE(takes_off(flight)) << flight.log;
+  }
+}
+
+TEST(MavlinkVehicle, IsOrderedToArmOnlyInAnswerToAHeartbeat) {
+  Flight flight = parked(kArduPilot);
+  flight.heartbeat.custom_mode = kGuided;
+  flight.pass(6.5);
+  flight.begin();
+  flight.pass(0.4);
+  EXPECT_EQ(flight.orders(400), 0) << "a pilot may have armed it since the last heartbeat";
+  flight.pass(0.2);
+  EXPECT_EQ(flight.orders(400), 1) << flight.log;
 }
 
 TEST(MavlinkVehicle, IsNotTakenFromAPilotOrAFailsafeWhileItIsArmed) {
@@ -189,7 +246,7 @@ TEST(MavlinkVehicle, TakesOffNoHigherThanItsHeightAndOnlyWithALinkAndNoPilot) {
 
 TEST(MavlinkVehicle, IgnoresAnswersToOtherStations) {
   Flight flight = parked();
-  flight.pass(6);
+  flight.pass(6.5);
   flight.begin();
   flight.pass(1);
   flight.answer(176, 2, 255);

@@ -26,7 +26,7 @@ inline VehicleOptions options() {
 }
 
 /// A vehicle at 20 m above its home, with the messages that its autopilot sends: positions each
-/// 0.1 s, a heartbeat each second. It executes no command.
+/// 0.05 s, a heartbeat each second. It executes no command.
 class Flight {
  public:
   explicit Flight(const VehicleOptions& options = mavlink::options(), std::uint8_t make = kPx4)
@@ -44,8 +44,8 @@ class Flight {
 
   void hear(const Packet& packet, Source from = {1, 1}) { vehicle.receive({from, packet}, now); }
   void pass(double seconds_passed) {
-    for (int i = 0; i < std::lround(seconds_passed * 10); ++i) {
-      now += 100ms;
+    for (int i = 0; i < std::lround(seconds_passed * 20); ++i) {
+      now += 50ms;
       const auto ms = (now - kPowerOn) / std::chrono::milliseconds(1);
       at.time_boot_ms = near.time_boot_ms = static_cast<std::uint32_t>(ms);
       if (ms % 1000 == 0 && beats) hear(heartbeat);
