@@ -254,6 +254,12 @@ ergocast_test(NAME mavlink_flight_tests LABELS process RUNS_PROGRAMS
   SOURCES bridges/mavlink/flight_test.cc
   PROPERTIES FIXTURES_REQUIRED node_mavlink)
 target_compile_definitions(mavlink_flight_tests PRIVATE ERGOCAST_NODE_MAVLINK="${CMAKE_BINARY_DIR}/node_mavlink")
+# In virtual time, so no machine is too slow.
+ergocast_test(NAME mavlink_fleet_tests LABELS process OPTIMISED
+  SOURCES bridges/mavlink/fleet.cc bridges/mavlink/fleet_test.cc
+  LIBS ergocast_mavlink ergocast_lab
+  PROPERTIES FIXTURES_REQUIRED node_mavlink COST 60)
+target_compile_definitions(mavlink_fleet_tests PRIVATE ERGOCAST_NODE_MAVLINK="${CMAKE_BINARY_DIR}/node_mavlink")
 include(bridges/ros2/tests.cmake)
 add_executable(cot-lines cli/cot/lines.cc)
 target_link_libraries(cot-lines PRIVATE ergocast_tak ergocast::plan nlohmann_json::nlohmann_json ergocast::warnings)

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sixteen vehicles for ten minutes, in virtual time: so the autopilots' true time-outs of 0.5 s
+// (PX4) and 1 s (ArduPilot) count exactly, whatever the machine.
+#include "tests/bridges/mavlink/fleet.h"
+
+namespace ergocast::mavlink {
+namespace {
+
+constexpr double kDistance_m = 8;
+
+/// 16 vehicles over 240 m × 240 m with a wall in the middle.
+Mission mission_of_16() {
+  Mission mission;
+  mission.name = "fleet";
+  mission.seed = 7;
+  mission.domain.size_m = {240, 240, 0};
+  mission.basis.modes_x = mission.basis.modes_y = 8;
+  mission.target_coefficients = Coefficients::Zero(64);
+  mission.target_coefficients[0] = 1;
+  mission.law.u_max_mps = 5;
+  mission.speed_limit_mps = 5;
+  mission.timing.dt_s = 0.1;
+  mission.timing.tick_count = 1'000'000;
+  mission.timing.pace = Pace::kRealtime;
+  mission.timing.command_hold_s = 0.2;
+  mission.timing.admission_timeout_s = 600;
+  mission.separation.distance_m = kDistance_m;
+  mission.separation.lease_s = 3;
+  mission.separation.response_s = 0.5;
+  mission.separation.position_error_m = 0.5;
+  mission.walls = Rings{Ring{{115, 115}, {125, 115}, {125, 125}, {115, 125}}};
+  mission.wall_clearance_m = 5;
+  for (int i = 0; i < 16; ++i)
+    mission.starts_m.push_back({30 + 60.0 * (i % 4), 30 + 60.0 * (i / 4), 0});
+  mission.quorum = 16;
+  mission.wait_for_logger = false;
+  return mission;
+}
+
+class MavlinkFleet : public ::testing::Test {
+ protected:
+  static VehicleOptions options() {
+    VehicleOptions options;
+    options.origin = EarthPlace{47.6535, 9.175, 0, false};
+    options.altitude_m = 20;
+    options.fence_margin_m = 15;
+    return options;
+  }
+  void all_take_off() {
+    for (std::size_t i = 0; i < fleet_.size(); ++i) {
+      fleet_.pilot(i, "arm");
+      fleet_.pilot(i, "takeoff 20");
+      fleet_.pass(1);
+    }
+    fleet_.pass(10);
+    for (std::size_t i = 0; i < fleet_.size(); ++i)
+      fleet_.pilot(i, "mode " + fleet_.external_mode(i));
+    fleet_.pass(10);
+  }
+  double way_m(std::size_t vehicle) { return fleet_.way_m(vehicle); }
+  Fleet fleet_{mission_of_16(), options(), ERGOCAST_NODE_MAVLINK, 1};
+};
+
+TEST_F(MavlinkFleet, OfSixteenKeepsTheTimeOutsTheDistanceAndThePilotsWord) {
+  fleet_.pass(20);
+  for (std::size_t i = 0; i < fleet_.size(); ++i)
+    EXPECT_EQ(way_m(i), 0) << i << " has moved before a pilot allowed it";
+  EXPECT_EQ(fleet_.coordinator().state(), MissionState::kRunning);
+  all_take_off();
+  for (std::size_t i = 0; i < fleet_.size(); ++i) way_m(i);
+  fleet_.pass(60);
+  for (std::size_t i = 0; i < fleet_.size(); ++i)
+    EXPECT_GT(way_m(i), 20) << i << " " << fleet_.log(i);
+
+  // Two pilots take over; their vehicles stand, whatever their agents want.
+  fleet_.pilot(4, "mode POSCTL");
+  fleet_.pilot(5, "mode LOITER");
+  fleet_.pass(5);
+  for (const std::size_t i : {4, 5}) way_m(i);
+  fleet_.pass(55);
+  for (const std::size_t i : {4, 5}) {
+    EXPECT_LT(way_m(i), 0.01) << i << " has moved after its pilot took over";
+    fleet_.pilot(i, "mode " + fleet_.external_mode(i));
+  }
+  fleet_.pass(60);
+  for (const std::size_t i : {4, 5}) EXPECT_GT(way_m(i), 20) << i << " " << fleet_.log(i);
+
+  // Two drivers are killed, and others begin. PX4 leaves OFFBOARD, so its pilot decides again.
+  for (const std::size_t i : {8, 9}) fleet_.kill_driver(i);
+  fleet_.pass(2);
+  for (const std::size_t i : {8, 9}) fleet_.start_driver(i);
+  fleet_.pass(18);
+  EXPECT_EQ(fleet_.state(8)["mode"], "AUTO");
+  way_m(8);
+  fleet_.pass(20);
+  EXPECT_LT(way_m(8), 0.01) << "its pilot has not allowed the new driver to move it";
+  fleet_.pilot(8, "mode OFFBOARD");
+  for (const std::size_t i : {8, 9}) way_m(i);
+  fleet_.pass(60);
+  for (const std::size_t i : {8, 9}) EXPECT_GT(way_m(i), 20) << i << " " << fleet_.log(i);
+  fleet_.pass(600 - fleet_.now_s());
+
+  EXPECT_GE(fleet_.least_distance_m(), kDistance_m);
+  EXPECT_EQ(fleet_.disobeyed(), 0);
+  EXPECT_EQ(fleet_.coordinator().state(), MissionState::kRunning);
+  for (std::size_t i = 0; i < fleet_.size(); ++i) {
+    const nlohmann::json& state = fleet_.state(i);
+    const bool restarted = i == 8 || i == 9;
+    EXPECT_EQ(state["timeouts"], restarted ? 1 : 0) << i << " " << state << fleet_.log(i);
+    EXPECT_EQ(state["refused"], 0) << i;
+    EXPECT_EQ(state["fence"], 8) << i << " " << fleet_.log(i);
+    EXPECT_TRUE(state["orders"].empty()) << i;
+    RecordProperty("gap_" + std::to_string(i), state["gap"].get<int>());
+  }
+}
+
+}  // namespace
+}  // namespace ergocast::mavlink
