@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Limit (Page): places of an agent that Foxglove clients get in a second [1/s]. Beyond it: only
+/// Limit (Page): places of an agent that Foxglove clients get in a second. Beyond it: only
 /// the newest one is sent.
 constexpr int kPlacesPerSecond = 20;
 /// The kernel keeps about this much for a client that reads nothing, so that what a slow client
