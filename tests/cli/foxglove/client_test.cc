@@ -195,7 +195,7 @@ TEST_F(FoxgloveClients, CostBoundedMemoryWhateverTheySend) {
   std::string brackets(60000, '[');
   json many = {{"op", "subscribe"}};
   for (int i = 0; i < 2000; ++i) many["subscriptions"].push_back({{"id", i}, {"channelId", i}});
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 5; ++i) {
     client_->receive(client_frame(1, brackets));
     send(many);
     client_->receive(client_frame(9, "ping"));
