@@ -7,7 +7,6 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <filesystem>
 #include <fstream>
@@ -17,32 +16,14 @@
 #include <thread>
 #include <vector>
 
+#include "tests/bridges/ros2/raw_type.h"
+
 namespace ergocast::test {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
-using Bytes = std::vector<unsigned char>;
-
-/// Keeps what arrives.
-class RawType final : public dds::TopicDataType {
- public:
-  explicit RawType(const std::string& name) {
-    setName(name.c_str());
-    m_typeSize = 1 << 16;
-  }
-  bool serialize(void*, rtps::SerializedPayload_t*) override { return false; }
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
-    static_cast<Bytes*>(data)->assign(payload->data, payload->data + payload->length);
-    return true;
-  }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void*) override {
-    return [] { return 0U; };
-  }
-  void* createData() override { return new Bytes; }
-  void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
-};
+using Bytes = RawBytes;
 
 std::string hex_of(const Bytes& bytes) {
   std::string hex;

@@ -156,9 +156,9 @@ TEST_F(RosRobots, SendMessagesThatOthersCanRead) {
              "nav_msgs::msg::dds_::Path_", "ergocast/phi2", "std_msgs::msg::dds_::Float64_",
              "ergocast/status", "std_msgs::msg::dds_::String_"});
   EXPECT_EQ(wait_for(recorder), 0) << driver.printed();
-  Child reader = begin({"/usr/bin/env", "node",
-                        ERGOCAST_SOURCE_DIR "/tests/bridges/ros2/reference/read_cdr.cjs",
-                        ERGOCAST_NODE_ROS2, file});
+  Child reader =
+      begin({"/usr/bin/env", "node", ERGOCAST_SOURCE_DIR "/tests/bridges/ros2/reference/cdr.cjs",
+             ERGOCAST_NODE_ROS2, "read", file});
   ASSERT_EQ(wait_for(reader), 0) << output();
   const json read = json::parse(output());
   EXPECT_EQ(read["robot0/cmd_vel"]["linear"]["y"], 0) << "a differential drive";
@@ -190,6 +190,41 @@ TEST_F(RosRobots, SendMessagesThatOthersCanRead) {
   const std::string status = read["ergocast/status"]["data"];
   EXPECT_NE(status.find("floor: running, tick "), status.npos) << status;
   EXPECT_NE(status.find("2 of 2 agents"), status.npos) << status;
+}
+
+/// Foxglove's writer makes an Odometry; then each shorter one and damaged ones arrive between.
+TEST_F(RosRobots, TakeMessagesOfAnotherWriterAndSurviveDamagedOnes) {
+  Child writer =
+      begin({"/usr/bin/env", "node", ERGOCAST_SOURCE_DIR "/tests/bridges/ros2/reference/cdr.cjs",
+             ERGOCAST_NODE_ROS2, "write"});
+  ASSERT_EQ(wait_for(writer), 0) << output();
+  const std::string whole = output().substr(0, output().find('\n'));
+  ASSERT_GT(whole.size(), 1000U);
+  const auto send = [&](const std::vector<std::string>& messages, int times) {
+    const std::string file = folder_ / "messages";
+    std::ofstream out(file);
+    for (const std::string& message : messages) out << message << '\n';
+    out.close();
+    Child sender = begin({ERGOCAST_BIN_DIR "/fast-sender", file, "robot0/odom",
+                          "nav_msgs::msg::dds_::Odometry_", std::to_string(times)});
+    EXPECT_EQ(wait_for(sender), 0);
+  };
+  mock(14560, {"--name", "robot0", "--topic", "other"});
+  Program& driver = bridge(kRobotZero);
+  EXPECT_TRUE(driver.prints("robot 0: nobody publishes robot0/odom"));
+  std::vector<std::string> damaged;
+  for (std::size_t size = 2; size < whole.size(); size += 26)
+    damaged.push_back(whole.substr(0, size));
+  for (const std::size_t at : {0U, 2U, 24U, 40U, 96U}) {
+    damaged.push_back(whole);
+    damaged.back().replace(at, 8, "ffffff7f");
+  }
+  send(damaged, 2);
+  EXPECT_EQ(driver.printed().find("waits for the mission"), std::string::npos) << driver.printed();
+  send({whole}, 100);
+  EXPECT_TRUE(driver.prints("robot 0: waits for the mission")) << driver.printed();
+  driver.child.send(SIGTERM);
+  EXPECT_EQ(wait_for(driver.child), 0) << driver.printed();
 }
 #endif
 

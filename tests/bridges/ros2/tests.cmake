@@ -42,7 +42,9 @@ if(FASTDDSGEN AND FASTRTPS_LIBRARY AND FASTCDR_LIBRARY)
   add_executable(fast-recorder bridges/ros2/fast_recorder.cc)
   target_link_libraries(fast-recorder PRIVATE
     fast_dds_types nlohmann_json::nlohmann_json ergocast::warnings)
-  add_dependencies(ros2_mission_tests mock-robot-fast fast-recorder)
+  add_executable(fast-sender bridges/ros2/fast_sender.cc)
+  target_link_libraries(fast-sender PRIVATE fast_dds_types ergocast::warnings)
+  add_dependencies(ros2_mission_tests mock-robot-fast fast-recorder fast-sender)
   target_compile_definitions(ros2_mission_tests PRIVATE
     ERGOCAST_HAS_FAST_DDS ERGOCAST_NODE_ROS2="${CMAKE_BINARY_DIR}/node_ros2")
 endif()
