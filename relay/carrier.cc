@@ -24,6 +24,7 @@ std::optional<Admitted> Carrier::from_group(Bus bus, std::span<const std::byte> 
   const auto admitted = gate_.admit(bus, datagram);
   if (!admitted || echoes_.take(admitted->identity, now)) return std::nullopt;
   ++counts_.from_group;
+  stops_.note(*admitted, bus, datagram, now);
   if (!has_path) {
     ++counts_.no_path;
     return std::nullopt;
@@ -37,6 +38,7 @@ std::optional<Admitted> Carrier::from_flow(const GroupDatagram& datagram, Instan
   const auto admitted = gate_.admit(datagram.bus, datagram.bytes);
   if (!admitted) return std::nullopt;
   ++counts_.from_flows;
+  stops_.note(*admitted, datagram.bus, datagram.bytes, now);
   copy = !recent_.note(admitted->identity, now);
   if (copy) ++counts_.copies;
   return admitted;

@@ -11,6 +11,7 @@
 #include "core/base/ids.h"
 #include "relay/address.h"
 #include "relay/gate.h"
+#include "relay/kept_stops.h"
 #include "relay/outbound_queue.h"
 #include "relay/recent.h"
 #include "team/messages.h"
@@ -46,6 +47,10 @@ class Carrier {
   /// Puts a datagram of a flow into the local group.
   void put(GroupDatagram datagram, const Admitted& admitted, Instant now, Outbox& out);
 
+  /// Queues the stops of the last minute that came before the flow began.
+  void give_stops(Sender& sender, Instant begun, Instant now) const {
+    stops_.give(sender, begun, now);
+  }
   /// Keeps the counts of a sender that is about to be removed.
   void end(const Sender& sender) { add(sender, counts_); }
   /// Without those of senders that are still there.
@@ -55,6 +60,7 @@ class Carrier {
   Gate gate_;
   Recent recent_;
   Echoes echoes_;
+  KeptStops stops_;
   Counts counts_;
 };
 

@@ -105,6 +105,7 @@ std::optional<Admitted> Gate::admit(Bus bus, std::span<const std::byte> datagram
     const Header& header = header_of(*decoded);
     const PartOf part = std::visit([](const auto& m) { return part_of(m); }, *decoded);
     admitted.urgency = urgency_of(*decoded);
+    admitted.stops = is_one_of<Stop>(*decoded);
     admitted.commanded = is_one_of<WorldState, RecordAck>(*decoded);
     if (is_answer(*decoded)) return admitted;
     admitted.newness = newness_of(*decoded);

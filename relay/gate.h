@@ -46,6 +46,7 @@ struct Admitted {
   std::optional<Place> place;   ///< nothing: it replaces nothing
   std::int64_t newness = 0;     ///< greater is newer, at one place
   std::optional<Tick> whole{};  ///< a part that is of use only with the others of this tick
+  bool stops = false;           ///< a STOP
   bool commanded = false;       ///< of a world, driver or logger, which receive COMMAND
   Identity identity{};
 };

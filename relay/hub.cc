@@ -109,11 +109,13 @@ void Hub::on(const Join& join, const Address& from, Instant now, Outbox& out) {
   if (known == members_.end()) {
     if (members_.size() >= kMostSites) return;
     const auto rate = lower(settings_.most_bytes_per_s, join.most_bytes_per_s);
-    members_.emplace(from, Member(join, rate, now));
+    const auto joined = members_.emplace(from, Member(join, rate, now)).first;
+    carrier_.give_stops(joined->second.sender, now, now);
   } else if (join.count > known->second.count) {
     Member& member = known->second;  // the site did not get our answers
     member.count = join.count;
-    member.last_received = now;
+    member.last_received = member.joined = now;
+    carrier_.give_stops(member.sender, now, now);
     member.ours = member.theirs = {};
     member.received_by_ping = member.sent_by_pong = member.sent_by_last_pong = 0;
   }
@@ -135,6 +137,7 @@ void Hub::on(const Ping& ping, const Address& from, Instant now, Outbox& out) {
   member.ours.dropped = member.sender.dropped().total();
   member.sent_by_last_pong = std::exchange(member.sent_by_pong, member.ours.packets_sent);
   send(Pong{ping.count, member.ours}, from, out);
+  if (now < member.joined + kGivesStops) carrier_.give_stops(member.sender, member.joined, now);
 }
 
 void Hub::on(const Leave& leave, const Address& from, Instant, Outbox&) {

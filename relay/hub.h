@@ -33,6 +33,8 @@ class Hub {
   /// again.
   static constexpr std::chrono::nanoseconds kSilence = std::chrono::seconds(10);
 
+  /// How long a site that joins is given the stops of the last minute, which may be lost.
+  static constexpr std::chrono::nanoseconds kGivesStops = std::chrono::seconds(5);
   /// How long a site receives commands after a world, driver or logger there has sent anything.
   static constexpr std::chrono::nanoseconds kCommanded = std::chrono::seconds(10);
 

@@ -90,13 +90,14 @@ void Site::try_next_address(Instant now) {
   candidate_.emplace(seal_, identity_, count_, next, now);
 }
 
-void Site::adopt_candidate() {
+void Site::adopt_candidate(Instant now) {
   end_flow();
   flow_.emplace(*candidate_);
   candidate_.reset();
   flow_hub_ = try_hub_;
   try_hub_ = 0;
   sender_.emplace(settings_.most_bytes_per_s);
+  carrier_.give_stops(*sender_, now, now);
   begin_counts();
 }
 
@@ -125,7 +126,7 @@ void Site::advance(Instant now, Outbox& out) {
     candidate_->advance(now, {}, out);
     if (candidate_->joined()) {
       if (flow_) flow_->leave(out);
-      adopt_candidate();
+      adopt_candidate(now);
       next_search_ = now + kPreferredPause;
       flow_->advance(now, flow_counts_, out);
     } else if (candidate_->state() == Flow::State::kLost) {

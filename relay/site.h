@@ -58,7 +58,7 @@ class Site {
  private:
   void search(Instant now);
   void try_next_address(Instant now);
-  void adopt_candidate();
+  void adopt_candidate(Instant now);
   void begin_counts();
   void end_flow();
   void send_waiting(Instant now, Outbox& out);

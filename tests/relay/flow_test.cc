@@ -147,16 +147,67 @@ TEST_F(Relays, ACutOffSiteCarriesOnWithWhatIsNewOnceThePathIsBack) {
   EXPECT_EQ(site.counts().no_path, 1);
 }
 
+TEST_F(Relays, GiveTheStopsOfTheLastMinuteToASiteThatJoins) {
+  network.add_hub(1);
+  network.add_site(2, {1}, 2);
+  network.settle();
+  const Datagram stop = datagram_of(test::stop(), key(1));
+  network.send(2, stop);
+  network.send(2, datagram_of(status(1), key(1)));
+  network.pass(30s);
+  network.add_site(3, {1}, 3);
+  network.settle();
+  EXPECT_EQ(network.arrived(3), std::vector<Datagram>(1, stop)) << "as soon as there is a path";
+  network.pass(20s);
+  const std::size_t given = network.arrived(3).size();
+  EXPECT_GE(given, 4U) << "again, because packets are lost";
+  EXPECT_LE(given, 7U);
+  network.pass(11s);
+  network.add_site(4, {1}, 4);
+  network.settle();
+  EXPECT_TRUE(network.arrived(4).empty()) << "it is too old";
+}
+
+TEST_F(Relays, AStopOfASiteThatIsCutOffPassesOnceThePathIsBack) {
+  network.add_hub(1);
+  network.add_site(3, {1}, 3);
+  Site& site = network.add_site(2, {1}, 2);
+  network.settle();
+  network.cut(true);
+  network.pass(30s);
+  ASSERT_FALSE(site.joined());
+  network.send(2, datagram_of(test::stop(), key(1)));
+  network.cut(false);
+  network.pass(5s);
+  ASSERT_TRUE(site.joined());
+  EXPECT_GE(network.arrived(3).size(), 1U);
+}
+
+TEST_F(Relays, AShortCutHidesNoStop) {
+  network.add_hub(1);
+  network.add_site(2, {1}, 2);
+  Site& site = network.add_site(3, {1}, 3);
+  network.settle();
+  network.cut(true);
+  network.pass(2s);
+  network.pass(4s);
+  ASSERT_FALSE(site.joined());
+  network.cut(false);
+  network.send(2, datagram_of(test::stop(), key(1)));
+  network.pass(3s);
+  EXPECT_GE(network.arrived(3).size(), 1U);
+}
+
 TEST_F(Relays, WhatASiteCouldNotSendIsNoCopyOnceThePathIsBack) {
   network.add_hub(1);
   network.add_site(3, {1}, 3);
   network.settle();
   Site& site = network.add_site(2, {1}, 2);
-  const Datagram stop = datagram_of(test::stop(), key(1));
-  network.send(2, stop);
+  const Datagram sent = datagram_of(status(1), key(1));
+  network.send(2, sent);
   ASSERT_TRUE(site.joined());
   ASSERT_EQ(site.counts().no_path, 1);
-  network.send(2, stop);
+  network.send(2, sent);
   EXPECT_EQ(network.arrived(3).size(), 1U);
 }
 
