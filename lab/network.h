@@ -99,10 +99,10 @@ class Network {
   PacingClock::duration latency_;
   std::vector<Link> links_;
   std::vector<int> link_cuts_;
-  int cuts_ = 0;                             // their sum, with that of a site
+  int cuts_ = 0;  // their sum, with that of a site
   std::optional<int> cut_site_;
-  std::vector<std::uint32_t> crossed_;       // messages by node, site and bus
-  std::vector<Crossing> crossings_;          // by site, of the message that is sent now
+  std::vector<std::uint32_t> crossed_;  // messages by node, site and bus
+  std::vector<Crossing> crossings_;     // by site, of the message that is sent now
   std::map<std::pair<Instant, std::uint64_t>, Delivery> queue_;
   std::uint64_t pushed_ = 0;
   MessageFaults counted_;

@@ -19,7 +19,8 @@ namespace ergocast::relay {
 
 class KeptStops {
  public:
-  /// How long a stop is kept. Receivers accept an older one only if they have learned nothing since.
+  /// How long a stop is kept. Receivers accept an older one only if they have learned nothing
+  /// since.
   static constexpr std::chrono::nanoseconds kTime = std::chrono::seconds(60);
   /// Limit (Network): stops that a relay keeps for a minute, one for each run, bus and sender.
   /// Beyond it: a site that joins later does not receive the others.

@@ -18,12 +18,12 @@ struct DeployHost {
   std::string name;     ///< from the hosts file; a safe file name
   std::string address;  ///< "user@computer" for ssh; the name, if the file gives none
   bool coordinator = false, logger = false, sim = false;
-  bool driver = false;      ///< a program of the user replaces the world
-  std::string hub;          ///< "HOST:PORT" where relays join it; empty: it is no hub
-  bool relay = false;       ///< it carries the messages of its site
+  bool driver = false;            ///< a program of the user replaces the world
+  std::string hub;                ///< "HOST:PORT" where relays join it; empty: it is no hub
+  bool relay = false;             ///< it carries the messages of its site
   int relay_kbit_per_s = 0;       ///< --max-rate of that relay; 0: no limit
   std::vector<std::string> hubs;  ///< of all hosts, in the order of the file
-  std::vector<int> agents;  ///< ascending
+  std::vector<int> agents;        ///< ascending
 };
 
 /// "coordinator, logger, agents 0 1", for people.
@@ -31,7 +31,8 @@ std::string roles_of(const DeployHost& host);
 
 /// Reads a hosts file, one computer in each line: `name [user@computer] role…` with the roles
 /// `coordinator`, `logger`, `sim`, `driver`, `agent N…`, `agents=COUNT` (which takes free numbers),
-/// `hub=HOST:PORT`, `relay` and `relay=KBIT/S`. `#` begins a comment. Returns all problems at once; they name the file as `file`.
+/// `hub=HOST:PORT`, `relay` and `relay=KBIT/S`. `#` begins a comment. Returns all problems at once;
+/// they name the file as `file`.
 Result<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::string_view text,
                                                                   const std::string& file);
 

@@ -148,8 +148,7 @@ std::string process_line(const DeployHost& host, const DeployProcess& process,
   for (const std::string& word : process.command) line += ' ' + shell_word(word);
   if (!mission.keys.empty()) line += std::string(" --key-file ../") + key;
   const bool computes = process.name != "sim" && process.name != kRelayProcess;
-  if (!mission.modes.empty() && computes)
-    line += " --modes ../" + shell_word(mission.modes);
+  if (!mission.modes.empty() && computes) line += " --modes ../" + shell_word(mission.modes);
   return line + '\n';
 }
 

@@ -151,7 +151,8 @@ std::vector<TextFile> systemd_files(const std::vector<DeployHost>& hosts,
   const std::string name = mission.name + "-systemd.sh";
   return {{name,
            script_head(kUnitHead, name, mission) + script_settings(hosts, mission) +
-               overrides_setting(mission) + relay_settings(hosts) + service_table(hosts) + kUnitBody,
+               overrides_setting(mission) + relay_settings(hosts) + service_table(hosts) +
+               kUnitBody,
            true}};
 }
 

@@ -20,7 +20,7 @@ DATA = 0x80  # first byte of a packet of datagrams; see relay/packets.h
 
 @dataclasses.dataclass
 class Faults:
-    """Of each link, in each direction."""
+    """What each link does, in each direction."""
     delay_s: float = 0
     jitter_s: float = 0
     loss: float = 0
@@ -64,7 +64,7 @@ def channels_of(packet):
 
 
 class Links(threading.Thread):
-    """Of all sites: `ports` on `host`. The hub is at UDP `hub`."""
+    """The links of all sites, at `ports` of `host`. The hub is at UDP `hub`."""
 
     def __init__(self, host, ports, hub, faults, seed):
         super().__init__(daemon=True)

@@ -177,8 +177,8 @@ TEST(Laboratory, SwarmDrawsEveryKindForSomeSeedsOnly) {
     // These fields describe how faults happen, not whether. They are the same for all, or harmless
     // alone.
     const std::set<std::string> how = {"downtime_max_s", "lasting_share", "swarm_bus_only"};
-    const bool of_sites = std::string(field.name).starts_with("site") ||
-                          std::string(field.name).starts_with("link_");
+    const bool of_sites =
+        std::string(field.name).starts_with("site") || std::string(field.name).starts_with("link_");
     if (how.contains(field.name)) continue;
     if (of_sites) {  // only by a file
       EXPECT_EQ(on, 0) << field.name;

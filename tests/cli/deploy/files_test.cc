@@ -123,15 +123,17 @@ TEST_F(DeployFiles, TheSshScriptStartsRelaysFirstAndEndsThemLast) {
   // A fake ssh for which a process runs from its start until it is ended.
   const std::string script =
       "ssh() { case $* in"
-      "  *nohup*) local p=${3#*echo *>}; p=${p%%.pid*}; touch \"$file.$2.$p\"; echo \"start $2 $p\";;"
+      "  *nohup*) local p=${3#*echo *>}; p=${p%%.pid*}; touch \"$file.$2.$p\"; echo \"start $2 "
+      "$p\";;"
       "  *kill*) local p=${3%%.pid*}; p=${p##*/}; rm \"$file.$2.$p\"; echo \"end $2 $p\";;"
       "  *pid=*) local p=${3%%.pid*}; p=${p##*/}; [ -e \"$file.$2.$p\" ];;"
       "  *-n*) ;; *) cat >/dev/null;; esac; }\n"
       "tar() { :; }\nsleep() { rm -f \"$file\".*.{sim,logger,agent-*}; }\n" +
       ssh_files(hosts_, mission_)[0].text;
   const std::string start = output("set -- start; . \"$file\" | grep ^start", script);
-  EXPECT_TRUE(start.starts_with("start ops@10.9.0.1 relay\nstart ops@10.0.0.1 relay\n"
-                                "start pi@10.0.0.2 relay\nstart ops@10.0.0.1 logger\n"))
+  EXPECT_TRUE(
+      start.starts_with("start ops@10.9.0.1 relay\nstart ops@10.0.0.1 relay\n"
+                        "start pi@10.0.0.2 relay\nstart ops@10.0.0.1 logger\n"))
       << start;
   EXPECT_TRUE(start.ends_with("start ops@10.0.0.1 coordinator\n")) << start;
   const std::string again = output("set -- start; . \"$file\"", script);
