@@ -10,7 +10,7 @@ for program in wg wireguard-go; do
   command -v "$program" >/dev/null ||
     { echo 'skipped: needs the packages wireguard-tools and wireguard-go'; exit 77; }
 done
-[ -c /dev/net/tun ] || { echo 'skipped: needs the device /dev/net/tun'; exit 77; }
+[ -c /dev/net/tun ] || { echo 'skipped: no /dev/net/tun'; exit 77; }
 
 if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
   work=$(mktemp -d)
@@ -55,6 +55,9 @@ add_host hub 192.0.2.1
 add_host ground 192.0.2.2
 add_host field 192.0.2.3
 
+bin=$(cd "$1" && pwd)
+scenario=$(realpath "$2")
+
 # The commands of docs/relays.md, with an interface name for each host.
 cd "$work"
 for host in hub ground field; do
@@ -76,9 +79,8 @@ for host in hub ground field; do
   address=$((address + 1))
 done
 
-bin=$(cd "$1" && pwd)
 export PATH="$bin:$PATH"
-sed 's/duration_s: 600/duration_s: 20/' "$2" >mission.textproto
+sed 's/duration_s: 600/duration_s: 20/' "$scenario" >mission.textproto
 ergocast keygen team >keygen.log
 export ERGOCAST_KEY_FILE=$work/team.key LCM_DEFAULT_URL='udpm://239.255.76.67:24600?ttl=0'
 ip netns exec hub ergocast-relay --hub --listen 10.77.0.1:7700 >hub.log 2>&1 &
