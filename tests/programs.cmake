@@ -255,7 +255,7 @@ ergocast_test(NAME mavlink_flight_tests LABELS process RUNS_PROGRAMS
   PROPERTIES FIXTURES_REQUIRED node_mavlink)
 target_compile_definitions(mavlink_flight_tests PRIVATE ERGOCAST_NODE_MAVLINK="${CMAKE_BINARY_DIR}/node_mavlink")
 # In virtual time, so no machine is too slow.
-ergocast_test(NAME mavlink_fleet_tests LABELS process OPTIMISED
+ergocast_test(NAME mavlink_fleet_tests LABELS lab OPTIMISED
   SOURCES bridges/mavlink/fleet.cc bridges/mavlink/fleet_test.cc
   LIBS ergocast_mavlink ergocast_lab
   PROPERTIES FIXTURES_REQUIRED node_mavlink COST 60)
