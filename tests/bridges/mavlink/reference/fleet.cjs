@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mock autopilots of vehicle.cjs whose time is that of another program: fleet.cjs FOLDER. FOLDER has
-// node_modules. The first line of the input has the options of all vehicles as a JSON list. Each further line is
-// a step of 20 ms, and is answered by a line:
+// node_modules. The first line of the input has the options of all vehicles as a JSON list. Each further
+// line is a step of 20 ms, and is answered by a line:
 //
 //   { "ns": TIME, "frames": [[VEHICLE, HEX], …], "pilot": [[VEHICLE, ORDER], …], "states": true|false }
 //   { "frames": [[VEHICLE, HEX], …], "at": [[LAT, LON, UP], …], "states": [STATE, …] }
