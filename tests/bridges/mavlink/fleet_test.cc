@@ -74,7 +74,7 @@ class Flight16 {
   Fleet fleet_;
 };
 
-/// Nobody moves before a pilot allows it.
+/// No vehicle moves before a pilot allows it.
 void Flight16::begin() {
   fleet_.pass(20);
   for (std::size_t i = 0; i < fleet_.size(); ++i)
