@@ -77,16 +77,40 @@ optional_packages() {
     grep -xF -f <(sed 's/#.*//; /^$/d; s/$/ installed/' "$root/packaging/packages-test.txt") | cksum
 }
 
+# Prints why a build folder with the settings $1 starts anew with $2: the first line that differs.
+why_anew() {
+  local was is
+  while IFS= read -r is <&3; IFS= read -r was <&4; do
+    [ "$was" != "$is" ] || continue
+    case $was in
+      "checkout "*) echo "this checkout was moved here from ${was#checkout }, so all is compiled again" ;;
+      "arguments "*) echo "it was configured with ERGOCAST_CMAKE_ARGS=\"${was#arguments }\"" ;;
+      "packages "*) echo 'Debian packages that the build uses were added or removed' ;;
+      "presets "*) echo 'CMakePresets.json has changed' ;;
+      *) echo 'another version of Ergocast configured it' ;;
+    esac
+    return
+  done 3<<<"$2" 4<<<"$1"
+}
+
 # build_preset PRESET TARGET…
 build_preset() {
-  local folder=$root/build/$1 arguments stamp=$root/build/$1/configured-with wanted
+  local folder=$root/build/$1 arguments stamp=$root/build/$1/configured-with wanted had
   read -r -a arguments <<<"${ERGOCAST_CMAKE_ARGS:-}"
-  wanted="$root ${arguments[*]}; $(optional_packages); presets $(cksum <"$root/CMakePresets.json")"
+  wanted="checkout $root
+arguments ${arguments[*]}
+packages $(optional_packages)
+presets $(cksum <"$root/CMakePresets.json")"
+  had=$(cat "$stamp" 2>/dev/null) || true
 
   # After a change of arguments, presets, packages or the checkout's path, start from an empty
   # cache: no old setting remains.
-  if [ ! -f "$folder/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
-    say "Configuring $folder"
+  if [ ! -f "$folder/build.ninja" ] || [ "$had" != "$wanted" ]; then
+    if [ -f "$folder/build.ninja" ] && [ -n "$had" ]; then
+      say "Configuring $folder anew: $(why_anew "$had" "$wanted")"
+    else
+      say "Configuring $folder"
+    fi
     rm -f "$stamp"
     quietly cmake --fresh -S "$root" --preset "$1" "${arguments[@]}"
     printf '%s\n' "$wanted" >"$stamp"
