@@ -77,6 +77,7 @@ ergocast_test(NAME team_tests LABELS unit
     team/state_assembler_test.cc
     text/input_file_test.cc
     text/printable_test.cc
+    text/versions_test.cc
   LIBS ergocast::team ergocast::text)
 
 ergocast_test(NAME lcmtypes_tests LABELS unit OWN_FLAGS

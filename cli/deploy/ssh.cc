@@ -100,6 +100,7 @@ end_all() {
 
 case ${1:-} in
   start)
+    check_versions
     each_process refuse_if_running
     end_all each_relay   # of the last mission
     now=$(date -u +%Y%m%d-%H%M%S)
@@ -187,7 +188,7 @@ std::vector<TextFile> ssh_files(const std::vector<DeployHost>& hosts,
   const std::string name = mission.name + "-ssh.sh";
   return {{name,
            script_head(kHead, name, mission) + script_settings(hosts, mission) + names(hosts) +
-               kFolder + process_table(hosts, mission) + kBody,
+               kFolder + process_table(hosts, mission) + kCheckVersion + kBody,
            true}};
 }
 

@@ -61,6 +61,7 @@ on_services() {
 
 case ${1:-} in
   setup)
+    check_versions
     for i in "${!hosts[@]}"; do write_settings "${hosts[i]}" "${relays[i]}"; done
     # The services run under a user without rights, so the scenario must be readable for all users.
     tar -C "$scenario_folder" --mode=a+rX -cf - -- "${scenario_files[@]}" |
@@ -76,6 +77,7 @@ case ${1:-} in
     ;;
   start | enable | disable)
     verb=$1
+    if [ "$verb" = start ]; then check_versions; fi
     each_host on_services
     if [ "$verb" = start ]; then on_services "$coordinator" ergocast-coordinator; fi
     ;;
@@ -152,7 +154,7 @@ std::vector<TextFile> systemd_files(const std::vector<DeployHost>& hosts,
   return {{name,
            script_head(kUnitHead, name, mission) + script_settings(hosts, mission) +
                overrides_setting(mission) + relay_settings(hosts) + service_table(hosts) +
-               kUnitBody,
+               kCheckVersion + kUnitBody,
            true}};
 }
 

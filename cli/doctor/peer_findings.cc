@@ -4,6 +4,7 @@
 
 #include "cli/doctor/peer_exchange.h"
 #include "cli/doctor/routing.h"
+#include "text/versions.h"
 
 namespace ergocast::doctor {
 namespace {
@@ -77,7 +78,8 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
     finding.level = Level::kWarning;
     finding.found += ", but it has version " + peer.version + " and this host " + version;
     finding.why = "The programs of a team must be of one version.";
-    finding.remedy = "ergocast --version   # on every host";
+    finding.remedy =
+        "ergocast --version   # " + update_of_hosts(peer.host, peer.version, "this host", version);
   } else if (peer.key != key) {
     finding.level = Level::kWarning;
     finding.found += ", but " + other_key(peer, key);

@@ -27,8 +27,11 @@ std::string name_of(AgentId sender) {
 
 Result<std::unique_ptr<Transport>> listen_to_teams(const BusOptions& options, OnMessage on_message,
                                                    OnMessage on_replayed, Role role) {
+  Subscriptions subscriptions = subscriptions_of(role);
+  // HELLO names the version of an agent that wants to join.
+  if (role == Role::kMonitor) subscriptions[static_cast<std::size_t>(Bus::kSwarm)] |= kTypes<Hello>;
   return Transport::open(
-      options.url, options.run, options.authenticator, subscriptions_of(role),
+      options.url, options.run, options.authenticator, subscriptions,
       {.on_message = std::move(on_message), .on_replayed = std::move(on_replayed)});
 }
 

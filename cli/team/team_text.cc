@@ -8,6 +8,8 @@
 
 #include "cli/team/overload.h"
 #include "core/mission/mission.h"
+#include "text/printable.h"
+#include "text/versions.h"
 
 namespace ergocast {
 namespace {
@@ -198,6 +200,14 @@ std::string second_line(const TeamPicture& at) {
   return text;
 }
 
+/// Why the agents of a host cannot join, and the remedy.
+std::string other_version_text(const std::string& ours, const std::string& host,
+                               const std::string& version) {
+  const std::string there = printable(host), theirs = printable(version);
+  return "an agent on " + there + " cannot join: it has version " + theirs + " and this host has " +
+         ours + "; " + update_of_hosts(there, theirs, "this host", ours);
+}
+
 std::string process_line(const ProcessRow& row, bool over, bool colour) {
   std::string state = !row.heard ? "no message" : over ? "ended" : "alive";
   if (row.trouble) state = number("silent %.0f s", row.silent_s);
@@ -261,6 +271,8 @@ std::string team_table(const TeamPicture& picture, bool colour) {
   const auto warning =
       overload_warning(picture.missed_deadlines, picture.tick, picture.agents_expected);
   if (warning) text += tinted("warning: " + *warning, Tint::kLook, colour) + '\n';
+  for (const auto& [host, version] : picture.other_versions)
+    text += tinted(other_version_text(picture.version, host, version), Tint::kBad, colour) + '\n';
   if (!picture.reason.empty()) text += tinted(picture.reason, Tint::kLook, colour) + '\n';
   std::vector<std::vector<Cell>> rows;
   for (const AgentRow& row : picture.agents) rows.push_back(cells_of(row));

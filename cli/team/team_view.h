@@ -96,6 +96,10 @@ struct TeamPicture {
   /// Agents whose coverage no longer counts or soon will not, ascending; see RosterEntry.
   std::vector<AgentId> forgotten;
   std::vector<ProcessRow> processes;
+  /// Hosts whose agents ask to join with another version than `version`, this program's; filled by
+  /// `ergocast status`.
+  std::map<std::string, std::string> other_versions;
+  std::string version;
   bool trouble = false;
   bool over = false;  ///< the mission has ended: its processes exit or have exited
 };

@@ -30,9 +30,11 @@ std::string why_nobody(const BusOptions& options, const Transport& transport) {
       "you started here, `ergocast doctor --lcm-url \"" +
       url + "\"` checks the network between the hosts";
   if (transport.unknown_format().count > 0) {
-    text = transport.unknown_format().channel + " arrives on " + url +
-           " in a format that version " + version() +
-           " does not know: another version of Ergocast is on this URL";
+    text =
+        transport.unknown_format().channel + " arrives on " + url + " in a format that version " +
+        version() +
+        " does not know: another version of Ergocast is on this URL; `ergocast doctor --peer` on "
+        "both hosts names the one to update";
   }
   const std::string keys = key_problem(options, transport.refused());
   return keys.empty() ? text : keys;

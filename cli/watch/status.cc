@@ -30,6 +30,8 @@ using namespace std::chrono_literals;
 constexpr auto kPatience = 3500ms;
 constexpr auto kTurn = 50ms;
 constexpr auto kLastWord = 1s;
+/// Any process on the network can send HELLO under many names.
+constexpr std::size_t kMostOtherVersions = 16;
 
 struct StatusOptions : BusOptions {
   bool watch = false, json = false;
@@ -59,11 +61,20 @@ class Listener {
   /// Runs and replays.
   using Views = std::map<std::pair<RunId, bool>, TeamView>;
   const Views& runs() const { return runs_; }
+  /// The state of the first run, with the hosts of agents that cannot join for their version.
+  TeamPicture picture() const {
+    TeamPicture picture = runs_.begin()->second.picture(now());
+    picture.version = version();
+    picture.other_versions = other_versions_;
+    picture.trouble |= !other_versions_.empty();
+    return picture;
+  }
   const Transport& transport() const { return *transport_; }
 
  private:
   OnMessage receiver(bool replay) {
     return [this, replay](const Message& message, Bus bus, AgentId transmitter) {
+      if (const auto* hello = std::get_if<Hello>(&message)) return note_version(*hello);
       const RunId run = header_of(message).run;
       const std::pair key(run, replay);
       if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(key))) return;
@@ -73,10 +84,21 @@ class Listener {
     };
   }
 
+  void note_version(const Hello& hello) {
+    const bool is_agent = hello.header.incarnation != 0 && hello.header.sender >= kUnassigned;
+    if (!is_agent) return;
+    if (hello.version == version()) {
+      other_versions_.erase(hello.host);
+    } else if (other_versions_.size() < kMostOtherVersions) {
+      other_versions_[hello.host] = hello.version;
+    }
+  }
+
   const StatusOptions& options_;
   Instant since_;
   std::unique_ptr<Transport> transport_;
   Views runs_;
+  std::map<std::string, std::string> other_versions_;  // by host
 };
 
 int choose(const Listener& listener) {
@@ -91,10 +113,14 @@ int choose(const Listener& listener) {
   return report_error(kExitBadInput, text);
 }
 
+/// Longer than an agent that wants to join is silent, and it may have another version.
+constexpr auto kLeast = 300ms;
+
 /// Returns when all expected messages have arrived, or after kPatience. False if a signal arrived.
 bool listen_around(Listener& listener, StopSignals& signals) {
   const auto complete = [&] {
-    return listener.runs().size() == 1 && listener.runs().begin()->second.complete();
+    return now() >= listener.since() + kLeast && listener.runs().size() == 1 &&
+           listener.runs().begin()->second.complete();
   };
   while (now() < listener.since() + kPatience && !complete()) {
     listener.listen(now() + kTurn, signals.fd());
@@ -108,7 +134,7 @@ int once(const StatusOptions& options, Listener& listener, StopSignals& signals)
   if (listener.runs().empty())
     return report_error(kExitFailed, why_nobody(options, listener.transport()));
   if (listener.runs().size() > 1) return choose(listener);
-  const TeamPicture picture = listener.runs().begin()->second.picture(now());
+  const TeamPicture picture = listener.picture();
   TeamScreen(options.json).print(picture);
   return picture.trouble ? kExitDiffers : kExitDone;
 }
@@ -147,12 +173,12 @@ int watch(const StatusOptions& options, Listener& listener, StopSignals& signals
     const TeamView* view = listener.runs().empty() ? nullptr : &listener.runs().begin()->second;
     if (view != nullptr && now() >= listener.since() + kPatience) listener.stay_with_it();
     if (view != nullptr && end.come(*view, now())) {
-      return conclude_watch(options, view->picture(now()), screen);
+      return conclude_watch(options, listener.picture(), screen);
     }
     if (now() < next_show) continue;
     next_show = now() + screen.period();
     listener.follow_network();
-    if (view != nullptr) screen.show(view->picture(now()));
+    if (view != nullptr) screen.show(listener.picture());
     if (view == nullptr && !options.json) {
       screen.show("no message yet on " + options.url.base() + "\n");
     }

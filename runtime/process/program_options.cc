@@ -3,7 +3,6 @@
 // argument.
 #include "runtime/process/program_options.h"
 
-#include <lcm/lcm.h>
 #include <pwd.h>
 #include <unistd.h>
 
@@ -19,6 +18,7 @@
 #include "modes/provide.h"
 #include "modes/table_file.h"
 #include "plan/plan.h"
+#include "runtime/process/build_facts.h"
 #include "runtime/process/key_file.h"
 #include "runtime/process/logging.h"
 #include "text/input_file.h"
@@ -225,21 +225,11 @@ int parse_command_line(CLI::App& app, int argc, char** argv) {
   }
 }
 
-std::string version_text() {
-  return "ergocast " + version() + " (LCM " + std::to_string(LCM_MAJOR_VERSION) + "." +
-         std::to_string(LCM_MINOR_VERSION) + "." + std::to_string(LCM_MICRO_VERSION) +
-         ", built with " ERGOCAST_COMPILER ")";
-}
+std::string version_text() { return facts_text(); }
 
 std::string build_text() { return ERGOCAST_COMPILER; }
 
-bool cpu_has_fma() {
-#ifdef __x86_64__
-  return __builtin_cpu_supports("fma") != 0;
-#else
-  return true;
-#endif
-}
+bool cpu_has_fma() { return processor_has_fma(); }
 
 std::string version() { return ERGOCAST_VERSION; }
 

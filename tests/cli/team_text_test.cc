@@ -72,6 +72,21 @@ TEST(TeamTable, ShowsWhichBodyBlocksAnAgentOnceItLasts) {
   EXPECT_EQ(condition_text(row), "silent 0 s");
 }
 
+TEST(TeamTable, NamesTheHostToUpdate) {
+  TeamPicture picture = running_team();
+  EXPECT_EQ(team_table(picture, false).find("update"), std::string::npos);
+  picture.other_versions = {{"rover1", "0.2.0"}, {"rover2\x1b[", "99.0"}};
+  picture.version = "0.3.0";
+  const std::string text = team_table(picture, false);
+  EXPECT_NE(text.find("an agent on rover1 cannot join: it has version 0.2.0 and this host has "
+                      "0.3.0; update rover1 to 0.3.0\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("; update this host to 99.0\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\x1b'), std::string::npos) << "received text stays printable";
+  EXPECT_EQ(nlohmann::json::parse(team_json(picture))["other_versions"]["rover1"], "0.2.0");
+}
+
 TEST(TeamTable, SaysWhatHasBeenFoundOnceALoggerHasSaidSo) {
   TeamPicture picture = running_team();
   EXPECT_EQ(nlohmann::json::parse(team_json(picture))["detection_probability"], nullptr);

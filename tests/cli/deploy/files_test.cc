@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "cli/deploy/deploy.h"
+#include "runtime/process/program_options.h"
 #include "tests/support/temp_folder.h"
 #include "text/shell_word.h"
 
@@ -54,6 +55,11 @@ class DeployFiles : public ::testing::Test {
   int status_ = 0;
 };
 
+/// A branch of a fake ssh's `case`: each host has our version.
+std::string same_version() {
+  return "*'ergocast --version'*) echo \"ergocast " + version() + " (LCM 1.3.1)\"; return;; ";
+}
+
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
@@ -94,14 +100,38 @@ TEST_F(DeployFiles, TheSshScriptNamesEveryProcessAndTheCoordinatorLast) {
             "ops@10.0.0.1 coordinator ergocast-coordinator ./survey.textproto\n");
 }
 
+TEST_F(DeployFiles, ScriptsNameTheHostToUpdateAndStartNothing) {
+  const std::string ours = version();
+  const std::string start = "set -- start; . \"$file\"";
+  for (const std::string& script :
+       {ssh_files(hosts_, mission_)[0].text, systemd_files(hosts_, mission_)[0].text}) {
+    const auto answers = [&](const std::string& ground, const std::string& rover) {
+      return output(
+          start, "ssh() { case $2 in ops*) " + ground + ";; *) " + rover + ";; esac; }\n" + script);
+    };
+    const std::string same = "echo 'ergocast " + ours + " (LCM 1.3.1)'";
+    EXPECT_EQ(answers(same, "echo 'ergocast 0.2.0 (LCM 1.3.1, built)'"),
+              "pi@10.0.0.2 has ergocast 0.2.0, and " + ours +
+                  " wrote this script: update pi@10.0.0.2 to " + ours + "\n");
+    EXPECT_NE(status_, 0);
+    EXPECT_EQ(answers("echo 'ergocast 0.10.0 (LCM 1.3.1)'", "return 255"),
+              "ops@10.0.0.1 has ergocast 0.10.0, and " + ours +
+                  " wrote this script: update the other hosts to 0.10.0, and write the script "
+                  "again\npi@10.0.0.2 does not answer, or has no ergocast: install ergocast " +
+                  ours + " on pi@10.0.0.2\n");
+    EXPECT_NE(status_, 0);
+  }
+}
+
 TEST_F(DeployFiles, TheSshScriptGivesEveryProcessItsOwnKey) {
   make_keys();
   const std::string script = ssh_files(hosts_, mission_)[0].text;
   const std::string starts =
       output("set -- start; . \"$file\" | grep -o '^starting .*'",
              // A fake ssh: nothing runs yet, and it lists what it would start.
-             "ssh() { case $* in *nohup*) echo \"starting ${3#*nohup }\";; *pid*) return 1;; "
-             "*.key*) echo \"$1 $(cat)\" >>\"$file.keys\";; esac; }\ntar() { :; }\n" +
+             "ssh() { case $* in " + same_version() +
+                 "*nohup*) echo \"starting ${3#*nohup }\";; *pid*) return 1;; "
+                 "*.key*) echo \"$1 $(cat)\" >>\"$file.keys\";; esac; }\ntar() { :; }\n" +
                  script);
   EXPECT_TRUE(has(starts, "ergocast-agent --id 3 --key-file ../mission.key --lcm-url"));
   EXPECT_TRUE(has(starts, "ergocast-sim --key-file ../mission.key"));
@@ -173,9 +203,10 @@ TEST_F(DeployFiles, TheTableOfModesGoesToEveryHostAndToAllButTheWorld) {
     const auto set = script.find("copy_modes") != script.npos ? "start" : "setup";
     const std::string printed =
         output(std::string("set -- ") + set + "; . \"$file\"; cat \"$file.modes\"",
-               "ssh() { case $* in *nohup*) echo \"starting ${3#*nohup }\";; *pid*) return 1;; "
-               "*modes-*) echo \"$1 $(cat)\" >>\"$file.modes\";; *) cat >/dev/null;; esac; }\n"
-               "tar() { :; }\n" +
+               "ssh() { case $* in " + same_version() +
+                   "*nohup*) echo \"starting ${3#*nohup }\";; *pid*) return 1;; "
+                   "*modes-*) echo \"$1 $(cat)\" >>\"$file.modes\";; *) cat >/dev/null;; esac; }\n"
+                   "tar() { :; }\n" +
                    script);
     EXPECT_TRUE(has(printed, "ops@10.0.0.1 table\npi@10.0.0.2 table\n")) << printed;
     if (std::string(set) != "start") continue;
@@ -191,8 +222,8 @@ TEST_F(DeployFiles, TheTableOfModesGoesToEveryHostAndToAllButTheWorld) {
 
 TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
   // A fake ssh that prints what it would do.
-  const std::string ssh =
-      "ssh() { if [ \"$1\" = -n ]; then echo \"$2: $3\"; else echo \"$1: $2\"; cat; fi; }\n";
+  const std::string ssh = "ssh() { case $* in " + same_version() +
+                          "'-n '*) echo \"$2: $3\";; *) echo \"$1: $2\"; cat;; esac; }\n";
   std::string script = systemd_files(hosts_, mission_)[0].text;
   const std::string start = output("set -- start; . \"$file\"", ssh + script);
   EXPECT_EQ(start,
@@ -209,10 +240,12 @@ TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
     fs::permissions(folder_ / file, fs::perms::owner_read);
   mission_.folder = folder_;
   script = systemd_files(hosts_, mission_)[0].text;
-  const std::string setup = output("set -- setup; . \"$file\"",
-                                   "ssh() { echo \"$1\"; case $2 in *tee*) cat;; *) tar -tv | tr "
-                                   "-s ' ' | cut -d ' ' -f 1,6;; esac; }\n" +
-                                       script);
+  const std::string setup =
+      output("set -- setup; . \"$file\"",
+             "ssh() { case $* in " + same_version() +
+                 "*) echo \"$1\";; esac; case $2 in *tee*) cat;; *) tar -tv | tr "
+                 "-s ' ' | cut -d ' ' -f 1,6;; esac; }\n" +
+                 script);
   const std::string settings = "LCM_DEFAULT_URL=" + mission_.url.base() +
                                "\nERGOCAST_SCENARIO=/etc/ergocast/mission/survey.textproto\n";
   EXPECT_EQ(setup, "ops@10.0.0.1\n" + settings + "pi@10.0.0.2\n" + settings +
@@ -225,7 +258,8 @@ TEST_F(DeployFiles, TheSystemdScriptHandsTheKeysToTheServices) {
   std::ofstream(folder_ / "survey.textproto") << "x";
   mission_.files = {"survey.textproto"};
   const std::string ssh =
-      "ssh() { case $2 in *.key*) echo \"$1 $(cat) $2\" | tr '\\n' ' '; echo;; *) cat >/dev/null;; "
+      "ssh() { case $* in " + same_version() +
+      "*.key*) echo \"$1 $(cat) $2\" | tr '\\n' ' '; echo;; *) cat >/dev/null;; "
       "esac; }\n";
   const std::string script = ssh + systemd_files(hosts_, mission_)[0].text;
   const std::string setup = output("set -- setup; . \"$file\"", script);

@@ -56,10 +56,14 @@ TEST(PeerFindings, LossIsAWarningInEitherDirection) {
   EXPECT_EQ(finding_of(lossy).level, Level::kWarning);
 }
 
-TEST(PeerFindings, AnotherVersionIsAWarning) {
-  Peer old = peer({150, 50});
-  old.version = "0.0.9";
-  EXPECT_EQ(finding_of(old).level, Level::kWarning);
+TEST(PeerFindings, AnotherVersionIsAWarningThatNamesTheHostToUpdate) {
+  Peer other = peer({150, 50});
+  other.version = "0.0.9";
+  EXPECT_EQ(finding_of(other).level, Level::kWarning);
+  EXPECT_TRUE(contains(finding_of(other).remedy, "# update " + other.host + " to 0.1.0"))
+      << finding_of(other).remedy;
+  other.version = "0.10.0";
+  EXPECT_TRUE(contains(finding_of(other).remedy, "# update this host to 0.10.0"));
 }
 
 TEST(PeerFindings, AnotherMissionKeyIsAWarningThatNamesWhichHostHasOne) {

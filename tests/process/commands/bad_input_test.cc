@@ -70,7 +70,11 @@ TEST_F(BadInput, EveryProgramKnowsHelpAndVersion) {
     EXPECT_EQ(run(program, {"--help"}), 0) << program;
     EXPECT_TRUE(printed("--version")) << output();
     EXPECT_EQ(run(program, {"--version"}), 0) << program;
-    EXPECT_TRUE(printed("LCM 1.")) << output();
+    EXPECT_TRUE(printed("ergocast " + version() + " (LCM 1.")) << output();
+    EXPECT_TRUE(printed("\nprocessor: built for ")) << output();
+    EXPECT_TRUE(printed(cpu_has_fma() ? "FMA" : "; here: ")) << output();
+    EXPECT_TRUE(printed("\ncommit ") || !std::filesystem::exists(ERGOCAST_SOURCE_DIR "/.git"))
+        << output();
   }
 }
 

@@ -78,6 +78,19 @@ TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
   EXPECT_EQ(printed.find(warning), printed.rfind(warning)) << "once";
 }
 
+TEST_F(OtherVersion, OfAnAgentIsTroubleInStatusWhichNamesTheHostToUpdate) {
+  hand("ergocast-coordinator", {scenario(), "--run-id", to_hex(kTheirRun)});
+  const Hello theirs{{kTheirRun, kUnassigned, 73, 0, 0}, 2, "new-robot", "99.0"};
+  Program& status = hand("ergocast", {"status", "--watch"});
+  const std::string told =
+      "an agent on new-robot cannot join: it has version 99.0 and this host has " + version() +
+      "; update this host to 99.0";
+  ASSERT_TRUE(eventually([&] {
+    stranger_.send(Bus::kSwarm, theirs);
+    return status.printed().find(told) != std::string::npos;
+  })) << status.printed();
+}
+
 TEST_F(OtherVersion, OfAMessagesLayoutIsNamedWithItsChannelByAnAgentThatWaits) {
   Program& agent = hand("ergocast-agent");
   const std::string warning = "ERGOCAST_MISSION arrives in a format that version " + version() +
