@@ -43,7 +43,8 @@ class Walk {
   void file(const Json& root) {
     if (root.is_object() && root.contains("crs")) reference_system(root["crs"]);
     if (type_of(root) == "FeatureCollection") {
-      const Json& features = list(root, "features", "");
+      const std::string top;
+      const Json& features = list(root, "features", top);
       for (std::size_t i = 0; i < features.size() && !problems.full(); ++i)
         apart([&] { object(features[i], indexed("features", i)); });
     } else {

@@ -26,7 +26,7 @@ Result<std::shared_ptr<NetcdfFile>, MapProblem> NetcdfFile::open(
   const NetcdfLibrary* library = NetcdfLibrary::find();
   if (library == nullptr) {
     return failure(MapProblem{file.string() + " needs libnetcdf, which this machine does not have",
-                              "apt install libnetcdf19"});
+                              "apt install libnetcdf19; on Debian 13 libnetcdf22"});
   }
   auto header = read_netcdf_header(file);
   if (!header) {
