@@ -269,6 +269,7 @@ ergocast_script_test(cot_reference process cli/cot/reference_test.sh
 ergocast_script_test(foxglove_client process cli/foxglove/client/fetch ${CMAKE_BINARY_DIR}/foxglove_client)
 set_tests_properties(foxglove_client PROPERTIES FIXTURES_SETUP foxglove_client)
 ergocast_script_test(example_law process examples/law_test.sh ${CMAKE_BINARY_DIR})
+ergocast_script_test(setup_says_why process package/setup_test.sh)
 ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 # Installing Slurm starts services, so ./test does not install it.
 find_program(SLURMCTLD slurmctld PATHS /usr/sbin)
@@ -280,6 +281,12 @@ ergocast_nightly_script_test(package_installs package package/install_test.sh ${
 if(TARGET ergocast_python)
   ergocast_nightly_script_test(package_libraries package package/libraries_test.sh ${CMAKE_BINARY_DIR})
 endif()
+ergocast_nightly_script_test(package_lintian package package/lintian_test.sh ${CMAKE_BINARY_DIR})
+# They compile the release, on both Debians.
+foreach(suite bookworm trixie)
+  ergocast_nightly_script_test(package_release_${suite} package package/release_test.sh ${CMAKE_BINARY_DIR})
+  set_tests_properties(package_release_${suite} PROPERTIES ENVIRONMENT suite=${suite} TIMEOUT 14400)
+endforeach()
 ergocast_nightly_script_test(package_services package package/services_test.sh ${CMAKE_BINARY_DIR})
 ergocast_nightly_script_test(containers docker docker/docker_test.sh ${CMAKE_BINARY_DIR})
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by the tests of the Debian package (bash): a separate bare Debian 12 for the test.
+# Sourced by the tests of the Debian package (bash): a separate bare Debian for the test, 12 or $suite.
 #   SCRIPT BUILD_DIR
 # It is in memory, and its mounts and processes are in namespaces that end with the test. So nothing
 # remains in any case.
@@ -10,6 +10,9 @@ set -euo pipefail
 build=$(cd "$1" && pwd)
 cache=${ERGOCAST_DEBIAN_CACHE:-$build/debian}
 root=$cache/root
+suite=${suite:-bookworm}
+# shellcheck source=packaging/bare_debian.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../../packaging/bare_debian.sh"
 
 skip() { echo "skipped: $*"; exit 77; }
 fail() { echo "FAILED: $*" >&2; exit 1; }
@@ -20,7 +23,7 @@ if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
     command -v "$tool" >/dev/null || skip "$tool is missing: packaging/packages-test.txt"
   done
   unshare --mount true 2>/dev/null || skip 'this system allows no mount namespaces'
-  mkdir -p "$root" "$cache/archives"
+  mkdir -p "$root"
   # Tests use the cache in turn; within one ctest, their RESOURCE_LOCK ensures it.
   exec 9>"$cache/lock"
   flock 9
@@ -51,7 +54,7 @@ offline() { "${offline[@]}" "$@"; }
 apt_install() {
   local status=0
   in_root apt-get -qq install -y --no-install-recommends "$@" >"$work/apt.log" 2>&1 || status=$?
-  cp -n "$root"/var/cache/apt/archives/*.deb "$cache/archives/" 2>/dev/null || true
+  keep_archives "$suite" "$root" "$cache"
   [ "$status" = 0 ] || { cat "$work/apt.log" >&2; fail "apt install $*"; }
 }
 
@@ -64,19 +67,7 @@ pack() {
 }
 
 make_bare_system() {
-  local bare=$cache/bookworm.tar
-  # Its list of packages becomes outdated.
-  if [ ! -f "$bare" ] || [ -n "$(find "$bare" -mtime +3)" ]; then
-    debootstrap --variant=minbase bookworm "$root" >"$work/debootstrap.log" 2>&1 ||
-      { tail -n 5 "$work/debootstrap.log" >&2; fail 'debootstrap (is there a network?)'; }
-    in_root apt-get -qq update
-    rm -f "$root"/var/cache/apt/archives/*.deb
-    tar -C "$root" --one-file-system --exclude=./tmp/test -cf "$bare.part" . && mv "$bare.part" "$bare"
-  else
-    tar -C "$root" -xf "$bare"
-  fi
-  cp "$cache"/archives/*.deb "$root/var/cache/apt/archives/" 2>/dev/null || true
-  cp /etc/resolv.conf "$root/etc/resolv.conf"
+  bare_debian "$suite" "$root" "$cache" || fail debootstrap
   # dpkg starts no service here, because systemd does not run.
   mount -t proc proc "$root/proc"
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The package installs on a bare Debian 12, runs a mission there, and leaves nothing when it is
-# purged.
+# The package installs on a bare Debian 12, runs a mission there, keeps settings in an upgrade and
+# records and keys when it is removed, and leaves nothing when it is purged.
 # shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
 
@@ -85,12 +85,48 @@ check_page() {
   wait "$watch" || fail 'ergocast watch does not end in order'
 }
 
+# An older package, with another default in its settings. Its files are the new ones.
+make_old_package() {
+  dpkg-deb -R "$deb" "$work/old"
+  sed -i 's/^Version: .*/Version: 0.2.0/' "$work/old/DEBIAN/control"
+  echo '# an older default' >>"$work/old/etc/ergocast/ergocast.env"
+  dpkg-deb --root-owner-group -b "$work/old" "$root/tmp/old.deb" >/dev/null
+  rm -r "$work/old"
+}
+
+# The operator's files; all but the settings are below what a purge removes.
+kept='etc/ergocast/mission.key var/lib/ergocast/20260101-000000/summary.json'
+use_package() {
+  local file
+  for file in $kept; do
+    mkdir -p "$root/$(dirname "$file")"
+    echo kept >"$root/$file"
+  done
+  echo 'ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto' >"$root/etc/ergocast/ergocast.env"
+}
+expect_kept() {
+  local file
+  for file in $kept; do [ "$(cat "$root/$file")" = kept ] || fail "$1: $file is gone"; done
+  grep -qx 'ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto' "$root/etc/ergocast/ergocast.env" ||
+    fail "$1: the settings are others"
+}
+
+check_upgrade() {
+  make_old_package
+  apt_install /tmp/old.deb
+  use_package
+  apt_install -o Dpkg::Options::=--force-confold "/tmp/$(basename "$deb")"
+  # shellcheck disable=SC2016  # a field of dpkg's
+  [ "$(in_root dpkg-query -W -f '${Version}' ergocast)" = "$(dpkg-deb -f "$deb" Version)" ] || fail 'no upgrade'
+  expect_kept 'upgraded'
+}
+
 make_bare_system
 pack
 check_contents
 cp "$deb" "$root/tmp/"
 # The libraries that the package depends on stay, so that every remaining file is the package's.
-apt_install "/tmp/$(basename "$deb")"
+check_upgrade
 check_files
 check_missions
 check_figures
@@ -98,7 +134,7 @@ check_page
 in_root ergocast --version
 
 in_root dpkg --remove ergocast >/dev/null
-expect_file etc/ergocast/ergocast.env
+expect_kept 'removed'
 in_root dpkg --purge ergocast >/dev/null
 left=$(files_of_system | grep -i ergocast || true)
 [ -z "$left" ] || fail "purged, and there still is: $left"
