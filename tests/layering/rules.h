@@ -158,7 +158,9 @@ inline const std::vector<Rule> kRules = {
     // The team as events for TAK; only the last has a socket and a clock.
     {"cli/tak", {"text", "core", "team", "target/geo", "cli/team"}, {}},
     {"cli/tak/cot_event.cc", {"text", "cli/tak"}, {kXml}},
-    {"cli/tak/cot_output.h", {"core", "relay", "runtime/bus", "cli/tak"}, {kCommandLine}},
+    {"cli/tak/cot_output.h",
+     {"core", "relay", "runtime/bus", "cli/team", "cli/tak"},
+     {kCommandLine}},
     {"cli/tak/cot_output.cc", {"runtime/bus", "cli", "cli/tak"}, {kSystem}},
     {"cli/record",
      {"text", "core", "modes", "plan", "team", "lcmtypes", "scenario", "runtime/bus",
