@@ -53,6 +53,18 @@ def built_package():
     return folder / "python" / "ergocast"
 
 
+def wheel_text():
+    return f"Wheel-Version: 1.0\nGenerator: ergocast\nRoot-Is-Purelib: false\nTag: {TAG}\n"
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    info = pathlib.Path(metadata_directory) / f"ergocast-{version()}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(metadata())
+    (info / "WHEEL").write_text(wheel_text())
+    return info.name
+
+
 def get_requires_for_build_wheel(config_settings=None):
     return []
 
@@ -61,7 +73,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     info = f"ergocast-{version()}.dist-info"
     files = {f"ergocast/{path.name}": path.read_bytes() for path in sorted(built_package().iterdir()) if path.is_file()}
     files[f"{info}/METADATA"] = metadata().encode()
-    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: ergocast\nRoot-Is-Purelib: false\nTag: {TAG}\n".encode()
+    files[f"{info}/WHEEL"] = wheel_text().encode()
     files[f"{info}/licenses/LICENSE"] = (ROOT / "LICENSE").read_bytes()
 
     record = ""
