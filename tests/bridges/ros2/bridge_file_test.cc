@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bridge's file: what it says, and a sentence with file, line and field for what is wrong.
+// The bridge's file: its content, and a sentence with file, line and field for each mistake.
 #include "bridges/ros2/bridge_file.h"
 
 #include <gtest/gtest.h>
