@@ -134,8 +134,7 @@ void MissionRun::on(const Effort& theirs, const Arrival& arrival, Participant& m
   if (entry == nullptr || !search_ || step_.tick < 0) return;
   const Tick newest = step_.counted + lead(me, arrival.now);
   const bool by_author = arrival.transmitter == theirs.header.sender;
-  if (const auto refusal = search_->receive(theirs, newest, by_author))
-    me.count_refused(*refusal);
+  if (const auto refusal = search_->receive(theirs, newest, by_author)) me.count_refused(*refusal);
 }
 
 void MissionRun::on(const Beacon& beacon, const Arrival& arrival, Participant&) {

@@ -18,6 +18,7 @@
 
 #include "agent/anti_entropy.h"
 #include "coordinator/coordinator.h"
+#include "core/measure/objects.h"
 #include "core/mission/mission.h"
 #include "lab/faults.h"
 #include "lab/shadow.h"

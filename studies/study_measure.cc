@@ -79,8 +79,7 @@ void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector3d&
   team_.see(id, tick, x_m, covers);
   if (covers) {
     const ObjectSet detected = objects_.detected(id, tick, x_m);
-    const std::int32_t cell = 
-        reports_.cell(id, tick, x_m, detected, objects_.places_m());
+    const std::int32_t cell = reports_.cell(id, tick, x_m, detected, objects_.places_m());
     finds_.note(confirmations_.see(id, tick, x_m, detected, cell),
                 {.agent = id, .tick = tick, .t_s = t_s(tick), .x_m = x_m});
   }

@@ -13,11 +13,11 @@ namespace ergocast {
 namespace {
 
 constexpr double kLegsPerPersistence = 8, kLegsPerSide = 8;
-constexpr std::uint64_t kTries = 16;
-/// Numbers of random draws that belong to a leg: its turn, kTries headings, and the first heading.
+constexpr std::uint64_t kHeadings = 16;
+/// Numbers of random draws that belong to a leg: its turn, kHeadings headings, and the first one.
 constexpr std::uint64_t kDrawsPerLeg = 32;
 
-Eigen::Vector2d direction(double heading) { return {std::cos(heading), std::sin(heading)}; }
+Eigen::Vector2d towards(double heading) { return {std::cos(heading), std::sin(heading)}; }
 
 }  // namespace
 
@@ -82,11 +82,11 @@ void Drift::add_leg(std::size_t object) {
   const auto who = static_cast<std::uint32_t>(object);
   const std::uint64_t first = (course.corners_m.size() - 1) * kDrawsPerLeg;
   course.heading += turn_ * normal_pair(seed_, Purpose::kDrift, who, first).x();
-  Eigen::Vector2d to_m = from_m + leg_m_ * direction(course.heading);
-  for (std::uint64_t i = 1; i <= kTries && !is_free(from_m, to_m); ++i) {
+  Eigen::Vector2d to_m = from_m + leg_m_ * towards(course.heading);
+  for (std::uint64_t i = 1; i <= kHeadings && !is_free(from_m, to_m); ++i) {
     const double draw = uniform_pair(seed_, Purpose::kDrift, who, first + i).x();
     course.heading = 2 * std::numbers::pi * draw;
-    to_m = from_m + leg_m_ * direction(course.heading);
+    to_m = from_m + leg_m_ * towards(course.heading);
   }
   course.corners_m.push_back(is_free(from_m, to_m) ? to_m : from_m);
 }

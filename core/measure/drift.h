@@ -9,7 +9,7 @@
 //
 // T is an eighth of τ, or the time for an eighth of the domain's shorter side if that is less. A
 // leg that would leave the domain or touch a wall is replaced by one with another heading, which is
-// uniform. If kTries headings fail, the object stands still for that leg.
+// uniform. If kHeadings of them fail, the object stands still for that leg.
 //
 // A place is a function of (mission, seed, object, tick of the world). It needs all legs before it,
 // which are computed once. After kMaxLegs legs of all objects together they stand still.

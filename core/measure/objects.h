@@ -2,10 +2,10 @@
 // The objects of the simulated world, and what sensors detect of them.
 //
 // They begin at the plan's places, or at places drawn from the target as core/measure/ knows it
-// (target_mass.h), outside walls. There they stand still, or drift from there (drift.h). A sensor within r of an object detects it in a tick with the
-// probability 1 − exp(−γ dt), whatever is between (detection.h has r and γ). Places are a function
-// of plan, seed and tick of the world, and detections of these, agent and place. So worlds that
-// restart, simulations and replays agree.
+// (target_mass.h), outside walls. There they stand still, or drift from there (drift.h). A sensor
+// within r of an object detects it in a tick with the probability 1 − exp(−γ dt), whatever is
+// between (detection.h has r and γ). Places are a function of plan, seed and tick of the world, and
+// detections of these, agent and place. So worlds that restart, simulations and replays agree.
 #pragma once
 
 #include <optional>

@@ -20,8 +20,7 @@ Reports::Reports(const Mission& mission)
   if (mission.sensor.has_false_alarms()) cells_ = SearchCells(mission).cells;
 }
 
-std::int32_t Reports::cell(AgentId id, Tick tick, const Eigen::Vector3d& x_m,
-                           ObjectSet detected,
+std::int32_t Reports::cell(AgentId id, Tick tick, const Eigen::Vector3d& x_m, ObjectSet detected,
                            const std::vector<Eigen::Vector3d>& places_m) const {
   if (!cells_) return kNoCell;
   const auto who = static_cast<std::uint32_t>(id);

@@ -161,8 +161,9 @@ void fill_memory(const Box& domain, proto::Scenario& scenario) {
   if (law.has_memory_half_life_s()) return;
   law.set_memory_half_life_s(0);
   const proto::Motion& motion = scenario.world().objects().motion();
-  const bool known = has_valid(motion, "speed_mps") && has_valid(motion, "persistence_s") &&
-                     has_valid(law, "u_max_mps") && has_valid(scenario.time(), "dt_s") &&
+  const bool persists = !motion.has_persistence_s() || has_valid(motion, "persistence_s");
+  const bool known = has_valid(motion, "speed_mps") && persists && has_valid(law, "u_max_mps") &&
+                     has_valid(scenario.time(), "dt_s") &&
                      limits::kSize_m.contain(domain.size_m.x()) &&
                      limits::kSize_m.contain(domain.size_m.y());
   if (law.kind() != proto::Law::SEARCH || !domain.planar() || !known) return;
@@ -170,12 +171,12 @@ void fill_memory(const Box& domain, proto::Scenario& scenario) {
   mission.domain = domain;
   if (has_valid(scenario.sensor(), "radius_m"))
     mission.sensor.radius_m = scenario.sensor().radius_m();
-  const double drifted_s = time_to_drift_s({motion.speed_mps(), motion.persistence_s()},
-                                           kRadiiDrifted * sensor_radius_m(mission));
+  ObjectMotion drift{.speed_mps = motion.speed_mps()};
+  if (motion.has_persistence_s()) drift.persistence_s = motion.persistence_s();
+  const double drifted_s = time_to_drift_s(drift, kRadiiDrifted * sensor_radius_m(mission));
   const double crossing_s = domain.size_m.maxCoeff() / law.u_max_mps();
   const double least_s = limits::kLeastHalfLife_ticks * scenario.time().dt_s();
-  law.set_memory_half_life_s(
-      std::min(std::ceil(std::max({drifted_s, crossing_s, least_s})), 1e9));
+  law.set_memory_half_life_s(std::min(std::ceil(std::max({drifted_s, crossing_s, least_s})), 1e9));
 }
 
 /// The law has the speed of the fastest kind if each has its own. Where one of them is outside its

@@ -64,10 +64,11 @@ void validate_motion(const proto::Scenario& scenario, Checks& checks) {
   const Mission mission = mission_of(scenario);
   const double most_mps = max_drift_mps(mission.domain, mission.timing.dt_s);
   if (mission.objects.motion.speed_mps > most_mps) {
-    checks.problem("world.objects.motion.speed_mps",
-                   "objects would move by more than an eighth of the domain's shorter side in a "
-                   "step",
-                   "write at most " + shortest(rounded_down(most_mps)) + ", or a shorter time.dt_s");
+    checks.problem(
+        "world.objects.motion.speed_mps",
+        "objects would move by more than an eighth of the domain's shorter side in a "
+        "step",
+        "write at most " + shortest(rounded_down(most_mps)) + ", or a shorter time.dt_s");
   } else if (const std::int64_t legs = drift_legs(mission); legs > kMaxLegs) {
     checks.problem("world.objects.motion",
                    std::to_string(legs) + " legs of all objects are above the limit " +

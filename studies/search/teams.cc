@@ -70,9 +70,8 @@ class Team {
       const ObjectSet detected = objects_.detected(id, tick_, agent.x_m);
       agent.efforts.set_now(tick_);
       agent.efforts.look(agent.author, tick_, agent.x_m);
-      agent.efforts.report(
-          agent.author, tick_,
-          reports_.cell(id, tick_, agent.x_m, detected, objects_.places_m()));
+      agent.efforts.report(agent.author, tick_,
+                           reports_.cell(id, tick_, agent.x_m, detected, objects_.places_m()));
     }
     for (Agent& agent : agents_)
       if ((tick_ - agent.author.agent) % period_ == 0) send(agent);
@@ -204,8 +203,7 @@ class Judge {
     detection_.see(tick, x_m);
     const ObjectSet detected = objects_.detected(id, tick, x_m);
     const std::int32_t cell = reports_.cell(id, tick, x_m, detected, objects_.places_m());
-    finds_.note(confirmations_.see(id, tick, x_m, detected, cell),
-                {.agent = id, .tick = tick});
+    finds_.note(confirmations_.see(id, tick, x_m, detected, cell), {.agent = id, .tick = tick});
     if (tick % 10 != 0) return;
     const double t_s = static_cast<double>(tick) * mission_.timing.dt_s;
     const Cells& cells = detection_.cells();
@@ -351,23 +349,43 @@ const std::vector<Row> kWatching{
     {"SEARCH, half-life 600 s", search_with({{"law.memory_half_life_s", "600"}}), Conditions{}},
 };
 
+/// Three objects that drift, sought in a way.
+Row drifting(const std::string& name, const std::string& speed_mps, Fields fields,
+             std::optional<Conditions> conditions = Conditions{.loss = 0.3}) {
+  fields.insert(fields.end(),
+                {{"world.objects.count", "3"}, {"world.objects.motion.speed_mps", speed_mps}});
+  return {speed_mps + " m/s, " + name, std::move(fields), conditions};
+}
+const Fields kNothingFades{{"law.kind", "SEARCH"}, {"law.memory_half_life_s", "0"}};
+const std::vector<Row> kDrifting{
+    drifting("nothing fades", "0.6", kNothingFades),
+    drifting("the usual half-life", "0.6", kSearch),
+    drifting("half-life 150 s", "0.6", search_with({{"law.memory_half_life_s", "150"}})),
+    drifting("nothing fades", "2", kNothingFades),
+    drifting("the usual half-life", "2", kSearch),
+    drifting("MOW", "2", {{"law.kind", "MOW"}}, std::nullopt),
+    drifting("MOW", "0.6", {{"law.kind", "MOW"}}, std::nullopt),
+};
+
 }  // namespace
 }  // namespace ergocast::studies
 
 int main(int argc, char** argv) {
   using namespace ergocast::studies;
   if (argc != 5) {
-    std::fprintf(stderr,
-                 "usage: studies-search losses|deaths|alarms|watching SCENARIO FIRST LAST\n");
+    std::fprintf(
+        stderr,
+        "usage: studies-search losses|deaths|alarms|watching|drifting SCENARIO FIRST LAST\n");
     return 2;
   }
   try {
     const std::string table = argv[1];
     const bool watching = table == "watching";
-    const auto& rows = watching            ? kWatching
-                       : table == "losses" ? kLosses
-                       : table == "deaths" ? kDeaths
-                                           : kFalseAlarms;
+    const auto& rows = watching              ? kWatching
+                       : table == "losses"   ? kLosses
+                       : table == "deaths"   ? kDeaths
+                       : table == "drifting" ? kDrifting
+                                             : kFalseAlarms;
     run(argv[2], std::stoi(argv[3]), std::stoi(argv[4]), watching ? "6000" : "600", rows);
     return 0;
   } catch (const std::exception& error) {

@@ -125,7 +125,8 @@ TEST(Drift, EndsAfterItsLastLeg) {
 
 TEST(Drift, StandsStillWithoutRoom) {
   Mission mission = rooms(1);
-  mission.walls = {{{0, 50}, {30, 50}, {30, 80}, {0, 80}}, {{10, 60}, {12, 60}, {12, 62}, {10, 62}}};
+  mission.walls = {{{0, 50}, {30, 50}, {30, 80}, {0, 80}},
+                   {{10, 60}, {12, 60}, {12, 62}, {10, 62}}};
   Drift drift(mission, {{11, 61, 0}});
   for (Tick tick = 0; tick < 2000; ++tick)
     ASSERT_EQ(drift.place_m(0, tick), Vector3d(11, 61, 0)) << tick;
@@ -133,6 +134,7 @@ TEST(Drift, StandsStillWithoutRoom) {
 
 TEST(Drift, MovesWhatSensorsDetect) {
   Mission mission = sea();
+  mission.domain = {{-400, -400, 0}, {1000, 1000, 0}};
   mission.sensor.detections_per_s = 1e6;
   mission.objects.places_m = {{10, 20, 0}};
   Objects objects(mission);

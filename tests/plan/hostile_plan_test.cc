@@ -364,9 +364,9 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m = with_places(m), m.objects.end_when_found = 3; },
       [](Mission& m) { m = with_places(m), m.objects.motion.speed_mps = -1; },
       [](Mission& m) { m = with_places(m), m.objects.motion.speed_mps = 53; },  // in a step too far
-      [](Mission& m) { m = with_places(m), m.objects.motion.persistence_s = 0; },
+      [](Mission& m) { m = with_places(m), m.objects.motion.persistence_s = -1; },
       [](Mission& m) { m = with_places(m), m.objects.motion.speed_mps = 0; },  // and a persistence
-      [](Mission& m) { m.objects.motion.speed_mps = 1; },                      // of no objects
+      [](Mission& m) { m.objects = {}, m.objects.motion.speed_mps = 1; },      // of no objects
       [](Mission& m) {
         m = with_places(m), m.timing.tick_count = 10000000, m.objects.motion.persistence_s = 0.01;
       },  // too many legs

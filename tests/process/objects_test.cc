@@ -65,8 +65,8 @@ TEST_F(FindingObjects, AreFoundOnceInSpiteOfKills) {
 
 /// They drift: real processes find what one process finds, also after the world was replaced.
 TEST_F(FindingObjects, ThatDrift) {
-  const std::vector<std::string> set{"--set", kObjects, "--set", kRadius,
-                                     "--set", "world.objects.motion.speed_mps=6"};
+  const std::vector<std::string> set{"--set", kObjects, "--set",
+                                     kRadius, "--set",  "world.objects.motion.speed_mps=6"};
   const auto objects = simulated(set);
   EXPECT_GT(objects["found"].get<int>(), 2);
   std::vector<std::string> words{"--lockstep"};

@@ -106,10 +106,11 @@ TEST(MissionText, HasNoDefaultThatAScenarioWritesOut) {
 // With SEARCH the half-life 0 is a value of its own: objects that drift have another default.
 TEST(MissionText, HasTheHalfLifeOfASearch) {
   for (const char* written : {"0", "40"}) {
-    const Scenario scenario = good(small_with(
-        "law {", "world { objects { count: 1 motion { speed_mps: 1 } } } law { kind: SEARCH "
-                 "memory_half_life_s: " +
-                     std::string(written) + ' '));
+    const Scenario scenario =
+        good(small_with("law {",
+                        "world { objects { count: 1 motion { speed_mps: 1 } } } law { kind: SEARCH "
+                        "memory_half_life_s: " +
+                            std::string(written) + ' '));
     EXPECT_EQ(without_block(scenario.print(), "target"), mission_text(scenario.mission()));
     EXPECT_NE(mission_text(scenario.mission()).find("memory_half_life_s: " + std::string(written)),
               std::string::npos);
