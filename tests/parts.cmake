@@ -31,13 +31,13 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/measure_test.cc
     core/merge_property_test.cc
     core/mower_test.cc
-    core/contacts_test.cc
-    core/drift_test.cc
-    core/objects_test.cc
+    core/search/contacts_test.cc
+    core/search/drift_test.cc
+    core/search/objects_test.cc
     core/noise_test.cc
     core/perturbation_test.cc
     core/potential_test.cc
-    core/search_test.cc
+    core/search/search_test.cc
     core/separation_test.cc
     core/smooth_input_test.cc
     core/speed_limit_test.cc
