@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bad input gives one clear error and the documented exit code; no file is written.
 
+#include "runtime/process/program_options.h"
 #include "tests/process/support/programs.h"
 
 namespace ergocast::test {
