@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads every topic of a live team with @foxglove/ws-protocol's client: read_team.cjs FOLDER URL MESSAGES PROTOCOL
-// [SILENT]. FOLDER has node_modules. It ends when each topic that is advertised has had MESSAGES messages, or one
-// if it changes rarely, and prints a line of JSON for each topic; or what is wrong. The topic SILENT may have none.
+// Reads every topic of a live team with @foxglove/ws-protocol's client:
+//   read_team.cjs FOLDER URL MESSAGES PROTOCOL [SILENT]
+// FOLDER has node_modules. It ends when each topic that is advertised has had MESSAGES messages, or one if it
+// changes rarely. It prints a line of JSON for each topic, or what is wrong. The topic SILENT may have none.
 const assert = require('node:assert');
 const [folder, url, wanted, protocol, silent] = process.argv.slice(2);
 const { FoxgloveClient } = require(`${folder}/node_modules/@foxglove/ws-protocol`);
