@@ -102,6 +102,7 @@ void Recorder::on(const WorldState& world, const Arrival& arrival) {
     received_.newest = std::max(received_.newest, tick);
     if (arrival.fresh) meet(world.header, arrival.now);
     if (arrival.fresh) received_.world_left = world.last;
+    received_.drivers = received_.drivers || is_of_a_driver(world);
   }
   const Tick horizon = std::max(row_.tick, received_.lost_before) + kLeadTicks;
   if (tick < row_.tick || (is_lockstep() && tick > horizon)) return;
@@ -228,7 +229,17 @@ bool Recorder::holds(Tick tick) const {
 
 /// Whether several drivers may send a tick, each its own robot's part. Then a row is also written
 /// without a robot whose driver is silent.
-bool Recorder::has_drivers() const { return me_.knows_mission() && uses_beacons(mission()); }
+bool Recorder::has_drivers() const {
+  return me_.knows_mission() && (uses_beacons(mission()) || received_.drivers);
+}
+
+/// A driver of one robot sends as many parts as the team has robots; one world needs fewer.
+bool Recorder::is_of_a_driver(const WorldState& part) const {
+  AgentId robots = static_cast<AgentId>(mission().starts_m.size());
+  for (const RosterEntry& entry : follower().roster())
+    robots = std::max(robots, entry.author.agent + 1);
+  return !is_lockstep() && part.parts > (robots + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;
+}
 
 bool Recorder::write_next_row(Instant now) {
   if (!tables_.good() || all_rows_written()) return false;

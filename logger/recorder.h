@@ -95,6 +95,7 @@ class Recorder {
     Tick newest = 0;          // of the states received
     Tick lost_before = 0;     // states of earlier ticks may be gone for good
     bool world_left = false;  // its last message was received
+    bool drivers = false;     // each robot has a driver of its own
   };
   struct Ending {
     std::optional<Instant> since;  // from then on nothing more is expected
@@ -118,6 +119,7 @@ class Recorder {
   MissionKnowledge known() const { return {follower(), reports_, amendments_}; }
   bool holds(Tick tick) const;
   bool has_drivers() const;
+  bool is_of_a_driver(const WorldState& part) const;
   bool all_rows_written() const {
     return me_.knows_mission() && row_.counted() >= me_.tick_count();
   }

@@ -30,8 +30,15 @@ WorldState part_of(AgentId id, int robots, Tick tick) {
   return state;
 }
 
-TEST(RecordOfDrivers, JoinsTheirStates) {
-  Record record(driven(3));
+class RecordOfDrivers : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(With, RecordOfDrivers, ::testing::Bool(), [](const auto& leased) {
+  return leased.param ? "Leases" : "NoSeparation";
+});
+
+TEST_P(RecordOfDrivers, JoinsTheirStates) {
+  Mission mission = driven(3);
+  if (!GetParam()) mission.separation = {};
+  Record record(mission);
   for (Tick tick = 0; tick < 10; ++tick) {
     for (const AgentId id : {2, 0, 1}) record.deliver(part_of(id, 3, tick), at(tick * 100ms));
   }
@@ -43,8 +50,10 @@ TEST(RecordOfDrivers, JoinsTheirStates) {
   EXPECT_EQ(number(rows[5], 4), 501);
 }
 
-TEST(RecordOfDrivers, HasTheOthersRowsWhereThePartsOfOneAreMissing) {
-  Record record(driven(3));
+TEST_P(RecordOfDrivers, HasTheOthersRowsWhereThePartsOfOneAreMissing) {
+  Mission mission = driven(3);
+  if (!GetParam()) mission.separation = {};
+  Record record(mission);
   for (Tick tick = 0; tick < 40; ++tick) {
     for (const AgentId id : {2, 0, 1}) {
       if (id != 1 || tick < 10 || tick >= 20)

@@ -264,7 +264,7 @@ const std::map<std::string, Rule>& rules() {
       {"Objects.places", many(0, 3)},
       {"Objects.motion", may(draw_block)},
       {"Motion.speed_mps", must(spread(0.01, 2))},
-      {"Motion.persistence_s", may(spread(0.1, 500))},
+      {"Motion.persistence_s", must(spread(0.1, 500))},
       {"Objects.end_when_found", may(number(1, 3))},  // see drawn_agreement.h
       {"World.wall_clearance_m", may(either(0, number(0.5, 1)))},
       {"World.disturbance_intensity", may(spread(0.01, 5))},
