@@ -16,11 +16,11 @@
 namespace ergocast::cli {
 namespace {
 
-using namespace std::chrono_literals;
-
 /// Limit (Page): places of an agent that Foxglove clients get in a second. Beyond it: only
 /// the newest one is sent.
 constexpr int kPlacesPerSecond = 20;
+constexpr std::chrono::nanoseconds kPlacesPeriod =
+    std::chrono::nanoseconds(std::chrono::seconds(1)) / kPlacesPerSecond;
 /// The kernel keeps about this much for a client that reads nothing, so that what a slow client
 /// gets is not old.
 constexpr int kKernelBuffer = 64 << 10;
@@ -146,12 +146,12 @@ void FoxgloveOutput::note(const std::string& sentence) {
 }
 
 void FoxgloveOutput::serve(Instant now) {
-  if (now - second_ >= 1s) {
+  if (now - second_ >= std::chrono::seconds(1)) {
     second_ = now;
     notes_ = 0;
   }
   if (now >= next_places_) {
-    next_places_ = now + 1s / kPlacesPerSecond;
+    next_places_ = now + kPlacesPeriod;
     topics_.show_places(wall_time_ns());
   }
   connections_.serve(now);
