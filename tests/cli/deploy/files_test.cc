@@ -152,7 +152,7 @@ TEST_F(DeployFiles, TheSshScriptStartsRelaysFirstAndEndsThemLast) {
   hosts_ = parse_hosts(kSites, "hosts").value();
   // A fake ssh for which a process runs from its start until it is ended.
   const std::string script =
-      "ssh() { case $* in"
+      "ssh() { case $* in " + same_version() +
       "  *nohup*) local p=${3#*echo *>}; p=${p%%.pid*}; touch \"$file.$2.$p\"; echo \"start $2 "
       "$p\";;"
       "  *kill*) local p=${3%%.pid*}; p=${p##*/}; rm \"$file.$2.$p\"; echo \"end $2 $p\";;"
@@ -178,7 +178,8 @@ TEST_F(DeployFiles, ServicesAndContainersHaveTheRelaysOptions) {
   hosts_ = parse_hosts(kSites, "hosts").value();
   const std::string script = systemd_files(hosts_, mission_)[0].text;
   const std::string ssh =
-      "ssh() { if [ \"$1\" = -n ]; then echo \"$3\"; else case $2 in *tee*) grep RELAY;; *) cat "
+      "ssh() { case $* in " + same_version() +
+      "esac; if [ \"$1\" = -n ]; then echo \"$3\"; else case $2 in *tee*) grep RELAY;; *) cat "
       ">/dev/null;; esac; fi; }\ntar() { :; }\n";
   EXPECT_EQ(output("set -- setup; . \"$file\"", ssh + script),
             "ERGOCAST_RELAY=--hub --listen :7700\n"
