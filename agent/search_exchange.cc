@@ -10,7 +10,7 @@ namespace ergocast {
 namespace {
 
 constexpr double kPeriod_s = 2;
-/// So many messages wait for a halving. Others are lost; they are sent again.
+/// At most this many messages wait for a halving. Others are lost; they are sent again.
 constexpr std::size_t kMostEarly = 512;
 
 /// Adds a tile to the last part, or to a new one.
