@@ -33,7 +33,7 @@ Coefficients uneven_weights(const Basis& basis) {
   return weights;
 }
 
-Eigen::Vector3d place(std::uint64_t i, const Box& domain = kBox) {
+Eigen::Vector3d point(std::uint64_t i, const Box& domain = kBox) {
   return uniform_in(domain, 8, Purpose::kStart, 0, i);
 }
 
@@ -64,10 +64,10 @@ double sum_at(const Eigen::Vector3d& x_m, const Basis& basis, const Coefficients
 TEST(BasisInSpace, ValuesAreProductsOfThreeCosinesInTheOrderOfTheWire) {
   for (const Basis& basis : some_bases()) {
     for (std::uint64_t i = 0; i < 20; ++i) {
-      const Coefficients values = basis_values(place(i), kBox, basis);
+      const Coefficients values = basis_values(point(i), kBox, basis);
       ASSERT_EQ(values.size(), basis.mode_count());
       for_modes(basis, [&](int l, int m, int n, int k) {
-        const Eigen::Vector3d x = place(i) - kBox.origin_m;
+        const Eigen::Vector3d x = point(i) - kBox.origin_m;
         EXPECT_NEAR(values[k], cosine(l, x.z(), 40) * cosine(m, x.x(), 200) * cosine(n, x.y(), 70),
                     1e-13);
       });
@@ -77,9 +77,9 @@ TEST(BasisInSpace, ValuesAreProductsOfThreeCosinesInTheOrderOfTheWire) {
 
 TEST(BasisInSpace, SumsAndSamplesAreTheValuesTimesTheStep) {
   const Basis basis = basis_of(5, 3, 4);
-  const BasisAt at(place(1), kBox, basis);
+  const BasisAt at(point(1), kBox, basis);
   Coefficients sums = uneven_weights(basis), set = sums;
-  const Coefficients before = sums, values = basis_values(place(1), kBox, basis);
+  const Coefficients before = sums, values = basis_values(point(1), kBox, basis);
   accumulate_basis(at, basis, 0.25, sums.data());
   set_basis(at, basis, 0.25, set.data());
   EXPECT_LT((sums - before - 0.25 * values).cwiseAbs().maxCoeff(), 1e-15);
@@ -91,7 +91,7 @@ TEST(BasisInSpace, FieldIsTheSlopeAndTheBendOfTheWeightedSum) {
   for (const Basis& basis : some_bases()) {
     const Coefficients a = uneven_weights(basis);
     for (std::uint64_t i = 0; i < 10; ++i) {
-      const Eigen::Vector3d x_m = place(i);
+      const Eigen::Vector3d x_m = point(i);
       const BasisAt at(x_m, kBox, basis);
       const FieldAt field = weighted_field(at, basis, kBox, a.data());
       EXPECT_EQ(field.gradient, weighted_gradient(at, basis, a.data())) << "bit for bit";
@@ -199,7 +199,7 @@ TEST(BasisInAPlane, HasTheBitsOfTheTwoDimensionalSums) {
       const Basis basis = basis_of(modes_x, modes_y, 1);
       const Coefficients a = uneven_weights(basis);
       for (std::uint64_t i = 0; i < 50; ++i) {
-        const Eigen::Vector3d x_m = place(i, kFlat);
+        const Eigen::Vector3d x_m = point(i, kFlat);
         const InThePlane expected(x_m, basis, in_plane(a, basis), 0.1);
         const BasisAt at(x_m, kFlat, basis);
         Coefficients sums = a;
@@ -220,7 +220,7 @@ TEST(BasisInAPlane, IsThatOfABoxWithOneModeAlongZBitForBit) {
   const Basis basis = basis_of(9, 6, 1);
   const Coefficients a = uneven_weights(basis);
   for (std::uint64_t i = 0; i < 50; ++i) {
-    const Eigen::Vector3d x_m = place(i);
+    const Eigen::Vector3d x_m = point(i);
     const Eigen::Vector3d below_m(x_m.x(), x_m.y(), 0);
     EXPECT_EQ(basis_values(x_m, kBox, basis), basis_values(below_m, kFlat, basis));
     const FieldAt high = weighted_field(BasisAt(x_m, kBox, basis), basis, kBox, a.data());

@@ -17,7 +17,7 @@ namespace {
 constexpr double kDt = 0.1;
 constexpr std::int64_t kManySteps = 1000000;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-const Box kDomain{{0, 0, 0}, {2000, 1000, 0}};
+const Box kRectangle{{0, 0, 0}, {2000, 1000, 0}};
 
 /// 15 × 15 modes: two blocks, the second with 97 modes and 31 zeros.
 Basis basis_of(int modes_per_axis = 15) {
@@ -28,8 +28,8 @@ Basis basis_of(int modes_per_axis = 15) {
 
 CoverageTable table_of(int modes_per_axis = 15) { return {basis_of(modes_per_axis), kDt}; }
 
-Eigen::Vector3d place(AgentId agent, std::int64_t step) {
-  return uniform_in(kDomain, 3, Purpose::kStart, static_cast<std::uint32_t>(agent),
+Eigen::Vector3d point(AgentId agent, std::int64_t step) {
+  return uniform_in(kRectangle, 3, Purpose::kStart, static_cast<std::uint32_t>(agent),
                     static_cast<std::uint64_t>(step));
 }
 
@@ -37,7 +37,7 @@ Eigen::Vector3d place(AgentId agent, std::int64_t step) {
 std::vector<Contribution> blocks_of(const Author& author, std::int64_t steps) {
   CoverageTable own = table_of();
   for (std::int64_t step = 0; step < steps; ++step) {
-    own.add_sample(author, BasisAt(place(author.agent, step), kDomain, basis_of()));
+    own.add_sample(author, BasisAt(point(author.agent, step), kRectangle, basis_of()));
   }
   std::vector<Contribution> blocks{own.block(author, 0), own.block(author, 1)};
   for (Contribution& block : blocks) block.next_broadcast_tick = steps;
@@ -179,10 +179,10 @@ TEST(CoverageTable, IncarnationsOfOneAgentAreRowsOfTheirOwn) {
 TEST(CoverageTable, OneSampleGivesTheLimitOf4AtTheStart) {
   CoverageTable table = table_of();
   const Eigen::Vector3d x_m(123.4, 567.8, 0);
-  table.add_sample({0, 1}, BasisAt(x_m, kDomain, basis_of()));
+  table.add_sample({0, 1}, BasisAt(x_m, kRectangle, basis_of()));
   Coefficients average = Coefficients::Zero(225);
   table.average(average);
-  const Coefficients f = basis_values(x_m, kDomain, basis_of());
+  const Coefficients f = basis_values(x_m, kRectangle, basis_of());
   // ·dt, /dt: two roundings of numbers of at most 1.
   EXPECT_LE((average - f).cwiseAbs().maxCoeff(), 3 * 0x1p-53);
 }
@@ -201,7 +201,7 @@ TEST(CoverageTable, AverageWeighsEachRowByTheTimeItCoversBlockByBlock) {
   Coefficients expected = Coefficients::Zero(225);
   const auto add = [&](AgentId agent, std::int64_t steps, int block, double total_steps) {
     for (std::int64_t step = 0; step < steps; ++step) {
-      const Coefficients f = basis_values(place(agent, step), kDomain, basis_of());
+      const Coefficients f = basis_values(point(agent, step), kRectangle, basis_of());
       for (int k = 128 * block; k < std::min(128 * (block + 1), 225); ++k) {
         expected[k] += f[k] / total_steps;
       }
@@ -232,7 +232,7 @@ TEST(CoverageTable, ItsOwnSamplesAndItsOwnMessagesAreTheSame) {
   CoverageTable own = table_of(), teammate = table_of();
   const Author self{3, 33};
   for (std::int64_t step = 0; step < 50; ++step) {
-    own.add_sample(self, BasisAt(place(3, step), kDomain, basis_of()));
+    own.add_sample(self, BasisAt(point(3, step), kRectangle, basis_of()));
   }
   for (int b = 0; b < 2; ++b) EXPECT_EQ(teammate.merge(own.block(self, b), 50), Merge::kNewer);
   expect_same(held(own, {self}), held(teammate, {self}));

@@ -15,7 +15,7 @@ namespace {
 using namespace test;
 
 /// 1000 ticks of 0.1 s. Agent 0 has to be at its station 20 s before the end; agent 1 has none.
-Mission with_station() {
+Mission with_a_station() {
   Mission mission = small_mission(2);
   mission.timing.tick_count = 1000;
   mission.timing.broadcast_period_ticks = 10;
@@ -32,7 +32,7 @@ Amendments ends(std::initializer_list<std::pair<Tick, Tick>> all) {
 }
 
 TEST(EndSchedule, WithoutAmendmentsIsThePlans) {
-  const Mission mission = with_station();
+  const Mission mission = with_a_station();
   const EndSchedule schedule(mission, {});
   EXPECT_TRUE(schedule.is_plans());
   EXPECT_EQ(schedule.tick_count(), 1000);
@@ -40,7 +40,7 @@ TEST(EndSchedule, WithoutAmendmentsIsThePlans) {
 }
 
 TEST(EndSchedule, AnEndHoldsFromItsTickOn) {
-  const Mission mission = with_station();
+  const Mission mission = with_a_station();
   const EndSchedule schedule(mission, ends({{300, 700}, {400, 2000}}));
   EXPECT_EQ(schedule.tick_count_at(299), 1000);
   EXPECT_EQ(schedule.tick_count_at(300), 700);
@@ -53,7 +53,7 @@ TEST(EndSchedule, AnEndHoldsFromItsTickOn) {
 }
 
 TEST(EndSchedule, WhoRestsGoesOnResting) {
-  const Mission mission = with_station();
+  const Mission mission = with_a_station();
   const EndSchedule schedule(mission, ends({{800, 1500}, {900, 1200}}));
   EXPECT_EQ(schedule.rest_from(mission, 0, 1400), 800);
   EXPECT_TRUE(schedule.rests(mission, 0, 1100));
@@ -63,7 +63,7 @@ TEST(EndSchedule, WhoRestsGoesOnResting) {
 }
 
 TEST(EndSchedule, APauseDelaysAnEnd) {
-  const Mission mission = with_station();
+  const Mission mission = with_a_station();
   Amendments list = ends({{300, 700}});
   list.holds = {{100, 150}};
   const EndSchedule schedule(mission, list);
@@ -72,7 +72,7 @@ TEST(EndSchedule, APauseDelaysAnEnd) {
 }
 
 TEST(EndSchedule, BroadcastsGoByTheEndThatHolds) {
-  const Mission mission = with_station();
+  const Mission mission = with_a_station();
   const EndSchedule schedule(mission, ends({{300, 700}}));
   EXPECT_EQ(next_broadcast(mission, schedule, 0, 495, 0), 499) << "the last before it rests";
   EXPECT_EQ(next_broadcast(mission, schedule, 0, 499, 0), 700);
@@ -80,7 +80,7 @@ TEST(EndSchedule, BroadcastsGoByTheEndThatHolds) {
 }
 
 TEST(Ends, TravelWithTheList) {
-  const Mission mission = with_station();
+  const Mission mission = with_a_station();
   const Amendments list = ends({{300, 700}, {400, 2000}});
   EXPECT_EQ(list.recent[1], (Amendment{1, AmendmentKind::kEnd, 400, 2000}));
   EXPECT_EQ(decode_amendments(encode_amendments(list), mission), list);
@@ -88,7 +88,7 @@ TEST(Ends, TravelWithTheList) {
 }
 
 TEST(Ends, ImpossibleOnesAreRefused) {
-  const Mission mission = with_station();
+  const Mission mission = with_a_station();
   const Amendments good = ends({{300, 700}, {400, 2000}});
   const auto passes = [&](auto change) {
     Amendments list = good;
@@ -118,7 +118,7 @@ class EndRulesOfATeam : public ::testing::Test {
                                                   {1, Eigen::Vector3d(190, 90, 0)}});
   }
 
-  Mission mission_ = with_station();
+  Mission mission_ = with_a_station();
   Amendments list_;
   EndRules rules_;
 };

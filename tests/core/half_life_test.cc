@@ -15,11 +15,11 @@
 namespace ergocast {
 namespace {
 
-constexpr double kDt = 0.1;
-constexpr std::int64_t kManySteps = 1000000;
+constexpr double kTick_s = 0.1;
+constexpr std::int64_t kManyTicks = 1000000;
 constexpr Tick kHalfLife = 7;
 const Box kDomain{{0, 0, 0}, {2000, 1000, 0}};
-const std::vector<Author> kTeam{{0, 7}, {0, 9}, {1, 5}, {2, 1}};
+const std::vector<Author> kAuthors{{0, 7}, {0, 9}, {1, 5}, {2, 1}};
 
 /// 12 × 12 modes: two blocks.
 Basis basis() {
@@ -29,8 +29,8 @@ Basis basis() {
 }
 
 CoverageTable forgetful_table() {
-  CoverageTable table(basis(), kDt);
-  table.set_half_life(HalfLife(kHalfLife * kDt, kDt));
+  CoverageTable table(basis(), kTick_s);
+  table.set_half_life(HalfLife(kHalfLife * kTick_s, kTick_s));
   return table;
 }
 
@@ -60,7 +60,7 @@ std::vector<Contribution> blocks_of(const Author& author, Tick from, Tick until)
 }
 
 void merge_all(const std::vector<Contribution>& blocks, CoverageTable& table) {
-  for (const Contribution& block : blocks) EXPECT_EQ(table.merge(block, kManySteps), Merge::kNewer);
+  for (const Contribution& block : blocks) EXPECT_EQ(table.merge(block, kManyTicks), Merge::kNewer);
 }
 
 Coefficients average_of(const CoverageTable& table) {
@@ -99,21 +99,21 @@ TEST(HalfLife, HasAFiniteFactorForAnyTick) {
 
 TEST(HalfLife, LeavesWhatTheFormulaSays) {
   const Tick until = 5 * kHalfLife + 3;
-  const CoverageTable own = row_of(kTeam[0], 2, until);
+  const CoverageTable own = row_of(kAuthors[0], 2, until);
   Coefficients sums = Coefficients::Zero(144);
   double time_s = 0;
   for (Tick tick = 2; tick <= until; ++tick) {
     const double left = std::pow(0.5, static_cast<double>(until / kHalfLife - tick / kHalfLife));
-    sums += left * kDt * basis_values(place(kTeam[0], tick), kDomain, basis());
-    time_s += left * kDt;
+    sums += left * kTick_s * basis_values(place(kAuthors[0], tick), kDomain, basis());
+    time_s += left * kTick_s;
   }
   EXPECT_NEAR(own.covered_s(), time_s, 1e-12);
   EXPECT_LT((average_of(own) - sums / time_s).cwiseAbs().maxCoeff(), 1e-13);
-  EXPECT_EQ(own.block(kTeam[0], 0).steps, until - 1) << "samples ever";
+  EXPECT_EQ(own.block(kAuthors[0], 0).steps, until - 1) << "samples ever";
 }
 
 TEST(HalfLife, DoesNotMoveTheCoverageOfARowThatRests) {
-  CoverageTable own = row_of(kTeam[0], 0, 20);
+  CoverageTable own = row_of(kAuthors[0], 0, 20);
   const Coefficients before = average_of(own);
   for (const Tick tick : {21, 22, 28, 70, 7000, 700000}) {
     own.set_now(tick);
@@ -143,12 +143,12 @@ TEST(HalfLife, IsTheSameBeforeAndAfterMerging) {
     CoverageTable early = forgetful_table(), late = forgetful_table();
     for (Tick tick = 0; tick <= now; ++tick) {
       early.set_now(tick);
-      for (const Author& author : kTeam) {
+      for (const Author& author : kAuthors) {
         const Tick sent = 4 + 5 * (author.agent + static_cast<Tick>(author.incarnation % 2));
         if (tick == sent) merge_all(blocks_of(author, 1, sent), early);
       }
     }
-    for (const Author& author : kTeam) {
+    for (const Author& author : kAuthors) {
       const Tick sent = 4 + 5 * (author.agent + static_cast<Tick>(author.incarnation % 2));
       merge_all(blocks_of(author, 1, sent), late);
     }
@@ -160,12 +160,12 @@ TEST(HalfLife, IsTheSameBeforeAndAfterMerging) {
 
 /// An author and a teammate that has its row as it was sent compute the same.
 TEST(HalfLife, IsTheSameAtTheAuthorAndAtAReceiver) {
-  const Author author = kTeam[2];
+  const Author author = kAuthors[2];
   for (const Tick sent : {3, 6, 7, 8, 20, 48}) {
     CoverageTable own = row_of(author, 0, sent), receiver = forgetful_table();
     merge_all(blocks_of(author, 0, sent), receiver);
-    merge_all(blocks_of(kTeam[0], 0, 30), own);
-    merge_all(blocks_of(kTeam[0], 0, 30), receiver);
+    merge_all(blocks_of(kAuthors[0], 0, 30), own);
+    merge_all(blocks_of(kAuthors[0], 0, 30), receiver);
     for (const Tick now : {48, 49, 56, 80}) {
       own.set_now(now);
       receiver.set_now(now);
@@ -176,7 +176,7 @@ TEST(HalfLife, IsTheSameAtTheAuthorAndAtAReceiver) {
 }
 
 TEST(HalfLife, ChangesNothingThatIsRelayed) {
-  const Author author = kTeam[2];
+  const Author author = kAuthors[2];
   const std::vector<Contribution> sent = blocks_of(author, 0, 20);
   CoverageTable first = forgetful_table(), second = forgetful_table();
   merge_all(sent, first);
@@ -187,7 +187,7 @@ TEST(HalfLife, ChangesNothingThatIsRelayed) {
     EXPECT_EQ(relayed.elapsed_s, block.elapsed_s);
     EXPECT_EQ(relayed.steps, block.steps);
     EXPECT_EQ(relayed.header.tick, block.header.tick);
-    second.merge(relayed, kManySteps);
+    second.merge(relayed, kManyTicks);
   }
   second.set_now(70);
   EXPECT_EQ(average_of(first), average_of(second));
@@ -196,8 +196,8 @@ TEST(HalfLife, ChangesNothingThatIsRelayed) {
 
 /// A receiver that is behind weighs a row from after a halving as it will be.
 TEST(HalfLife, WeighsARowFromAheadAsOfNow) {
-  CoverageTable behind = row_of(kTeam[0], 0, kHalfLife - 1), ahead = behind;
-  const std::vector<Contribution> theirs = blocks_of(kTeam[2], 0, kHalfLife + 2);
+  CoverageTable behind = row_of(kAuthors[0], 0, kHalfLife - 1), ahead = behind;
+  const std::vector<Contribution> theirs = blocks_of(kAuthors[2], 0, kHalfLife + 2);
   merge_all(theirs, behind);
   ahead.set_now(kHalfLife + 2);
   merge_all(theirs, ahead);
@@ -208,11 +208,11 @@ TEST(HalfLife, WeighsARowFromAheadAsOfNow) {
 /// An agent that has counted too many ticks does not halve twice, and names the halving when it
 /// sends.
 TEST(HalfLife, IsNotRepeatedWhereTicksAreCountedAgain) {
-  CoverageTable own = row_of(kTeam[0], 0, kHalfLife + 1);
+  CoverageTable own = row_of(kAuthors[0], 0, kHalfLife + 1);
   const double covered_s = own.covered_s();
   own.set_now(kHalfLife - 3);
   EXPECT_EQ(own.covered_s(), covered_s);
-  EXPECT_EQ(own.block(kTeam[0], 0).header.tick, kHalfLife);
+  EXPECT_EQ(own.block(kAuthors[0], 0).header.tick, kHalfLife);
   own.set_now(kHalfLife + 1);
   EXPECT_EQ(own.covered_s(), covered_s);
   own.set_now(2 * kHalfLife);
@@ -221,12 +221,12 @@ TEST(HalfLife, IsNotRepeatedWhereTicksAreCountedAgain) {
 
 TEST(HalfLife, FadesARowThatIsSampledAfterItHasArrived) {
   CoverageTable table = forgetful_table();
-  merge_all(blocks_of(kTeam[0], 0, 20), table);
+  merge_all(blocks_of(kAuthors[0], 0, 20), table);
   table.set_now(30);
-  table.add_sample(kTeam[0], BasisAt(place(kTeam[0], 30), kDomain, basis()));
-  CoverageTable own = row_of(kTeam[0], 0, 20);
+  table.add_sample(kAuthors[0], BasisAt(place(kAuthors[0], 30), kDomain, basis()));
+  CoverageTable own = row_of(kAuthors[0], 0, 20);
   own.set_now(30);
-  own.add_sample(kTeam[0], BasisAt(place(kTeam[0], 30), kDomain, basis()));
+  own.add_sample(kAuthors[0], BasisAt(place(kAuthors[0], 30), kDomain, basis()));
   EXPECT_EQ(average_of(table), average_of(own));
   EXPECT_EQ(table.covered_s(), own.covered_s());
 }
@@ -234,7 +234,7 @@ TEST(HalfLife, FadesARowThatIsSampledAfterItHasArrived) {
 // ---- gains ----
 
 TEST(HalfLife, HalvesTheBlockBeforeOfAGain) {
-  const Author author = kTeam[2];
+  const Author author = kAuthors[2];
   for (const auto& [before, then, now] :
        {std::tuple<Tick, Tick, Tick>{3, 5, 5}, {5, 9, 9}, {5, 9, 16}, {5, 30, 30}, {5, 30, 70}}) {
     CoverageTable table = forgetful_table();
@@ -246,10 +246,10 @@ TEST(HalfLife, HalvesTheBlockBeforeOfAGain) {
     double time_s = 0, of_mode_5 = 0;
     for (Tick tick = before + 1; tick <= then; ++tick) {
       const double left = std::pow(0.5, static_cast<double>(now / kHalfLife - tick / kHalfLife));
-      time_s += left * kDt;
-      of_mode_5 += left * kDt * basis_values(place(author, tick), kDomain, basis())[5];
+      time_s += left * kTick_s;
+      of_mode_5 += left * kTick_s * basis_values(place(author, tick), kDomain, basis())[5];
     }
-    EXPECT_NEAR(gains.time_steps * kDt, time_s, 1e-12 * time_s) << then << ' ' << now;
+    EXPECT_NEAR(gains.time_steps * kTick_s, time_s, 1e-12 * time_s) << then << ' ' << now;
     EXPECT_NEAR(table.view(0, 0).sums[5] - gains.before[5], of_mode_5, 1e-12 * time_s) << then;
   }
 }
@@ -257,26 +257,26 @@ TEST(HalfLife, HalvesTheBlockBeforeOfAGain) {
 // ---- what is possible ----
 
 TEST(HalfLife, RefusesTimesThatNoAgentRemembers) {
-  const HalfLife half_life(100, kDt);
+  const HalfLife half_life(100, kTick_s);
   Contribution block;
   block.steps = 10000;
   block.sums.edit()[0] = block.elapsed_s = 180;
-  EXPECT_TRUE(is_possible(block, kDt, 1, half_life));
-  EXPECT_FALSE(is_possible(block, kDt)) << "without forgetting it is steps dt";
+  EXPECT_TRUE(is_possible(block, kTick_s, 1, half_life));
+  EXPECT_FALSE(is_possible(block, kTick_s)) << "without forgetting it is steps dt";
   for (const double elapsed_s : {0.0, -1.0, 261.0, 1000.0, std::nan("")}) {
     Contribution lie = block;
     lie.sums.edit()[0] = lie.elapsed_s = elapsed_s;
-    EXPECT_FALSE(is_possible(lie, kDt, 1, half_life)) << elapsed_s;
+    EXPECT_FALSE(is_possible(lie, kTick_s, 1, half_life)) << elapsed_s;
   }
   Contribution lie = block;
   lie.steps = 1799;
-  EXPECT_FALSE(is_possible(lie, kDt, 1, half_life)) << "more than steps dt";
+  EXPECT_FALSE(is_possible(lie, kTick_s, 1, half_life)) << "more than steps dt";
   lie = block;
   lie.sums.edit()[0] = 179;
-  EXPECT_FALSE(is_possible(lie, kDt, 1, half_life)) << "S_00 is the time covered";
+  EXPECT_FALSE(is_possible(lie, kTick_s, 1, half_life)) << "S_00 is the time covered";
   lie = block;
   lie.sums.edit()[5] = -181;
-  EXPECT_FALSE(is_possible(lie, kDt, 1, half_life));
+  EXPECT_FALSE(is_possible(lie, kTick_s, 1, half_life));
 }
 
 }  // namespace

@@ -16,20 +16,20 @@
 namespace ergocast {
 namespace {
 
-constexpr double kDt = 0.1;
-constexpr std::int64_t kManySteps = 1000;
+constexpr double kStep_s = 0.1;
+constexpr std::int64_t kMostSteps = 1000;
 constexpr std::uint64_t kHistories = 40;
-const Box kDomain{{0, 0, 0}, {2000, 1000, 0}};
+const Box kTwoSquares{{0, 0, 0}, {2000, 1000, 0}};
 const std::vector<Author> kIncarnations{{0, 9}, {0, 7}, {1, 5}, {2, 1}, {2, 0xffffffffffffffff},
                                         {5, 3}};
 
 /// 12 × 12 modes: two blocks.
-Basis basis() {
+Basis small_basis() {
   Basis basis;
   basis.modes_x = basis.modes_y = 12;
   return basis;
 }
-CoverageTable empty_table() { return {basis(), kDt}; }
+CoverageTable empty_table() { return {small_basis(), kStep_s}; }
 
 /// Numbers of one history.
 class Dice {
@@ -59,9 +59,9 @@ std::vector<Contribution> everything_sent(std::uint64_t history) {
     const Tick born = static_cast<Tick>(dice.below(50));
     for (Tick tick = born; tick < born + ticks; ++tick) {
       const Eigen::Vector3d x_m =
-          uniform_in(kDomain, history, Purpose::kStart, static_cast<std::uint32_t>(author.agent),
+          uniform_in(kTwoSquares, history, Purpose::kStart, static_cast<std::uint32_t>(author.agent),
                      author.incarnation + static_cast<std::uint64_t>(tick));
-      own.add_sample(author, BasisAt(x_m, kDomain, basis()));
+      own.add_sample(author, BasisAt(x_m, kTwoSquares, small_basis()));
       if (dice.below(3) == 0) continue;
       for (int b = 0; b < 2; ++b) {
         sent.push_back(own.block(author, b));
@@ -86,7 +86,7 @@ std::vector<Contribution> part_of(const std::vector<Contribution>& sent, Dice& d
 
 CoverageTable table_after(const std::vector<Contribution>& heard) {
   CoverageTable table = empty_table();
-  for (const Contribution& block : heard) table.merge(block, kManySteps);
+  for (const Contribution& block : heard) table.merge(block, kMostSteps);
   return table;
 }
 
@@ -95,12 +95,12 @@ void pass_on(const CoverageTable& from, CoverageTable& to) {
   for (const Author& author : kIncarnations) {
     for (int b = 0; b < from.block_count(); ++b) {
       const Contribution block = from.block(author, b);
-      if (block.steps > 0) to.merge(block, kManySteps);
+      if (block.steps > 0) to.merge(block, kMostSteps);
     }
   }
 }
 
-Coefficients average_of(const CoverageTable& table) {
+Coefficients mean_of(const CoverageTable& table) {
   Coefficients average = Coefficients::Constant(144, 7);
   table.average(average);
   return average;
@@ -120,7 +120,7 @@ void expect_same(const CoverageTable& a, const CoverageTable& b) {
       EXPECT_EQ(one.header.tick, other.header.tick);
     }
   }
-  EXPECT_EQ(average_of(a), average_of(b));
+  EXPECT_EQ(mean_of(a), mean_of(b));
 }
 
 /// Checks the messages of each of many histories.
@@ -176,7 +176,7 @@ TEST(MergeProperty, AddsUpInTheOrderOfAuthorsWhateverTheOrderOfArrival) {
   in_every_history([](const auto& sent, Dice& dice) {
     const CoverageTable table = table_after(part_of(sent, dice));
     std::set<Author> in_order(kIncarnations.begin(), kIncarnations.end());
-    const Coefficients average = average_of(table);
+    const Coefficients average = mean_of(table);
     for (int k = 0; k < 144; ++k) {
       double sum = 0;
       std::int64_t steps = 0;
@@ -185,7 +185,7 @@ TEST(MergeProperty, AddsUpInTheOrderOfAuthorsWhateverTheOrderOfArrival) {
         sum += block.sums[static_cast<std::size_t>(k % kBlockSize)];
         steps += block.steps;
       }
-      const double expected = steps > 0 ? sum * (1 / (static_cast<double>(steps) * kDt)) : 0;
+      const double expected = steps > 0 ? sum * (1 / (static_cast<double>(steps) * kStep_s)) : 0;
       EXPECT_EQ(average.data()[k], expected) << k;
     }
   });
@@ -228,13 +228,13 @@ TEST(MergeProperty, ForgettingIsLeavingOutAndKeeping) {
     CoverageTable table = table_after(heard);
     const CoverageTable all = table, rest = table_after(of_the_rest);
     for (const Author& author : forgotten) table.forget(author);
-    EXPECT_EQ(average_of(table), average_of(rest)) << "bit for bit";
+    EXPECT_EQ(mean_of(table), mean_of(rest)) << "bit for bit";
     EXPECT_EQ(table.covered_s(), rest.covered_s());
     CoverageTable far = empty_table();
     pass_on(table, far);
     expect_same(far, all);  // others may not know yet that it is to be forgotten
     table.remember_all();
-    EXPECT_EQ(average_of(table), average_of(all)) << "as if nothing had been";
+    EXPECT_EQ(mean_of(table), mean_of(all)) << "as if nothing had been";
   });
 }
 
@@ -244,10 +244,10 @@ TEST(MergeProperty, ForgettingDoesNotDependOnWhatHasArrived) {
     const Author gone = kIncarnations[dice.below(kIncarnations.size())];
     CoverageTable first = empty_table();
     first.forget(gone);
-    for (const Contribution& block : heard) first.merge(block, kManySteps);
+    for (const Contribution& block : heard) first.merge(block, kMostSteps);
     CoverageTable last = table_after(heard);
     last.forget(gone);
-    EXPECT_EQ(average_of(first), average_of(last));
+    EXPECT_EQ(mean_of(first), mean_of(last));
   });
 }
 

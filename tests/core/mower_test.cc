@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 /// A mission in 200 m × 100 m with a target that is three times as dense in the west as in the
 /// east.
-Mission field() {
+Mission mown_field() {
   Mission mission;
   mission.domain = {{-20, 5, 0}, {200, 100, 0}};
   mission.basis.modes_x = mission.basis.modes_y = 8;
@@ -43,7 +43,7 @@ std::vector<AgentId> team_of(int count) {
 /// The same with a target that is as dense everywhere, and walls: one with a door of 15 m in the
 /// north, and a room without a door in the south-west, which takes 10 m × 8 m.
 Mission rooms() {
-  Mission mission = field();
+  Mission mission = mown_field();
   mission.target_coefficients[mission.basis.modes_y] = 0;
   mission.speed_limit_mps = 5;
   mission.wall_clearance_m = 1;
@@ -55,7 +55,7 @@ Mission rooms() {
 
 /// A mission in a box of 60 m × 40 m × 20 m.
 Mission box() {
-  Mission mission = field();
+  Mission mission = mown_field();
   mission.domain = {{-20, 5, -30}, {60, 40, 20}};
   mission.basis.modes_z = 4;
   mission.target_coefficients = Coefficients::Zero(mission.basis.mode_count());
@@ -109,7 +109,7 @@ class Walk {
 };
 
 TEST(EqualShare, HasEqualMassesThatFillTheDomain) {
-  const Mission mission = field();
+  const Mission mission = mown_field();
   const Cells cells = measure_cells(mission);
   const auto mass = target_mass(mission.basis, mission.walls, mission.target_coefficients, cells);
   const RangeSums sums(cells, mass);
@@ -137,7 +137,7 @@ TEST(EqualShare, IsSharedByAgentsBeyondTheCells) {
 }
 
 TEST(Mower, SeesEachPlaceThatIsWorthIt) {
-  const Mission mission = field();
+  const Mission mission = mown_field();
   Walk walk(mission, {{-20, 5, 0}, {180, 105, 0}, {50, 50, 0}});
   // The largest share, in the east, has about 10⁴ m²: in lanes of 8 m at 5 m/s it takes 250 s.
   walk.go(3500, team_of(3));
@@ -146,7 +146,7 @@ TEST(Mower, SeesEachPlaceThatIsWorthIt) {
 }
 
 TEST(Mower, DividesTheDomainAnewWithoutAnAgentThatLeft) {
-  const Mission mission = field();
+  const Mission mission = mown_field();
   Walk walk(mission, {{-20, 5, 0}, {180, 105, 0}});
   walk.go(400, team_of(2));
   const Vector3d west_m = walk.x_m(0);
@@ -156,7 +156,7 @@ TEST(Mower, DividesTheDomainAnewWithoutAnAgentThatLeft) {
 }
 
 TEST(Mower, GoesWhereANewTargetIs) {
-  Mission mission = field();
+  Mission mission = mown_field();
   mission.target_coefficients[mission.basis.modes_y] = 0;
   Mower law(mission);
   const Vector3d x_m(0, 50, 0);
@@ -217,7 +217,7 @@ TEST(Mower, SeesEachPlaceOfABox) {
 }
 
 TEST(Mower, HasThePatienceOfItsRealSpeed) {
-  const Mission mission = field();
+  const Mission mission = mown_field();
   Mission slow = mission;
   slow.speed_limit_mps = 0.5;
   Mower law(mission), slow_law(slow), slowed_law(mission);
@@ -247,14 +247,14 @@ TEST(Mower, LeavesOutCornersToWhichNoWayLeads) {
 }
 
 TEST(Mower, HasTheMostPatienceAtNextToNoSpeed) {
-  Mission mission = field();
+  Mission mission = mown_field();
   mission.law.u_max_mps = 1e-30;
   Mower law(mission);
   EXPECT_EQ(patience(law, mission, 300), 300);
 }
 
 TEST(Mower, HasReachedACornerFromWhichADisturbanceMayKeepIt) {
-  Mission mission = field();
+  Mission mission = mown_field();
   mission.disturbance_intensity = 10;  // 3.2 m in a tick
   Mower law(mission);
   wanted_mps(law, mission, 0, {100, 50, 0});
@@ -265,7 +265,7 @@ TEST(Mower, HasReachedACornerFromWhichADisturbanceMayKeepIt) {
 }
 
 TEST(Mower, StaysWhereNothingIsWorthMowing) {
-  const Mission mission = field();
+  const Mission mission = mown_field();
   Mower law(mission);
   law.set_target(Coefficients::Zero(mission.basis.mode_count()));
   const Vector3d x_m(100, 50, 0);

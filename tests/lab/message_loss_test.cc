@@ -13,7 +13,7 @@
 namespace ergocast::test {
 namespace {
 
-constexpr const char* kScenario = R"(
+constexpr const char* kThreeAgents = R"(
 domain { size_x_m: 100 size_y_m: 80 }
 target { gaussians { mean_x_m: 30 mean_y_m: 40 sigma_m: 10 } uniform_weight: 0.5 }
 basis { modes_x: 12 modes_y: 12 }
@@ -24,7 +24,7 @@ agents { starts { x_m: 0 y_m: 0 } starts { x_m: 50 y_m: 40 } starts { x_m: 100 y
 
 constexpr int kAgents = 3;
 
-constexpr const char* kKinds[] = {"Hello",       "MissionPart", "Contribution",
+constexpr const char* kMessageTypes[] = {"Hello",       "MissionPart", "Contribution",
                                   "AgentStatus", "TeamStatus",  "Stop",
                                   "WorldState",  "Command",     "RecordAck"};
 
@@ -36,7 +36,7 @@ struct Outcome {
   bool in_time;
 };
 
-Outcome simulated(const Drop& drop, const std::string& text = kScenario) {
+Outcome simulated(const Drop& drop, const std::string& text = kThreeAgents) {
   const auto scenario = Scenario::parse(text, "loss").value();
   std::int64_t dropped = 0;
   SimulatedTeam team(scenario.mission(), [&](const Message& message, lab::NodeId to) {
@@ -83,7 +83,7 @@ bool says_farewell(const Message& message) {
 }
 
 TEST(MessageLoss, AllLeaveAtOnceButForLostFarewells) {
-  const auto scenario = Scenario::parse(kScenario, "loss").value();
+  const auto scenario = Scenario::parse(kThreeAgents, "loss").value();
   const auto takes = [&](const Drop& drop) {
     SimulatedTeam team(scenario.mission(), drop);
     EXPECT_TRUE(team.run());
@@ -116,11 +116,11 @@ TEST_P(EachKind, LosingAllIsDecidedByTheCoordinatorAtTheLatest) {
   const Outcome outcome = simulated(dropping(GetParam(), 100));
   EXPECT_TRUE(outcome.state == MissionState::kEnded || outcome.state == MissionState::kFailed);
   // Only an agent that never receives a mission waits for one for ever.
-  EXPECT_TRUE(outcome.in_time || std::string(kKinds[GetParam()]) == "MissionPart");
+  EXPECT_TRUE(outcome.in_time || std::string(kMessageTypes[GetParam()]) == "MissionPart");
 }
 
 INSTANTIATE_TEST_SUITE_P(MessageLoss, EachKind, ::testing::Range(std::size_t{0}, std::size_t{9}),
-                         [](const auto& kind) { return std::string(kKinds[kind.param]); });
+                         [](const auto& kind) { return std::string(kMessageTypes[kind.param]); });
 
 TEST(MessageLoss, EveryKindAtOnceChangesNoTrajectory) {
   const Outcome outcome = simulated([count = std::uint64_t{0}](const Message&, int) mutable {
@@ -133,7 +133,7 @@ TEST(MessageLoss, EveryKindAtOnceChangesNoTrajectory) {
 
 TEST(MessageLoss, LosingTheLastStateOnceDoesNoHarm) {
   // The record is complete with the 192nd row, which is acknowledged at once.
-  const std::string text = with(kScenario, "duration_s: 20", "duration_s: 19.2");
+  const std::string text = with(kThreeAgents, "duration_s: 20", "duration_s: 19.2");
   for (const int node : {0, kAgents, kAgents + 2}) {  // an agent, the coordinator, the logger
     const Outcome outcome = simulated(
         [node, lost = false](const Message& message, int to) mutable {
@@ -154,7 +154,7 @@ TEST(MessageLoss, ALoggerWhoseMessagesAreAllLostHoldsUpNoProcess) {
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
 }
 
-std::string each(int period, const std::string& text = kScenario) {
+std::string each(int period, const std::string& text = kThreeAgents) {
   return with(text, "time {", "time { broadcast_period_ticks: " + std::to_string(period));
 }
 
@@ -171,20 +171,20 @@ TEST(MessageLoss, HowOftenAgentsBroadcastDoesNotShowWhereTheyReckon) {
 
 /// A team that halves its coverage every 13 ticks.
 TEST(MessageLoss, NorWhereTheyForget) {
-  const std::string text = with(kScenario, "law {", "law { memory_half_life_s: 1.3");
+  const std::string text = with(kThreeAgents, "law {", "law { memory_half_life_s: 1.3");
   const std::string trajectory = simulated({}, each(1, text)).trajectory;
   EXPECT_NE(trajectory, lossless());
   for (const int period : {2, 7, 13, 40, 1000}) {
     EXPECT_EQ(simulated({}, each(period, text)).trajectory, trajectory) << period;
     for (const std::size_t kind : {kContribution, kWorldState}) {
       EXPECT_EQ(simulated(dropping(kind, 33), each(period, text)).trajectory, trajectory)
-          << period << ' ' << kKinds[kind];
+          << period << ' ' << kMessageTypes[kind];
     }
   }
 }
 
 TEST(MessageLoss, NorInATeamWhoseWorldSendsItsStateInParts) {
-  std::string large = with(kScenario, "agents {", "agents { random_count: 15");
+  std::string large = with(kThreeAgents, "agents {", "agents { random_count: 15");
   large =
       with(with(large, "x: 12 modes_y: 12", "x: 4 modes_y: 4"), "duration_s: 20", "duration_s: 5");
   const std::string trajectory = simulated({}, each(1, large)).trajectory;
@@ -198,7 +198,7 @@ TEST(MessageLoss, NorInATeamWhoseWorldSendsItsStateInParts) {
 }
 
 TEST(MessageLoss, SlowBroadcastsShowWhereTheyDoNotReckonAndLoseNothingEither) {
-  const std::string rows = with(kScenario, "agents {", "agents { dead_reckoning: false");
+  const std::string rows = with(kThreeAgents, "agents {", "agents { dead_reckoning: false");
   const Outcome clean = simulated({}, each(7, rows));
   EXPECT_NE(clean.trajectory, simulated({}, each(1, rows)).trajectory);
   EXPECT_EQ(simulated(dropping(kContribution, 33), each(7, rows)).trajectory, clean.trajectory);
@@ -215,7 +215,7 @@ struct Knowing {
 void PrintTo(const Knowing& knowing, std::ostream* out) { *out << knowing.name; }
 
 std::string scenario_of(const Knowing& knowing) {
-  std::string text = with(kScenario, "u_max_mps: 5", std::string("u_max_mps: 5 ") + knowing.law);
+  std::string text = with(kThreeAgents, "u_max_mps: 5", std::string("u_max_mps: 5 ") + knowing.law);
   text = with(
       text, "agents {",
       knowing.dead_reckoning ? "agents { dead_reckoning: true" : "agents { dead_reckoning: false");
@@ -268,7 +268,7 @@ TEST(MessageLoss, AnAgentWhoseMessagesAreAllLostIsNamedAndFailsTheMission) {
 
 TEST(MessageLoss, OrIsEvictedIfTheScenarioChoosesIt) {
   const std::string evicting =
-      with(kScenario, "lockstep_timeout_s: 10", "lockstep_timeout_s: 10 on_timeout: EVICT");
+      with(kThreeAgents, "lockstep_timeout_s: 10", "lockstep_timeout_s: 10 on_timeout: EVICT");
   const Outcome outcome =
       simulated([](const Message& m, int) { return is_command_of(m, 2); }, evicting);
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;

@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 
 /// How far a μ_k may be from its quadrature.
-constexpr double kTolerance = 1e-10;
+constexpr double kMostError = 1e-10;
 
 /// A number with three digits, as a person writes it.
 double written(double value) {
@@ -144,8 +144,8 @@ TEST_P(FractionalDomains, OfAPlaneHaveTheirWholeTargetBesideKeepOuts) {
     const PlaneCoefficients expected =
         over(whole(draw_), density, draw_, basis) - over(keep_out.outline, density, draw_, basis);
     const PlaneIntegrals ours = target_integrals(target, draw_.base(), basis);
-    EXPECT_LE(largest_difference(ours.values, expected), kTolerance);
-    EXPECT_LE(ours.error_bound, kTolerance);
+    EXPECT_LE(largest_difference(ours.values, expected), kMostError);
+    EXPECT_LE(ours.error_bound, kMostError);
   }
 }
 
@@ -157,7 +157,7 @@ TEST_P(FractionalDomains, OfAPlaneHaveTheirRegions) {
     const PlaneCoefficients expected = over(
         region.outline, [&](const Eigen::Vector2d&) { return density; }, draw_, basis);
     const PlaneIntegrals ours = target_integrals(target, draw_.base(), basis);
-    EXPECT_LE(largest_difference(ours.values, expected), kTolerance);
+    EXPECT_LE(largest_difference(ours.values, expected), kMostError);
   }
 }
 
@@ -189,14 +189,14 @@ TEST_P(FractionalDomains, OfABoxHaveTheirWholeTarget) {
         .cwiseAbs()
         .maxCoeff();
   };
-  EXPECT_LE(off(smooth, all), kTolerance);
-  EXPECT_LE(off(cut, all - kept_out), kTolerance);
+  EXPECT_LE(off(smooth, all), kMostError);
+  EXPECT_LE(off(cut, all - kept_out), kMostError);
   const double solid = region.weight / (area_m2(region.polygon) * region.heights.length_m());
   const Coefficients prism = over_heights(draw_, basis, region.heights, [&](double) {
     return over(
         region.polygon.outline, [&](const Eigen::Vector2d&) { return solid; }, draw_, basis);
   });
-  EXPECT_LE(off({{}, 0, {region}}, prism), kTolerance);
+  EXPECT_LE(off({{}, 0, {region}}, prism), kMostError);
 }
 
 TEST_P(FractionalDomains, HaveAPictureOfTheirMass) {

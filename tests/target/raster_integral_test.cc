@@ -15,22 +15,22 @@ namespace {
 
 using namespace test;
 
-const Rectangle kDomain{{-30, 5}, {200, 120}};
-const Basis kBasis{.modes_x = 13, .modes_y = 10};
+const Rectangle kWide{{-30, 5}, {200, 120}};
+const Basis kUnequalModes{.modes_x = 13, .modes_y = 10};
 
 /// Values without any symmetry, some of them 0.
 double value_at(int column, int row) { return (3 + 7 * column + 13 * row + column * row) % 11; }
 
 RasterGrid seen_from_corner(const RasterGrid& grid) {
-  return {from_corner(grid.extent, plane_of(kDomain)), grid.columns, grid.rows};
+  return {from_corner(grid.extent, plane_of(kWide)), grid.columns, grid.rows};
 }
 
 PlaneIntegrals shares_of(const RasterGrid& grid, const std::vector<Polygon>& keep_outs = {},
                          const std::function<double(int, int)>& value = value_at) {
   std::vector<Polygon> moved;
-  for (const Polygon& polygon : keep_outs) moved.push_back(from_corner(polygon, kDomain.origin_m));
-  RasterIntegral integral(seen_from_corner(grid), kDomain.size_m, kBasis,
-                          free_area(kDomain.size_m, moved));
+  for (const Polygon& polygon : keep_outs) moved.push_back(from_corner(polygon, kWide.origin_m));
+  RasterIntegral integral(seen_from_corner(grid), kWide.size_m, kUnequalModes,
+                          free_area(kWide.size_m, moved));
   std::vector<double> values(static_cast<std::size_t>(grid.columns));
   for (int row = 0; row < grid.rows; ++row) {
     for (int i = 0; i < grid.columns; ++i) values[static_cast<std::size_t>(i)] = value(i, row);
@@ -49,21 +49,21 @@ Ring cell_ring(const RasterGrid& grid, int column, int row) {
 
 Ring clipped(Ring ring) {
   for (Eigen::Vector2d& corner : ring) {
-    corner = corner.cwiseMax(kDomain.origin_m).cwiseMin(kDomain.origin_m + kDomain.size_m);
+    corner = corner.cwiseMax(kWide.origin_m).cwiseMin(kWide.origin_m + kWide.size_m);
   }
   return ring;
 }
 
 /// Each cell, clipped to the domain, by quadrature.
 PlaneCoefficients reference(const RasterGrid& grid) {
-  PlaneCoefficients sum = PlaneCoefficients::Zero(kBasis.modes_x, kBasis.modes_y);
+  PlaneCoefficients sum = PlaneCoefficients::Zero(kUnequalModes.modes_x, kUnequalModes.modes_y);
   double whole = 0;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const Ring cell = cell_ring(grid, column, row);
       whole += value_at(column, row) * area_m2(cell);
       if (value_at(column, row) == 0 || area_m2(clipped(cell)) == 0) continue;
-      sum += value_at(column, row) * over_ring(clipped(cell), one, kDomain, kBasis, 30);
+      sum += value_at(column, row) * over_ring(clipped(cell), one, kWide, kUnequalModes, 30);
     }
   }
   return sum / whole;
@@ -71,7 +71,7 @@ PlaneCoefficients reference(const RasterGrid& grid) {
 
 TEST(RasterIntegral, IsExactForCellsOfConstantDensity) {
   const RasterGrid grids[] = {
-      {kDomain, 7, 5},
+      {kWide, 7, 5},
       {{{-10, 20}, {100, 60}}, 6, 4},       // smaller than the domain
       {{{-100, -100}, {400, 400}}, 9, 11},  // larger, edges inside cells
       {{{50, -40}, {400, 90}}, 8, 5},       // beside it in part
@@ -88,7 +88,7 @@ TEST(RasterIntegral, IsExactForCellsOfConstantDensity) {
 
 // The mistake of treating a cell's centre as its corner shows in the first moment.
 TEST(RasterIntegral, ACellIsWhereItsCentreIs) {
-  const RasterGrid grid{kDomain, 10, 8};  // cells of 20 × 15 m; (3, 5) has its centre at (40, 87.5)
+  const RasterGrid grid{kWide, 10, 8};  // cells of 20 × 15 m; (3, 5) has its centre at (40, 87.5)
   const auto only = [](int column, int row) { return column == 3 && row == 5 ? 2.5 : 0.0; };
   const PlaneCoefficients mu = shares_of(grid, {}, only).values;
   const double x = std::numbers::pi * 70 / 200, y = std::numbers::pi * 82.5 / 120;
@@ -103,13 +103,13 @@ TEST(RasterIntegral, ACellIsWhereItsCentreIs) {
 }
 
 TEST(RasterIntegral, OfAMirroredMapHasNoOddModes) {
-  const RasterGrid grid{kDomain, 8, 6};
+  const RasterGrid grid{kWide, 8, 6};
   const auto mirrored = [](int column, int row) {
     return value_at(std::min(column, 7 - column), std::min(row, 5 - row));
   };
   const PlaneCoefficients mu = shares_of(grid, {}, mirrored).values;
-  for (int m = 0; m < kBasis.modes_x; ++m) {
-    for (int n = 0; n < kBasis.modes_y; ++n) {
+  for (int m = 0; m < kUnequalModes.modes_x; ++m) {
+    for (int n = 0; n < kUnequalModes.modes_y; ++n) {
       if (m % 2 == 1 || n % 2 == 1) {
         EXPECT_NEAR(mu(m, n), 0, 1e-15) << m << "," << n;
       }
@@ -118,23 +118,23 @@ TEST(RasterIntegral, OfAMirroredMapHasNoOddModes) {
 }
 
 TEST(RasterIntegral, TurningAMapByHalfATurnChangesTheSignOfOddModes) {
-  const RasterGrid grid{kDomain, 8, 6};
+  const RasterGrid grid{kWide, 8, 6};
   const PlaneCoefficients mu = shares_of(grid).values;
   const PlaneCoefficients turned =
       shares_of(grid, {}, [](int column, int row) { return value_at(7 - column, 5 - row); }).values;
-  for (int m = 0; m < kBasis.modes_x; ++m) {
-    for (int n = 0; n < kBasis.modes_y; ++n) {
+  for (int m = 0; m < kUnequalModes.modes_x; ++m) {
+    for (int n = 0; n < kUnequalModes.modes_y; ++n) {
       EXPECT_NEAR(turned(m, n), (m + n) % 2 == 0 ? mu(m, n) : -mu(m, n), 1e-14) << m << "," << n;
     }
   }
 }
 
 TEST(RasterIntegral, OfAUniformMapIsTheUniformTarget) {
-  PlaneCoefficients expected = PlaneCoefficients::Zero(kBasis.modes_x, kBasis.modes_y);
+  PlaneCoefficients expected = PlaneCoefficients::Zero(kUnequalModes.modes_x, kUnequalModes.modes_y);
   expected(0, 0) = 1;
   for (const auto& [columns, rows] : {std::pair(1, 1), {7, 5}, {300, 200}}) {
     const PlaneIntegrals ours =
-        shares_of({kDomain, columns, rows}, {}, [](int, int) { return 0.1; });
+        shares_of({kWide, columns, rows}, {}, [](int, int) { return 0.1; });
     EXPECT_LE(largest_difference(ours.values, expected), ours.error_bound);
     EXPECT_LE(ours.error_bound, 1e-13);
   }
@@ -157,7 +157,7 @@ std::vector<Polygon> keep_outs() {
 // A cell as a region of its own is computed differently: cut as a polygon, not along its row.
 TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
   for (const RasterGrid& grid :
-       {RasterGrid{kDomain, 10, 6}, RasterGrid{{{-60, -20}, {270, 160}}, 31, 23},
+       {RasterGrid{kWide, 10, 6}, RasterGrid{{{-60, -20}, {270, 160}}, 31, 23},
         RasterGrid{{{0, 20}, {100, 70}}, 2, 2}}) {
     TargetDensity cells;
     for (const Polygon& polygon : keep_outs()) cells.keep_outs.push_back({polygon});
@@ -171,7 +171,7 @@ TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
         whole += mass;
       }
     }
-    const PlaneCoefficients expected = target_integrals(cells, kDomain, kBasis).values / whole;
+    const PlaneCoefficients expected = target_integrals(cells, kWide, kUnequalModes).values / whole;
     const PlaneIntegrals ours = shares_of(grid, keep_outs());
     EXPECT_LE(largest_difference(ours.values, expected), 1e-13);
     EXPECT_LE(ours.error_bound, 1e-11);
@@ -182,7 +182,7 @@ TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
 TEST(RasterPicture, HasTheMassOfTheMap) {
   const RasterGrid grid{{{-60, -20}, {270, 160}}, 31, 23};
   for (const auto& [cells_x, cells_y] : {std::pair(16, 10), {100, 60}, {1, 1}}) {
-    RasterPicture picture(seen_from_corner(grid), kDomain.size_m, cells_x, cells_y);
+    RasterPicture picture(seen_from_corner(grid), kWide.size_m, cells_x, cells_y);
     for (int row = 0; row < grid.rows; ++row) {
       std::vector<double> values;
       for (int column = 0; column < grid.columns; ++column) values.push_back(value_at(column, row));
@@ -193,7 +193,7 @@ TEST(RasterPicture, HasTheMassOfTheMap) {
 }
 
 TEST(RasterPicture, OfEqualCellsIsTheMapItself) {
-  RasterPicture picture({{{0, 0}, kDomain.size_m}, 4, 3}, kDomain.size_m, 4, 3);
+  RasterPicture picture({{{0, 0}, kWide.size_m}, 4, 3}, kWide.size_m, 4, 3);
   for (int row = 0; row < 3; ++row) {
     picture.add_row(row, std::vector<double>{1.0 * row, 2, 3, 4});
   }
