@@ -137,8 +137,9 @@ bool Amending::possible(const Wish& wish, const Mission& mission, Tick newest, T
   if (wish.kind != AmendmentKind::kEnd) return true;
   if (wish.tick_count == 0)
     return soonest_tick_count(list_, from) < tick_count_of(mission.timing, list_.ends);
+  const Tick known = team.places.tick(team.roster);
   const auto agents = team.places.of(team.roster);
-  return end_rules_.problem(mission, list_, team.places.tick(), from, wish.tick_count, agents) ==
+  return end_rules_.problem(mission, list_, known, from, wish.tick_count, agents) ==
          EndProblem::kNone;
 }
 

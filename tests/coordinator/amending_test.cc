@@ -219,25 +219,27 @@ TEST(Amending, AnEndIsNotDelayed) {
   EXPECT_EQ(coordinator.amendments().named, 0);
 }
 
-// A large team's state arrives in parts.
-TEST(TeamPlaces, AreThoseOfAWholeState) {
-  const auto part = [](Tick tick, int number, AgentId id) {
+// A large team's state arrives in parts. Drivers of one vehicle each send a part, too, and each goes by its own clock.
+TEST(TeamPlaces, AreTheNewestOfEachAgentAndAsOldAsTheOldest) {
+  const auto part = [](Tick tick, AgentId id, Incarnation driver = 1) {
     WorldState world = world_state(tick, {{1.0 * static_cast<double>(tick), 0, 0}});
-    world.part = number;
+    world.header.incarnation = driver;
+    world.part = id;
     world.parts = 2;
     world.vehicles[0].id = id;
     return world;
   };
   const std::vector<RosterEntry> roster = roster_of(2);
   TeamPlaces places;
-  for (int i = 0; i < 2; ++i) places.note_world(part(10, i, i));
-  places.note_world(part(11, 0, 0));
-  EXPECT_EQ(places.tick(), 10);
-  EXPECT_EQ(places.of(roster)[0].x_m->x(), 10);
-  EXPECT_EQ(places.of(roster)[1].x_m->x(), 10);
-  places.note_world(part(11, 1, 1));
-  EXPECT_EQ(places.tick(), 11);
-  EXPECT_EQ(places.of(roster)[1].x_m->x(), 11);
+  EXPECT_EQ(places.tick(roster), -1);
+  places.note_world(part(10, 0));
+  EXPECT_EQ(places.of(roster)[1].x_m, std::nullopt);
+  places.note_world(part(12, 1, 2));
+  places.note_world(part(13, 0));
+  places.note_world(part(11, 0));
+  EXPECT_EQ(places.tick(roster), 12);
+  EXPECT_EQ(places.of(roster)[0].x_m->x(), 13) << "and not of the state that came late";
+  EXPECT_EQ(places.of(roster)[1].x_m->x(), 12);
 }
 
 TEST(Amending, ASuccessorKnowsTheEnd) {
