@@ -8,6 +8,7 @@
 
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
+#include "core/motion/charge.h"
 #include "core/search/search_cells.h"
 #include "team/beacon_book.h"
 
@@ -20,6 +21,7 @@ struct OwnState {
   Tick answered_tick = -1;           ///< the newest whose command the vehicle had
   Eigen::Vector3d position_m{0, 0, 0}, velocity_mps{0, 0, 0};
   std::int32_t reported_cell = kNoCell;
+  std::int32_t charge_ppm = kNoCharge;
 };
 
 /// The newest tick that the agent has begun.
@@ -34,6 +36,7 @@ struct AgentStep {
   Eigen::Vector3d body_m{0, 0, 0};  ///< a robot may be outside of the domain
   Eigen::Vector3d body_mps{0, 0, 0};
   std::int32_t reported_cell = kNoCell;  ///< by its sensor
+  std::int32_t charge_ppm = kNoCharge;   ///< of its vehicle
   std::optional<BasisAt> basis_at;       ///< at x_m
 
   Moment moment() const { return {tick, begun}; }

@@ -167,7 +167,8 @@ void MissionRun::on(const WorldState& world, const Arrival& arrival, Participant
                         vehicle.answered_tick,
                         vehicle.position_m,
                         vehicle.velocity_mps,
-                        vehicle.reported_cell};
+                        vehicle.reported_cell,
+                        vehicle.charge_ppm};
   }
 }
 
@@ -227,6 +228,7 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   step_.body_m = own.position_m;
   step_.body_mps = own.velocity_mps;
   step_.reported_cell = own.reported_cell;
+  step_.charge_ppm = own.charge_ppm;
   step_.x_m = mission.domain.nearest(own.position_m);
   step_.basis_at.emplace(step_.x_m, mission.domain, mission.basis);
   const RosterEntry* const entry = me.follower().entry_of(me.incarnation());
@@ -267,6 +269,7 @@ void MissionRun::answer(Participant& me, Outbox& out) {
         guidance_.wanted_mps(exchange_.table(), efforts(), counted_roster(me), shift_, step_);
   last_command_.header.tick = answered_ = step_.tick;
   last_command_.position_m = step_.x_m;
+  last_command_.charge_ppm = step_.charge_ppm;
   last_command_.velocity_mps = motion_.command_mps(wanted_mps, step_, me);
   motion_.bodies().answered(step_);
   me.publish(Bus::kCommand, last_command_, step_.tick, out);

@@ -26,6 +26,8 @@ SafeMotion::SafeMotion(const Mission& mission, const Author& self, std::int64_t 
   if (filters_) separation_.emplace(mission, unguarded_hold_ticks(mission));
   if (follows_walls(mission)) wall_follower_.emplace(mission, id_);
   if (has_station_) way_home_.emplace(mission, id_);
+  if (const Battery* const battery = battery_of(mission, id_))
+    charge_.emplace(*battery, mission.timing.dt_s);
 }
 
 void SafeMotion::prepare_recall(const Mission& mission) {
@@ -110,6 +112,10 @@ Eigen::Vector3d SafeMotion::command_mps(const Eigen::Vector3d& wanted_mps, const
 
 bool SafeMotion::goes_home(const AgentStep& step) {
   if (!way_home_ || step.held) return false;
+  if (charge_) {
+    charge_->note(step.counted, step.charge_ppm);
+    if (charge_->must_go(way_home_->needed_s(step.x_m))) return true;
+  }
   return step.recalled || (has_station_ && way_home_->begun(step.counted, step.x_m));
 }
 

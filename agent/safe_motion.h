@@ -3,8 +3,8 @@
 //
 // 0. a vehicle in a zone (core/motion/zones.h) leaves it, whatever else holds, even in a pause;
 // 1. the way home takes the law's place, once it has begun (core/motion/way_home.h), also for an
-//    agent that was recalled; one that has no home stays where it is. The way leads round bodies
-//    that no agent drives, as those of agents that were sent out;
+//    agent that was recalled or whose battery needs it; one that has no home stays where it is. The
+//    way leads round bodies that no agent drives, as those of agents that were sent out;
 // 2. an agent that walls hold up goes along the wall, but not on its way home
 //    (core/motion/wall_following.h);
 // 3. the filter keeps the vehicle apart from walls, edges and the bodies of TeamBodies
@@ -25,6 +25,7 @@
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 #include "core/mission/zones.h"
+#include "core/motion/charge.h"
 #include "core/motion/separation.h"
 #include "core/motion/wall_following.h"
 #include "core/motion/way_home.h"
@@ -67,7 +68,9 @@ class SafeMotion {
   }
   bool has_station() const { return has_station_; }
   /// Whether it has begun the way to its station.
-  bool returns() const { return way_home_ && way_home_->begun(); }
+  bool returns() const {
+    return (way_home_ && way_home_->begun()) || (charge_ && charge_->must_go());
+  }
   /// Prepares the way home of an agent that is recalled.
   void prepare_recall(const Mission& mission);
   /// Whether the vehicle is at home, or has none. @pre prepare_recall() was called
@@ -98,8 +101,9 @@ class SafeMotion {
   std::optional<WayOut> way_out_;               // of these; made when it is first needed
   std::optional<WallFollower> wall_follower_;   // where there are walls
   bool has_station_;
-  std::optional<WayHome> way_home_;  // if it has a station, or was recalled and has a home
-  std::vector<AgentId> undriven_;    // bodies without an agent, ascending
+  std::optional<ChargeWatch> charge_;  // if its vehicle has a battery
+  std::optional<WayHome> way_home_;    // if it has a station, or was recalled and has a home
+  std::vector<AgentId> undriven_;      // bodies without an agent, ascending
   BlockedTicks blocked_;
 };
 

@@ -126,6 +126,7 @@ void Invariants::check(double t_s, const WorldState& world) {
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
   }
   check_home(t_s, world);
+  check_batteries(t_s, world);
   check_detections(t_s, world);
 }
 

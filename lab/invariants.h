@@ -41,6 +41,8 @@ enum class Invariant : std::uint8_t {
   kZonesLeft,
   kHomeInTime,
   kRecalledComeHome,
+  kChargesAreTrue,
+  kEmptyOnlyAtHome,
   kSumsBounded,
   kRelaysAnswerDigests,
   kDigestsSayWhatIsHeld,
@@ -91,6 +93,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kZonesLeft, "nobody is in a zone from its tick on"},
         {Invariant::kHomeInTime, "agents are home in time"},
         {Invariant::kRecalledComeHome, "recalled agents come home"},
+        {Invariant::kChargesAreTrue, "a battery is used away from its station alone"},
+        {Invariant::kEmptyOnlyAtHome, "no vehicle runs empty away from its station"},
         {Invariant::kSumsBounded, "S_00 = time covered, |S_mn| <= S_00, or 3 S_00 after a change"},
         {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
         {Invariant::kDigestsSayWhatIsHeld, "a digest lists what is held"},
@@ -299,6 +303,10 @@ class Invariants {
   void check_looks(double t_s, const TableView& holder);
   bool all_states_count(Tick excused) const;
   void check_home(double t_s, const WorldState& world);
+  bool counts_for_home(AgentId id) const;
+  void check_batteries(double t_s, const WorldState& world);
+  void check_charge(double t_s, const Vehicle& vehicle, const Battery& battery, Tick tick,
+                    double apart_m);
   double nearest_to_station_m(const Vehicle& vehicle) const;
   void check_recalled_home(double t_s, const TableView& holder);
   bool recalled_in_truth(const TableView& holder) const;
@@ -342,8 +350,9 @@ class Invariants {
   std::map<Author, Shadow>
       shadows_;  // of each incarnation of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
-  std::map<Author, Tick> commanded_;             // the newest tick that a command has answered
-  std::map<AgentId, Tick> home_from_;            // where agents have stations
+  std::map<Author, Tick> commanded_;   // the newest tick that a command has answered
+  std::map<AgentId, Tick> home_from_;  // where agents have stations
+  std::map<AgentId, std::pair<Tick, std::int32_t>> charges_;  // the newest, of a battery
   std::map<Author, Tick> rested_;                // counted ticks since an agent was recalled
   std::map<AgentId, Eigen::Vector3d> places_m_;  // in lockstep, of the newest state
   StateAssembler state_;                         // where a distance is kept

@@ -141,13 +141,7 @@ void Invariants::check_home(double t_s, const WorldState& world) {
     const auto from = home_from_.find(vehicle.id);
     if (from == home_from_.end() || counted < from->second) continue;
     if (zone_may_delay(vehicle.id, from->second)) continue;
-    bool from_the_start = false, sent_out = false;
-    for (const RosterEntry& entry : truth_.roster()) {
-      if (entry.author.agent != vehicle.id) continue;
-      from_the_start = from_the_start || entry.active_from == 0;
-      sent_out = sent_out || entry.leaves;
-    }
-    if (!from_the_start || sent_out) continue;
+    if (!counts_for_home(vehicle.id)) continue;
     const double apart_m = (vehicle.position_m - station_m_of(mission_, vehicle.id)).norm();
     const double most_m = tolerated_m(mission_, vehicle.id);
     if (apart_m <= most_m * (1 + 1e-9)) continue;
@@ -157,6 +151,56 @@ void Invariants::check_home(double t_s, const WorldState& world) {
             text("is ", apart_m, " m from its station at tick ", world.header.tick, ", and ",
                  nearest_m + most_m, " m are tolerated"));
   }
+}
+
+/// Whether it is an agent that the mission began with, and was not sent out.
+bool Invariants::counts_for_home(AgentId id) const {
+  bool from_the_start = false, sent_out = false;
+  for (const RosterEntry& entry : truth_.roster()) {
+    if (entry.author.agent != id) continue;
+    from_the_start = from_the_start || entry.active_from == 0;
+    sent_out = sent_out || entry.leaves;
+  }
+  return from_the_start && !sent_out;
+}
+
+/// Checks lockstep, where an agent answers each tick. Zones may close the way home for any time.
+void Invariants::check_batteries(double t_s, const WorldState& world) {
+  const Timing& timing = mission_.timing;
+  if (timing.pace == Pace::kRealtime) return;
+  const bool free = zones_.empty() && timing.on_timeout != OnTimeout::kEvict;
+  for (const Vehicle& vehicle : world.vehicles_in_part()) {
+    if (vehicle.id >= std::ssize(mission_.starts_m)) continue;
+    const int kind = planned_kind(mission_, vehicle.id);
+    const Battery battery =
+        mission_.kinds.empty() ? Battery{} : mission_.kinds[static_cast<std::size_t>(kind)].battery;
+    if (battery.capacity_wh == 0) continue;
+    const double apart_m = (vehicle.position_m - station_m_of(mission_, vehicle.id)).norm();
+    check_charge(t_s, vehicle, battery, world.header.tick, apart_m);
+    const double most_m = tolerated_m(mission_, vehicle.id) * (1 + 1e-9);
+    if (free && vehicle.charge_ppm == 0 && apart_m > most_m && counts_for_home(vehicle.id))
+      violate(t_s, Invariant::kEmptyOnlyAtHome, "vehicle " + std::to_string(vehicle.id),
+              text("is empty ", apart_m, " m from its station at tick ", world.header.tick));
+  }
+}
+
+/// Compares the charge with that of the tick before. At the edge of its station it may have been
+/// charged or not, and a restarted world knows the charge in whole millionths.
+void Invariants::check_charge(double t_s, const Vehicle& vehicle, const Battery& battery, Tick tick,
+                              double apart_m) {
+  constexpr double kRounded_ppm = 4;
+  const auto [before, before_ppm] =
+      std::exchange(charges_[vehicle.id], std::pair(tick, vehicle.charge_ppm));
+  if (before_ppm == 0 || before + 1 != tick || worlds_.size() > 1) return;
+  const double per_w = mission_.timing.dt_s / (battery.capacity_wh * 3600) * 1e6;
+  const double used_ppm = is_held(truth_.holds(), before) ? 0 : battery.power_w * per_w;
+  const double change_ppm = vehicle.charge_ppm - before_ppm;
+  const double most_m = tolerated_m(mission_, vehicle.id);
+  const bool used = std::abs(change_ppm + std::min<double>(used_ppm, before_ppm)) <= kRounded_ppm;
+  const bool charged = change_ppm >= 0 && change_ppm <= battery.charge_w * per_w + kRounded_ppm;
+  if (apart_m > most_m * (1 + 1e-9) ? used : apart_m < most_m * (1 - 1e-9) ? charged : true) return;
+  violate(t_s, Invariant::kChargesAreTrue, "vehicle " + std::to_string(vehicle.id),
+          text("has a charge that changed by ", change_ppm, " ppm at tick ", tick));
 }
 
 /// Whether it rests because it was recalled, by the newest roster that was sent.

@@ -252,6 +252,7 @@ struct Fields<WorldState> {
       io.vector(vehicle.velocity_mps);
       io.number(vehicle.detected);
       io.within(vehicle.reported_cell, kNoCell, kMaxSearchCells - 1);
+      io.within(vehicle.charge_ppm, kNoCharge, kWhole_ppm);
     }
   }
 };
@@ -265,6 +266,7 @@ struct Fields<Command> {
     io.vector(m.position_m);
     io.vector(m.velocity_mps);
     io.number(m.asked_by);
+    io.within(m.charge_ppm, kNoCharge, kWhole_ppm);
   }
 };
 

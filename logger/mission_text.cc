@@ -39,6 +39,11 @@ class KindWriter : public FieldVisitor {
     list_fields(*this, *vehicle);
     part_.clear();
   }
+  void part(const Field& field, const Battery& battery) {
+    part_ = std::string(field.name) + '.';
+    list_fields(*this, battery);
+    part_.clear();
+  }
   void places(const Field& xy, const Field&, const std::vector<Eigen::Vector3d>& places_m) {
     enter("");
     for (const Eigen::Vector3d& x_m : places_m)

@@ -150,6 +150,16 @@ void list_fields(auto& io, MaybeConst<Separation> auto& separation) {
   io.number({6, "lease_s", limits::between(0, 3600), leased}, separation.lease_s);
 }
 
+void list_fields(auto& io, MaybeConst<Battery> auto& battery) {
+  const When has = only_if(battery.any());
+  io.number({1, "capacity_wh", limits::above(0, 1e9), has}, battery.capacity_wh);
+  io.number({2, "power_w", limits::above(0, 1e9), has}, battery.power_w);
+  io.number({3, "charge_w", limits::between(0, 1e9), unless(battery.charge_w, 0)},
+            battery.charge_w);
+  io.number({4, "reserve", limits::between(0, 0.9), unless(battery.reserve, Battery().reserve)},
+            battery.reserve);
+}
+
 void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
   const When banded = only_if(kind.band_from != 0 || kind.band_to != 0);
   const When slowed = unless(kind.speed_limit_mps, 0);
@@ -166,6 +176,7 @@ void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
   io.number({11, "speed_limit_mps", limits::above(0, 1e9), slowed}, kind.speed_limit_mps);
   io.places({12, "station"}, {13, "station_heights_m"}, kind.stations_m);
   io.number({14, "reserve_s", limits::between(0, 1e7), unless(kind.reserve_s, 0)}, kind.reserve_s);
+  io.part({15, "battery"}, kind.battery);
 }
 
 void list_fields(auto& io, MaybeConst<ObjectMotion> auto& motion) {

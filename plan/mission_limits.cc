@@ -184,11 +184,18 @@ bool fits(const Separation& separation, const Mission& mission) {
          !too_near_at_start(mission);
 }
 
+/// A battery needs a station, and has both numbers or none.
+bool fits(const Battery& battery, const AgentKind& kind) {
+  if (!battery.any())
+    return battery.power_w == 0 && battery.charge_w == 0 && battery.reserve == Battery().reserve;
+  return battery.power_w > 0 && !kind.stations_m.empty();
+}
+
 bool fits(const AgentKind& kind, const Mission& mission) {
   const bool ends_in_order = kind.band_to == 0 || kind.band_from <= kind.band_to;
   const ControlLaw law = law_of(mission, *kind_named(mission, kind.name));
   return kind.footprint_sigma_m <= mission.domain.size_m.maxCoeff() && ends_in_order &&
-         (kind.reserve_s == 0 || !kind.stations_m.empty()) &&
+         (kind.reserve_s == 0 || !kind.stations_m.empty()) && fits(kind.battery, kind) &&
          covers_any_mode(kind, mission.basis) && fits(law) &&
          fit_together(law, mission.disturbance_intensity, mission.domain, mission.timing.dt_s);
 }

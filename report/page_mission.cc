@@ -129,6 +129,7 @@ Json stations_of(const Mission& mission) {
     list.push_back({{"id", id},
                     {"at_m", rounded_list((*station_m - mission.domain.origin_m).head(axes), 9)},
                     {"rest_from", rest_from(mission, id)}});
+    if (battery_of(mission, id) != nullptr) list.back()["battery"] = true;
   }
   return list;
 }

@@ -18,9 +18,9 @@ namespace ergocast {
 /// h_k², "dt_s", "tick_count", "agents", "u_max_mps": of the fastest kind, "radio_range_m",
 /// "free_domain", "conventions": [[name, text], …], "density": null or {"width", "height", "full",
 /// "data"}, "body_radius_m": half the distance that bodies keep, "stations": [{"id", "at_m" from
-/// the domain's corner, "rest_from" in ticks that count}, …], "vehicles": [{"count", "vehicle":
-/// "FIXED_WING"}, …] of the planned kinds, "half_life_ticks", "keeps_history": true}. From
-/// "body_radius_m" on, a key is present only where it applies. Origin,
+/// the domain's corner, "rest_from" in ticks that count, "battery": true if it has one}, …],
+/// "vehicles": [{"count", "vehicle": "FIXED_WING"}, …] of the planned kinds, "half_life_ticks",
+/// "keeps_history": true}. From "body_radius_m" on, a key is present only where it applies. Origin,
 /// size and modes have two numbers, in a box three. With "free_domain" μ and λ are still those of
 /// cosines, with which the page draws; φ² over time is in the modes of the free domain. `density`
 /// has a byte for each cell, the north-west first; 255 is `full` times the uniform density or more.

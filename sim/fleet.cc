@@ -5,7 +5,10 @@
 #include <algorithm>
 
 #include "core/base/geometry.h"
+#include "core/mission/station.h"
+#include "core/motion/charge.h"
 #include "core/motion/filter_rules.h"
+#include "core/motion/home.h"
 #include "core/motion/push.h"
 #include "core/motion/vehicle.h"
 #include "core/motion/zones.h"
@@ -108,8 +111,18 @@ void Fleet::stop() {
   if (physics_) move_bodies();
 }
 
+void Fleet::use_batteries() {
+  for (auto& [id, slot] : vehicles_) {
+    const Battery* const battery = battery_of(*mission_, id);
+    if (battery == nullptr) continue;
+    const double apart_m = length_of(*station_of(*mission_, id) - slot.x_m);
+    slot.charge =
+        share_after(*battery, slot.charge, apart_m <= home_m(*mission_, id), mission_->timing.dt_s);
+  }
+}
+
 void Fleet::drive(AgentId id, Slot& slot, Tick tick) const {
-  const Eigen::Vector3d wanted_mps = slot.has_driver()
+  const Eigen::Vector3d wanted_mps = slot.has_driver() && slot.charge > 0
                                          ? slot.commands.velocity_mps(tick, mission_->timing)
                                          : Eigen::Vector3d(0, 0, 0);
   slot.next_mps = executed(motion_of(*mission_, id), slot.applied_mps, wanted_mps);
@@ -177,6 +190,7 @@ std::vector<WorldState> Fleet::snapshot(Tick tick) {
     vehicle.detected = objects_.detected(id, tick, slot.x_m);
     vehicle.reported_cell =
         reports_.cell(id, tick, slot.x_m, vehicle.detected, objects_.places_m());
+    if (battery_of(*mission_, id) != nullptr) vehicle.charge_ppm = charge_ppm_of(slot.charge);
   }
   return states;
 }

@@ -88,6 +88,9 @@ class Fleet {
 
   /// Moves all vehicles from `tick` to the next tick.
   void step(Tick tick);
+  /// Charges the batteries of vehicles at their stations for a tick that counts. The others use
+  /// theirs.
+  void use_batteries();
   /// Lets a tick pass in which no vehicle moves, but for bodies with mass, which roll on.
   void stop();
 
@@ -107,10 +110,11 @@ class Fleet {
     Eigen::Vector3d next_mps{0, 0, 0};     // in the step that follows
     CommandHistory commands;
     bool placed = true;  // false: x_m is not known yet
+    double charge = 1;   // the share that is left in its battery
 
     bool has_driver() const { return author.incarnation != 0; }
     bool driven(Tick tick, const Timing& timing) const {
-      return has_driver() && commands.in_force(tick, timing);
+      return has_driver() && charge > 0 && commands.in_force(tick, timing);
     }
   };
 

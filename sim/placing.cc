@@ -2,6 +2,7 @@
 // Where vehicles begin, and where a restarted world finds them.
 #include <algorithm>
 
+#include "core/motion/charge.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/starts.h"
 #include "core/motion/vehicle.h"
@@ -9,6 +10,15 @@
 #include "sim/fleet.h"
 
 namespace ergocast {
+
+namespace {
+
+/// Without a battery it is always full.
+double charge_of(std::int32_t charge_ppm) {
+  return charge_ppm == kNoCharge ? 1 : share_of(charge_ppm);
+}
+
+}  // namespace
 
 void Fleet::begin(Tick tick, const StateAssembler& before, Surroundings surroundings) {
   if (filters_always()) filter_.emplace(*mission_, 0);
@@ -37,6 +47,7 @@ void Fleet::settle(Tick tick, const StateAssembler& before, Surroundings surroun
       Slot& slot = vehicles_[vehicle.id];
       slot.x_m = vehicle.position_m;
       slot.applied_mps = vehicle.velocity_mps;
+      slot.charge = charge_of(vehicle.charge_ppm);
       slot.placed = true;
     }
   }
@@ -60,6 +71,7 @@ void Fleet::recall(AgentId id, Slot& slot, Tick now) {
   const Tick answered = slot.commands.answered();
   if (answered < 0) return;
   slot.x_m = slot.commands.last()->position_m;
+  slot.charge = charge_of(slot.commands.last()->charge_ppm);
   const Command* const before = slot.commands.before();
   if (before != nullptr && before->header.tick + 1 == answered)
     slot.applied_mps = within_speed_limit(motion_of(*mission_, id), before->velocity_mps);

@@ -285,6 +285,7 @@ std::string World::why_over() const {
 
 void World::step() {
   fleet_.step(tick_);
+  if (!me_.is_held(tick_)) fleet_.use_batteries();
   ++tick_;
 }
 

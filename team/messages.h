@@ -17,13 +17,14 @@
 #include "core/measure/finds.h"
 #include "core/mission/amendments.h"
 #include "core/mission/roster.h"
+#include "core/motion/charge.h"
 #include "core/search/efforts.h"
 #include "plan/plan.h"
 
 namespace ergocast {
 
 /// Limit (Messages): vehicles in a part of WORLD_STATE. Beyond it: the state has several parts.
-inline constexpr int kMaxVehiclesPerState = 16;
+inline constexpr int kMaxVehiclesPerState = 15;
 /// Limit (Messages): roster entries in a part of MISSION. Beyond it: the mission has several parts.
 inline constexpr int kMaxRosterEntriesPerMessage = 6;
 /// Limit (Messages): entries of a digest. Beyond it: entries take turns.
@@ -229,6 +230,7 @@ struct Vehicle {
                                0};  ///< applied in the step that led here; with inertia, at its end
   ObjectSet detected = 0;           ///< by its sensor at this tick
   std::int32_t reported_cell = kNoCell;  ///< by its sensor, core/search/reports.h
+  std::int32_t charge_ppm = kNoCharge;   ///< of its battery, core/motion/charge.h
 };
 
 /// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.
@@ -261,7 +263,8 @@ struct Command {
   Header header;                        ///< header.tick is the tick it answers; −1: none yet
   Eigen::Vector3d position_m{0, 0, 0};  ///< from which it was computed
   Eigen::Vector3d velocity_mps{0, 0, 0};
-  Incarnation asked_by = 0;  ///< the world that asked; 0: it answers a tick
+  Incarnation asked_by = 0;             ///< the world that asked; 0: it answers a tick
+  std::int32_t charge_ppm = kNoCharge;  ///< of the vehicle, as position_m
 };
 
 /// The position of a body, and the teammates' beacons that its agent had received before the

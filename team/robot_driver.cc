@@ -229,6 +229,7 @@ void RobotDriver::add(AgentId id, const Slot& slot, const RobotFix& fix, WorldSt
   vehicle.answered_tick = after == slot.answers.begin() ? -1 : std::prev(after)->tick;
   vehicle.position_m = fix.position_m;
   vehicle.velocity_mps = fix.velocity_mps;
+  vehicle.charge_ppm = fix.charge_ppm;
   if (slot.commanded_mps.isZero(0) && fix.stands) vehicle.velocity_mps.setZero();
   if (domain.planar()) {
     vehicle.position_m.z() = domain.origin_m.z();

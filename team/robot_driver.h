@@ -35,6 +35,7 @@ struct RobotFix {
   Eigen::Vector3d position_m{0, 0, 0}, velocity_mps{0, 0, 0};
   Instant not_before{};  ///< it was measured then or later
   bool stands = false;   ///< its velocity is only noise
+  std::int32_t charge_ppm = kNoCharge;
 };
 
 class RobotDriver {

@@ -15,6 +15,7 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/basis_test.cc
     core/block_layout_test.cc
     core/block_sums_test.cc
+    core/charge_test.cc
     core/command_terms_test.cc
     core/control_in_space_test.cc
     core/control_test.cc
@@ -312,6 +313,7 @@ ergocast_test(NAME layering_tests LABELS unit
 
 ergocast_test(NAME lab_tests LABELS lab OPTIMISED
   SOURCES
+    lab/charge_test.cc
     lab/foresight_test.cc
     lab/invariants_home_test.cc
     lab/invariants_known_test.cc

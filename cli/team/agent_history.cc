@@ -46,6 +46,10 @@ void add_block(Json& lists, const AgentRow& row, std::size_t samples) {
 void add_row(Json& lists, const AgentRow& row, std::size_t samples) {
   lists["state"].push_back(static_cast<int>(row.condition));
   lists["silent_s"].push_back(page_number(row.silent_s, 3));
+  if (row.charge_ppm != kNoCharge) {
+    pad(lists["charge"], samples);
+    lists["charge"].push_back(page_number(share_of(row.charge_ppm), 3));
+  }
   if (!row.status) return;
   const AgentStatus& status = *row.status;
   lists["phase"].push_back(static_cast<int>(status.phase));

@@ -135,6 +135,10 @@ std::vector<Cell> cells_of(const AgentRow& row) {
   return cells;
 }
 
+std::string charge_text(std::int32_t charge_ppm) {
+  return charge_ppm == kNoCharge ? "" : number("%.0f %%", 100 * share_of(charge_ppm));
+}
+
 std::string headline(const TeamPicture& at) {
   std::string text = at.replay ? "replay of " : "";
   text += at.scenario.empty() ? "a mission not received yet" : at.scenario;
@@ -279,6 +283,12 @@ std::string team_table(const TeamPicture& picture, bool colour) {
   text += '\n';
   for (const ProcessRow& row : picture.processes) text += process_line(row, picture.over, colour);
   std::vector<Column> columns = kColumns;
+  if (std::ranges::any_of(picture.agents,
+                          [](const AgentRow& row) { return row.charge_ppm != kNoCharge; })) {
+    columns.insert(columns.begin() + 2, {"battery", true});
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      rows[i].insert(rows[i].begin() + 2, Cell{charge_text(picture.agents[i].charge_ppm)});
+  }
   if (std::ranges::any_of(picture.agents, [](const AgentRow& row) { return !row.kind.empty(); })) {
     columns.insert(columns.begin() + 1, {"kind", false});
     for (std::size_t i = 0; i < rows.size(); ++i)

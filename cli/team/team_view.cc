@@ -164,6 +164,7 @@ void TeamView::add_vehicle(AgentRow& row) const {
   row.position_tick = found->second.first;
   row.position_m.assign(vehicle.position_m.data(), vehicle.position_m.data() + axes);
   row.velocity_mps.assign(vehicle.velocity_mps.data(), vehicle.velocity_mps.data() + axes);
+  row.charge_ppm = vehicle.charge_ppm;
   row.moves = !stands(motion_of(*mission, row.author.agent), vehicle.velocity_mps);
 }
 

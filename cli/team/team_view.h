@@ -43,6 +43,7 @@ struct AgentRow {
   Tick position_tick = -1;  ///< of that state
   /// Its velocity there, in as many numbers.
   std::vector<double> velocity_mps{};
+  std::int32_t charge_ppm = kNoCharge;  ///< of its battery, core/motion/charge.h
   /// Whether it moves in that state; nothing: not known.
   std::optional<bool> moves{};
 };

@@ -111,6 +111,16 @@ struct VehicleLimits {
 };
 
 /// Agents that move and see alike; core/mission/kinds.h.
+/// The battery of a vehicle: core/motion/charge.h.
+struct Battery {
+  double capacity_wh = 0;  ///< 0: the vehicle has none that counts
+  double power_w = 0;      ///< what it uses away from its station
+  double charge_w = 0;     ///< what it gets at its station
+  double reserve = 0.2;    ///< share of the capacity that is left at home
+
+  bool any() const { return capacity_wh > 0; }
+};
+
 struct AgentKind {
   std::string name;
   int count = 1;  ///< number of its agents; their ids follow those of the kinds before
@@ -125,6 +135,7 @@ struct AgentKind {
   /// core/mission/station.h.
   std::vector<Eigen::Vector3d> stations_m{};
   double reserve_s = 0;  ///< time before the end at which they are there
+  Battery battery{};     ///< of each of them; needs stations
 };
 
 /// Limit (Scenario): objects to find. Beyond it: the scenario is refused.

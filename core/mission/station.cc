@@ -44,6 +44,11 @@ std::optional<Eigen::Vector3d> home_of(const Mission& mission, AgentId id) {
   return at < mission.starts_m.size() ? std::optional(mission.starts_m[at]) : std::nullopt;
 }
 
+const Battery* battery_of(const Mission& mission, AgentId id) {
+  const AgentKind* const kind = at_home(mission, id).kind;
+  return kind != nullptr && kind->battery.any() ? &kind->battery : nullptr;
+}
+
 bool any_station(const Mission& mission) {
   return std::ranges::any_of(mission.kinds,
                              [](const AgentKind& kind) { return !kind.stations_m.empty(); });

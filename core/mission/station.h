@@ -32,6 +32,9 @@ std::optional<Eigen::Vector3d> station_of(const Mission& mission, AgentId id);
 /// by the plan. Nothing for a number beyond the plan.
 std::optional<Eigen::Vector3d> home_of(const Mission& mission, AgentId id);
 
+/// The battery of agent `id`; null if it has none.
+const Battery* battery_of(const Mission& mission, AgentId id);
+
 /// Whether any agent has a station.
 bool any_station(const Mission& mission);
 

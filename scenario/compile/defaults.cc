@@ -49,7 +49,7 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
 /// an origin places are in metres only. Without a vehicle all bodies are points, or a kind has the
 /// scenario's vehicle. Without a separation bodies keep no distance. Without a sensor measures
 /// assume the usual one. Without a band all modes count. Without objects there is nothing to find.
-/// Without motion they stand still.
+/// Without motion they stand still. Without a battery no charge counts.
 bool means_something_absent(const FieldDescriptor& field) {
   return field.message_type() == proto::Covariance::descriptor() ||
          field.message_type() == proto::Origin::descriptor() ||
@@ -58,6 +58,7 @@ bool means_something_absent(const FieldDescriptor& field) {
          field.message_type() == proto::Sensor::descriptor() ||
          field.message_type() == proto::Objects::descriptor() ||
          field.message_type() == proto::Motion::descriptor() ||
+         field.message_type() == proto::Battery::descriptor() ||
          field.message_type() == proto::Band::descriptor();
 }
 

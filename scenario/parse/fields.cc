@@ -101,6 +101,8 @@ constexpr Row kRows[] = {
     {"Kind", "u_max_mps", kMissions, kLeft},
     {"Kind", "noise_intensity", kMissions, kLeft},
     {"Kind", "noise_ceiling", kMissions, kLeft},
+    {"Battery", "capacity_wh", kMissions, kRefused},
+    {"Battery", "power_w", kMissions, kRefused},
     {"Band", "from", kMissions, kDefaulted, 0},
     {"Band", "to", above(0, 1000), kLeft},
     {"Motion", "speed_mps", kMissions, kRefused},

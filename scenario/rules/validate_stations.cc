@@ -8,6 +8,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "core/motion/charge.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/home.h"
 #include "core/motion/starts.h"
@@ -37,6 +38,7 @@ class StationRules {
     for (int i = 0; i < kinds_.size(); ++i) {
       count(i);
       reserve(i);
+      battery(i);
     }
     const std::array parts = {"domain", "basis", "law",     "time",
                               "agents", "world", "vehicle", "separation"};
@@ -75,6 +77,12 @@ class StationRules {
                     shortest(kinds_[i].reserve_s()) + " is no less than the mission's " +
                         shortest(duration_s) + " s: its agents would never cover anything",
                     "write less, or a longer time.duration_s");
+  }
+
+  void battery(int i) {
+    if (!kinds_[i].has_battery() || kinds_[i].station_size() > 0) return;
+    checks_.problem(indexed("agents.kind", i) + ".battery", "has no effect without a station",
+                    "remove it, or add station { x_m: … y_m: … }");
   }
 
   void stay(const Mission& mission, AgentId id) {
@@ -171,6 +179,15 @@ void validate_ways_home(const Mission& mission, Checks& checks) {
                          shortest(rounded_down(left_s)) + " s",
                      "move the station nearer, write a smaller reserve_s or a longer "
                      "time.duration_s");
+    } else if (const Battery* const battery = battery_of(mission, id);
+               battery != nullptr && needed_s >= endurance_s(*battery)) {
+      checks.problem(indexed("agents.kind", planned_kind(mission, id)) + ".battery",
+                     "lasts for " + shortest(rounded_down(endurance_s(*battery))) +
+                         " s without its reserve, and from the start of agent " +
+                         std::to_string(id) + " the station is " + shortest(rounded_up(needed_s)) +
+                         " s away",
+                     "write a greater capacity_wh, a smaller power_w or reserve, or move the "
+                     "station nearer");
     }
   }
 }

@@ -93,6 +93,7 @@ agents {
     band { from: 0 to: 9 } vehicle { kind: ACCELERATION max_acceleration_mps2: 900 }
     speed_limit_mps: 90
     station { x_m: 20 y_m: 20 z_m: 20 } station { x_m: 60 y_m: 20 z_m: 20 } reserve_s: 20
+    battery { capacity_wh: 50 power_w: 100 charge_w: 90 reserve: 0.3 }
   }
 }
 world { speed_limit_mps: 100 }

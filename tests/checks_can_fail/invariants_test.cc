@@ -134,6 +134,11 @@ const char* const kSearch = "law { kind: SEARCH }\nsensor { radius_m: 5 }";
 const char* const kEndsWhenFound =
     "world { objects { count: 5 end_when_found: 3 } }\nsensor { radius_m: 8 }";
 
+/// They last for 20 s.
+const char* const kBatteries =
+    "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } battery { capacity_wh: 1 "
+    "power_w: 180 charge_w: 900 reserve: 0 } } kind { name: \"b\" count: 2 } }";
+
 const char* const kShortRests =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 1 } "
     "kind { name: \"b\" count: 2 } }";
@@ -198,6 +203,9 @@ const Plant kPlants[] = {
     {Invariant::kZonesNotEntered, "a cancelled zone ends at once", kUndoneZones, kTenAgents},
     {Invariant::kZonesLeft, "nobody is led out of a zone", kZones, kTenAgents},
     {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
+    {Invariant::kEmptyOnlyAtHome, "the way home needs no charge", "", kBatteries, "", "--lockstep"},
+    {Invariant::kChargesAreTrue, "batteries are charged anywhere", "", kBatteries, "",
+     "--lockstep"},
     {Invariant::kHomeInTime, "an agent goes home late", kEarlyZones, kShortRests, "", "--lockstep"},
     {Invariant::kHomeInTime, "agents go home by the plan's end", kManyEnds, kStationsForAll, "",
      "--lockstep"},

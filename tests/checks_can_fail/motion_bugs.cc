@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/law/law.h"
+#include "core/motion/charge.h"
 #include "core/motion/separation.h"
 #include "core/motion/vehicle.h"
 #include "core/motion/way_home.h"
@@ -22,6 +23,8 @@ WRAPPED(double, ergodic_metric, "_ZN8ergocast14ergodic_metricERKN5Eigen6MatrixId
 WRAPPED(Eigen::Vector3d, reflect, "_ZN8ergocast7reflectERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_3BoxE", const Eigen::Vector3d&, const Box&)
 WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
 WRAPPED(bool, goes_home, "_ZN8ergocast7WayHome5begunElRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEE", WayHome*, Tick, const Eigen::Vector3d&)
+WRAPPED(bool, must_go, "_ZN8ergocast11ChargeWatch7must_goEd", ChargeWatch*, double)
+WRAPPED(double, share_after, "_ZN8ergocast11share_afterERKNS_7BatteryEdbd", const Battery&, double, bool, double)
 WRAPPED(Eigen::Vector3d, go_home, "_ZN8ergocast7WayHome12velocity_mpsERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEES5_", WayHome*, const Eigen::Vector3d&, const Eigen::Vector3d&)
 WRAPPED(bool, filters_again, "_ZN8ergocast13filters_againERKNS_7MissionE", const Mission&)
 WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
@@ -249,6 +252,15 @@ Eigen::Vector3d bug_go_home(WayHome* self, const Eigen::Vector3d& x_m,
 }
 
 /// A second and a half late.
+bool bug_must_go(ChargeWatch* self, double way_s) {
+  return real_must_go(self, bug("the way home needs no charge") ? 0 : way_s);
+}
+
+double bug_share_after(const Battery& battery, double share, bool at_station, double dt_s) {
+  return real_share_after(battery, share, at_station || bug("batteries are charged anywhere"),
+                          dt_s);
+}
+
 bool bug_goes_home(WayHome* self, Tick counted, const Eigen::Vector3d& x_m) {
   return real_goes_home(self, bug("an agent goes home late") ? counted - 15 : counted, x_m);
 }

@@ -162,6 +162,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(command_wire.command_velocity_mps[1], 5);
   EXPECT_EQ(command_wire.command_velocity_mps[2], 6);
   EXPECT_EQ(static_cast<Incarnation>(command_wire.command_asked_by), 0xfeedfacecafebeef);
+  EXPECT_EQ(command_wire.command_charge_ppm, 123456);
 }
 
 TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
@@ -254,6 +255,8 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(static_cast<ObjectSet>(wire.vehicles[0].detected), 0x80000005);
   EXPECT_EQ(wire.vehicles[0].reported_cell, 4095);
   EXPECT_EQ(wire.vehicles[1].reported_cell, -1);
+  EXPECT_EQ(wire.vehicles[0].charge_ppm, 654321);
+  EXPECT_EQ(wire.vehicles[1].charge_ppm, -1);
   EXPECT_EQ(wire.vehicles[1].vehicle_id, 127);
   EXPECT_EQ(wire.vehicles[1].vehicle_answered_tick, -1);
   EXPECT_EQ(wire.vehicles[1].velocity_mps[1], -11);

@@ -169,13 +169,13 @@ inline WorldState world_state() {
   m.part = 1;
   m.parts = 8;
   m.vehicle_count = 2;
-  m.vehicles[0] = {16, 77, {1.0 / 3, -2, 3}, {4, 5, 6}, 0x80000005, 4095};
+  m.vehicles[0] = {16, 77, {1.0 / 3, -2, 3}, {4, 5, 6}, 0x80000005, 4095, 654321};
   m.vehicles[1] = {127, -1, {7, 8, 9}, {10, -11, 1e-300}};
   return m;
 }
 
 inline Command command() {
-  return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}, 0xfeedfacecafebeef};
+  return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}, 0xfeedfacecafebeef, 123456};
 }
 
 inline RecordAck record_ack() {

@@ -342,6 +342,21 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m = with_lease(m), m.timing.command_hold_s = 0.02; },
       [](Mission& m) { m = with_lease(m), m.separation = {}, m.separation.lease_s = 4; },
       [](Mission& m) { m.kinds[0].reserve_s = 1; },  // of no station
+      [](Mission& m) {
+        m.kinds[0].battery = {50, 100};
+      },  // the same
+      [](Mission& m) {
+        m = with_stations(m), m.kinds[1].battery = {50, 0};
+      },
+      [](Mission& m) {
+        m = with_stations(m), m.kinds[1].battery = {0, 100};
+      },
+      [](Mission& m) {
+        m = with_stations(m), m.kinds[1].battery = {50, 100, -1};
+      },
+      [](Mission& m) {
+        m = with_stations(m), m.kinds[1].battery = {50, 100, 0, 1};
+      },
       [](Mission& m) { m = with_stations(m), m.kinds[1].reserve_s = -1; },
       [](Mission& m) { m = with_stations(m), m.kinds[1].reserve_s = 1e6; },  // than the mission
       [](Mission& m) { m = with_stations(m), m.kinds[1].stations_m[0].x() = 1e6; },

@@ -62,6 +62,7 @@ TEST(MissionFields, AreAllMembers) {
   EXPECT_EQ(listed<Separation>(), members<Separation>());
   EXPECT_EQ(listed<HiddenObjects>(), members<HiddenObjects>());
   EXPECT_EQ(listed<ObjectMotion>(), members<ObjectMotion>());
+  EXPECT_EQ(listed<Battery>(), members<Battery>());
 }
 
 }  // namespace

@@ -157,6 +157,7 @@ inline Mission with_walls(Mission mission) {
 inline Mission with_stations(Mission mission) {
   mission.kinds[1].stations_m = {{25, 26, mission.domain.planar() ? 0.0 : 12.0}};
   mission.kinds[1].reserve_s = 1.5;
+  mission.kinds[1].battery = {50, 100, 90, 0.3};
   mission.objects.end_when_found = 0;  // an end that nobody knows before
   return mission;
 }

@@ -231,6 +231,7 @@ void agree_on_stations(proto::Scenario& scenario) {
     proto::Kind& kind = *agents.mutable_kind(i);
     if (i > 0 || kind.count() > 1 || !undelayed) kind.clear_station();
     if (kind.station_size() == 0) kind.clear_reserve_s();
+    if (kind.station_size() == 0) kind.clear_battery();
     if (kind.station_size() == 0) continue;
     *kind.mutable_station(0) = agents.starts(0);
     time.set_duration_s(std::max(time.duration_s(), 20 * dt_s));

@@ -238,6 +238,11 @@ const std::map<std::string, Rule>& rules() {
       {"Kind.speed_limit_mps", may(spread(5, 20))},
       {"Kind.station", many(0, 1)},  // in time of all: see drawn_agreement.h
       {"Kind.reserve_s", may(number(0.01, 0.3))},
+      {"Kind.battery", may(draw_block)},  // where there is a station
+      {"Battery.capacity_wh", must(number(10, 20))},
+      {"Battery.power_w", must(number(1, 100))},
+      {"Battery.charge_w", may(number(1, 100))},
+      {"Battery.reserve", may(number(0.01, 0.5))},
       {"Band.from", may(number(0, 4))},
       {"Band.to", may(number(5, 20))},
       {"Start.x_m", must(kPlace)},

@@ -62,6 +62,7 @@ export function recordHistory(run, { t, metric, agents, words, phases }) {
         kernel_drops: own.drops[i],
         blocked_s: own.blocked_s?.[i],
         blocked_by: own.blocked_by?.[i],
+        charge: own.charge?.[i],
       }));
     return {
       t: at,

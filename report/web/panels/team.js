@@ -11,6 +11,12 @@ const own = (status, key, text = readable) => (typeof status?.[key] === 'number'
 
 // A live team reports its state; a record has the last report of each agent.
 const COLUMNS = [
+  {
+    head: 'Battery',
+    live: true,
+    shown: ({ stations }) => stations?.some(({ battery }) => battery),
+    text: ({ status }) => own(status, 'charge', v => `${(100 * v).toFixed(0)} %`),
+  },
   { head: 'Speed', text: ({ speed }) => (speed === null ? '–' : `${speed.toFixed(1)} m/s`) },
   {
     head: 'Distance',
@@ -77,7 +83,9 @@ function row(id) {
 // Makes rows for all agents of the run; again when others have joined.
 export function buildTeam() {
   const live = S.run.history.length > 0 || S.live;
-  columns = COLUMNS.filter(column => (live ? !column.record : !column.live));
+  columns = COLUMNS.filter(
+    ({ record, live: alive, shown }) => (live ? !record : !alive) && (shown?.(S.run.mission) ?? true),
+  );
   const heads = [{ head: '#' }, { head: 'State' }, ...columns].map(({ head, metric, long }) => {
     const th = element('th', long ? 'long' : '', head);
     th.scope = 'col';
