@@ -10,7 +10,7 @@ namespace {
 /// In how many heartbeats the state must show an order that was accepted. Else a pilot has changed
 /// it again.
 constexpr std::int64_t kSeenHeartbeats = 3;
-constexpr std::uint8_t kAccepted = 0, kInProgress = 5;
+constexpr std::uint8_t kAccepted = 0, kTemporarilyRejected = 1, kInProgress = 5;
 constexpr const char* kResults[] = {"ACCEPTED", "TEMPORARILY_REJECTED", "DENIED",   "UNSUPPORTED",
                                     "FAILED",   "IN_PROGRESS",          "CANCELLED"};
 
@@ -22,20 +22,28 @@ void Orders::note_heartbeat(bool armed) {
   if (std::exchange(open_, false) && armed) pilots_ = true;
   if (!began) return;
   const bool accepted = command_ == kArm && accepted_at_heartbeat_.has_value();
-  open_ = command_ == kArm && unanswered_;
+  open_ = command_ == kArm && (unanswered_ || (accepted && !checked_));
   if (!accepted && !open_) pilots_ = true;
 }
 
 std::optional<std::string> Orders::take_answer(const CommandAck& ack) {
+  if (ack.command == kRunChecks && command_ == kArm) return take_check(ack), std::nullopt;
   if (ack.command != command_ || requests_ == 0) return std::nullopt;
   const bool in_progress = ack.result == kInProgress;
   if (in_progress && command_ == kArm) return std::nullopt;
   unanswered_ = false;
   if (ack.result != kAccepted && !in_progress)
     return ack.result < std::size(kResults) ? kResults[ack.result] : std::to_string(ack.result);
-  open_ = false;
+  open_ = open_ && command_ == kArm && !checked_;
   if (!accepted_at_heartbeat_) accepted_at_heartbeat_ = heartbeats_;
   return std::nullopt;
+}
+
+/// An autopilot that rejects the checks was armed before the driver's order.
+void Orders::take_check(const CommandAck& ack) {
+  checked_ = true;
+  if (ack.result == kTemporarilyRejected) pilots_ = true;
+  if (accepted_at_heartbeat_) open_ = false;
 }
 
 bool Orders::due(std::uint16_t command) {
@@ -52,6 +60,7 @@ bool Orders::due(std::uint16_t command) {
     return false;
   }
   if (requests_ > kMostRequests) return false;
+  checked_ = false;
   gave_up_ = ++requests_ > kMostRequests;
   return unanswered_ = !gave_up_;
 }

@@ -4,8 +4,13 @@
 // An order is sent only in answer to a heartbeat, and repeated until the autopilot accepts or the
 // driver gives up. A vehicle that is armed is the driver's only if the autopilot has accepted this
 // driver's order to arm. Without that answer the driver waits for one more heartbeat, because an
-// answer may be overtaken, and then the vehicle is the pilot's. So a pilot's arming counts as the
-// driver's only if it falls between the heartbeat that asked for the order and the order's arrival.
+// answer may be overtaken, and then the vehicle is the pilot's.
+//
+// An autopilot also accepts the order to arm while it is armed. So each order to arm follows an
+// order to run the checks before arming, which MAVLink has an armed autopilot reject. Only a pilot
+// that arms between these two orders, which are sent together, is overlooked. Where the autopilot
+// does not know the checks, or runs them while it is armed, that holds for a pilot that arms
+// between the heartbeat and the order.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +22,7 @@
 
 namespace ergocast::mavlink {
 
-inline constexpr std::uint16_t kTakeOff = 22, kSetMode = 176, kArm = 400;
+inline constexpr std::uint16_t kTakeOff = 22, kSetMode = 176, kArm = 400, kRunChecks = 401;
 
 class Orders {
  public:
@@ -25,7 +30,8 @@ class Orders {
   void note_heartbeat(bool armed);
   /// An answer to this driver. @return  the autopilot's refusal of the present order, as a word
   std::optional<std::string> take_answer(const CommandAck& ack);
-  /// Whether this order is to be sent now. At most once after each heartbeat.
+  /// Whether this order is to be sent now, kArm after kRunChecks. At most once after each
+  /// heartbeat.
   bool due(std::uint16_t command);
   /// The vehicle is armed, and whether this driver has armed it is not known yet.
   bool waits_for_answer() const { return open_; }
@@ -38,11 +44,14 @@ class Orders {
   static constexpr int kMostRequests = 5;
 
  private:
+  void take_check(const CommandAck& ack);
+
   std::int64_t heartbeats_ = 0, answered_heartbeats_ = 0;
   bool armed_ = false;
   std::uint16_t command_ = 0;  // the present order
   int requests_ = 0;
   bool unanswered_ = false;                            // the newest request
+  bool checked_ = false;                               // the answer to kRunChecks has arrived
   std::optional<std::int64_t> accepted_at_heartbeat_;  // the present order
   bool open_ = false, pilots_ = false, gave_up_ = false;
 };

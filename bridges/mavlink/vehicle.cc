@@ -2,6 +2,8 @@
 // The numbers of commands and states are those of mavlink.io.
 #include "bridges/mavlink/vehicle.h"
 
+#include <ergocast/core/motion/charge.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -139,8 +141,10 @@ void Vehicle::forget_landed_state(Instant now) {
 /// Each tenth is told once, from 50 % on.
 void Vehicle::on(const SysStatus& status, Instant) {
   constexpr int kFirstTold_percent = 50, kLow_percent = 20;
+  charge_ppm_ = -1;
   if (status.battery_remaining < 0) return;  // not known
-  const int left = static_cast<unsigned char>(status.battery_remaining);
+  const int left = std::min(100, static_cast<int>(status.battery_remaining));
+  charge_ppm_ = left * (kWhole_ppm / 100);
   if (left > kFirstTold_percent || left > battery_told_percent_ - 10) return;
   battery_told_percent_ = left - left % 10 + (left % 10 > 0 ? 10 : 0);
   note(left <= kLow_percent, "the battery has " + std::to_string(left) + " %");
@@ -398,7 +402,10 @@ void Vehicle::take_command(std::vector<Packet>& out) {
   if (make_ == Make::kPx4 && setpoints_ < kSetpointsBeforeOffboard) return;
   const std::optional<CommandLong> next = next_order();
   if (!next) return;
-  if (orders_.due(next->command)) out.emplace_back(*next);
+  if (orders_.due(next->command)) {
+    if (next->command == kArm) out.emplace_back(command(kRunChecks, 0));
+    out.emplace_back(*next);
+  }
   if (orders_.take_pilots()) taken_over_ = true;
   if (orders_.take_gave_up())
     note(true, "has asked " + std::to_string(Orders::kMostRequests) +

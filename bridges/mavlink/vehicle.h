@@ -76,6 +76,8 @@ class Vehicle {
 
   /// The newest position, if it can be trusted.
   std::optional<Fix> fix(Instant now) const;
+  /// What the autopilot says of its battery, in millionths; −1: not known.
+  std::int32_t charge_ppm() const { return charge_ppm_; }
   /// Whether the newest position says that it stands, but for the noise of a vehicle that does.
   bool stands(Instant now) const;
   /// Why the vehicle does not follow its agent; empty if it does.
@@ -154,6 +156,7 @@ class Vehicle {
   std::set<std::uint8_t> strangers_;
   bool warned_of_driver_ = false;
   int battery_told_percent_ = 100;
+  std::int32_t charge_ppm_ = -1;
   std::string last_text_;
 
   Box domain_;

@@ -110,6 +110,20 @@ TEST(MavlinkDriver, SendsItsPlaceEachTickAndObeysItsAgent) {
   EXPECT_EQ(flight.east_mps, 5) << "the mission's speed limit";
 }
 
+TEST(MavlinkDriver, SendsTheChargeThatItsAutopilotReports) {
+  DrivenFlight flight(mission_of());
+  flight.pass(2s);
+  const auto charge_ppm = [&] { return flight.states.back().vehicles[0].charge_ppm; };
+  EXPECT_EQ(charge_ppm(), kNoCharge);
+  for (const auto& [percent, ppm] : {std::pair(55, 550'000), {0, 0}, {127, kWhole_ppm}, {-1, -1}}) {
+    SysStatus status;
+    status.battery_remaining = static_cast<std::int8_t>(percent);
+    flight.hear(status);
+    flight.pass(100ms);
+    EXPECT_EQ(charge_ppm(), ppm) << percent;
+  }
+}
+
 TEST(MavlinkDriver, NamesOnlyCommandsThatHadArrivedWhenThePositionWasMeasured) {
   DrivenFlight flight(mission_of());
   flight.pass(2s);

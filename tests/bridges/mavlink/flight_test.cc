@@ -215,6 +215,35 @@ TEST_F(MavlinkVehicles, TakeOffByThemselvesOnlyIfToldToAndStandAfterAJump) {
   EXPECT_EQ(wait_for(one.child), 0) << one.printed();
 }
 
+TEST_F(MavlinkVehicles, GoHomeByTheirBatteriesAndComeBackOnceTheseAreFull) {
+  std::filesystem::create_directory(out());
+  const auto scenario = scenario_of_one();
+  std::string text = text_of(scenario);
+  text.insert(text.find("agents {") + 8,
+              " kind { name: \"one\" count: 1 station { x_m: 20 y_m: 20 } "
+              "battery { capacity_wh: 100 power_w: 100 } }");
+  std::ofstream(scenario) << text;
+  mock(14551, {"--make", "ardupilot", "--at", "47.65368,9.17527"});
+  const Pilot pilot(14551);
+  pilot.orders("battery 100");
+  hand("ergocast-logger", {"--out", out()});
+  Program& one = driver(0, "udp:127.0.0.1:14551", {"--take-command"});
+  hand("ergocast-agent", {"--id", "0"});
+  hand("ergocast-coordinator", {scenario});
+  const auto apart_m = [&] {
+    const RecordedRow row = newest(0);
+    return std::hypot(row.x_m - 20, row.y_m - 20);
+  };
+  ASSERT_TRUE(eventually([&] { return apart_m() > 8; }, one.child.pid())) << one.printed();
+  pilot.orders("battery 15");
+  EXPECT_TRUE(eventually([&] { return apart_m() < 3; }, one.child.pid())) << one.printed();
+  ASSERT_EQ(ergocast({"status", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_NE(output().find("goes home"), std::string::npos) << output();
+  EXPECT_NE(output().find("15 %"), std::string::npos) << output();
+  pilot.orders("battery 97");
+  EXPECT_TRUE(eventually([&] { return apart_m() > 8; }, one.child.pid())) << one.printed();
+}
+
 bool has_caller(int listener) {
   pollfd waiting{listener, POLLIN, 0};
   return poll(&waiting, 1, 0) > 0;

@@ -175,6 +175,31 @@ TEST(MavlinkVehicle, IsTheDriversIfTheAnswerIsOvertakenByAHeartbeat) {
   }
 }
 
+/// It accepts the order to arm all the same.
+TEST(MavlinkVehicle, IsThePilotsIfItWasArmedBeforeTheChecksThatComeWithTheOrder) {
+  for (const std::uint8_t make : {kPx4, kArduPilot}) {
+    Flight flight = armed_by_the_pilot(make);
+    EXPECT_EQ(flight.orders(401), 1) << "before the order to arm";
+    flight.checks = 1;
+    flight.answer(400, 0);
+    flight.pass(3);
+    EXPECT_FALSE(takes_off(flight)) << "the pilot stands beside it";
+    EXPECT_TRUE(flight.said("waits until the pilot has taken off")) << flight.log;
+
+    Flight lost = armed_by_the_pilot(make);
+    lost.checks.reset();
+    lost.answer(400, 0);
+    lost.pass(3);
+    EXPECT_FALSE(takes_off(lost)) << "the checks were not answered";
+
+    Flight own = armed_by_the_pilot(make);
+    own.checks = 0;
+    own.answer(400, 0);
+    own.pass(3);
+    EXPECT_TRUE(takes_off(own)) << own.log;
+  }
+}
+
 TEST(MavlinkVehicle, IsOrderedToArmOnlyInAnswerToAHeartbeat) {
   Flight flight = parked(kArduPilot);
   flight.heartbeat.custom_mode = kGuided;

@@ -89,6 +89,7 @@ class Flight {
   auto orders() const { return orders(176) + orders(400) + orders(22); }
   /// The autopilot's answer to a command.
   void answer(std::uint16_t command, std::uint8_t result, std::uint8_t to_system = 0) {
+    if (command == 400 && checks) answer(401, *checks, to_system);
     CommandAck ack;
     ack.command = command;
     ack.result = result;
@@ -114,6 +115,7 @@ class Flight {
   LocalPositionNed near;
   ExtendedSysState landed;
   bool beats = true, positions = true, local = false, answers = true, knows_landed = true;
+  std::optional<std::uint8_t> checks = 3;  // the answer to the checks before arming
   std::vector<Packet> sent;
   std::string log;
 };

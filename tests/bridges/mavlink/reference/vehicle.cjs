@@ -61,6 +61,7 @@ class Autopilot {
     this.byHand = [0, 0];
     this.takeoff = 0;
     this.silent = false;
+    this.battery = -1; // %, not reported
     this.offset = 0; // m, of reported positions
     this.fence = [];
     this.upload = null;
@@ -97,6 +98,7 @@ class Autopilot {
         mavlinkVersion: 3,
       }),
     );
+    if (this.battery >= 0) this.send(make(this.mavlink.common.SysStatus, { batteryRemaining: this.battery }));
   }
 
   place(north) {
@@ -228,6 +230,8 @@ class Autopilot {
     } else if (m.command === 22) {
       state.orders.push('takeoff');
       this.takeoff = m._param7;
+    } else if (m.command === 401) {
+      result = state.armed ? 1 : 0; // an armed autopilot rejects the checks
     } else if (m.command !== 511) {
       result = 3;
     }
@@ -306,6 +310,7 @@ class Autopilot {
       fly: (north, east) => (this.byHand = [Number(north), Number(east)]),
       jump: metres => (this.offset += Number(metres)),
       silent: () => (this.silent = true),
+      battery: percent => (this.battery = Number(percent)),
       land: () => ((state.up = 0), (state.air = false)),
       fence: fault => (this.fenceFault = fault),
     };
