@@ -10,9 +10,7 @@
 namespace ergocast::example {
 namespace {
 
-bool drives_unicycle(const Motion& motion) {
-  return motion.vehicle.kind == VehicleKind::kUnicycle;
-}
+bool drives_unicycle(const Motion& motion) { return motion.vehicle.kind == VehicleKind::kUnicycle; }
 
 /// Whether the robots can move as all kinds of agents expect.
 bool has_vehicles_for(const Mission& mission) {

@@ -8,7 +8,8 @@
 // It passes frames between them, as routers do. A datagram that begins with "pilot " is a pilot's order; the
 // answer is the vehicle's state as JSON:
 //
-//   pilot state | arm | disarm | takeoff METRES | mode NAME | fly NORTH EAST | jump METRES | silent | battery PERCENT | land
+//   pilot state | arm | disarm | takeoff METRES | mode NAME | fly NORTH EAST | jump METRES | silent
+//     | battery PERCENT | land
 //         | fence refuse|shift|forget
 //
 // An order that ends in "#NUMBER" is obeyed once, and its answer has it.
