@@ -203,6 +203,7 @@ ergocast_test(NAME deploy_tests LABELS unit
 ergocast_test(NAME status_tests LABELS unit
   SOURCES
     cli/amendment_history_test.cc
+    cli/client_list_test.cc
     cli/live_team_test.cc
     cli/recorded_team_test.cc
     cli/run_registry_test.cc

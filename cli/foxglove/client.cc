@@ -51,12 +51,10 @@ FoxgloveClient::FoxgloveClient(LiveChannels& channels, std::string run, Note not
 
 FoxgloveClient::~FoxgloveClient() {
   for (const auto& [channel, one] : subscriptions_) --channels_.get(channel).subscribers;
-  if (!name_.empty()) note_(name_ + " has left");
 }
 
 void FoxgloveClient::begin(const std::string& peer) {
   name_ = "Foxglove client " + peer;
-  note_(name_ + " is connected");
   reply({{"op", "serverInfo"},
          {"name", "ergocast"},
          {"capabilities", Json::array()},

@@ -16,11 +16,6 @@
 namespace ergocast::cli {
 namespace {
 
-/// Limit (Page): places of an agent that Foxglove clients get in a second. Beyond it: only
-/// the newest one is sent.
-constexpr int kPlacesPerSecond = 20;
-constexpr std::chrono::nanoseconds kPlacesPeriod =
-    std::chrono::nanoseconds(std::chrono::seconds(1)) / kPlacesPerSecond;
 /// The kernel keeps about this much for a client that reads nothing, so that what a slow client
 /// gets is not old.
 constexpr int kKernelBuffer = 64 << 10;
@@ -150,11 +145,14 @@ void FoxgloveOutput::serve(Instant now) {
     second_ = now;
     notes_ = 0;
   }
-  if (now >= next_places_) {
-    next_places_ = now + kPlacesPeriod;
-    topics_.show_places(wall_time_ns());
-  }
+  topics_.show_places(wall_time_ns());
   connections_.serve(now);
+}
+
+std::vector<std::string> FoxgloveOutput::clients() const {
+  std::vector<std::string> names;
+  for (const std::string& peer : connections_.peers()) names.push_back("Foxglove client " + peer);
+  return names;
 }
 
 void FoxgloveOutput::show(const WorldState& world, const MissionFollower& team) {

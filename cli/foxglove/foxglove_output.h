@@ -33,7 +33,7 @@ class FoxgloveOutput final : public TeamDisplay {
     PageOptions page;                ///< the page's address and certificate, also for this server
     std::optional<GeoPlace> origin;  ///< nothing: there are no locations
     DensityCells target;             ///< the plan's; empty: not known here
-    /// Gets a sentence when a client comes, is too slow, or leaves.
+    /// Gets a sentence when a client is too slow.
     std::function<void(const std::string&)> note;
   };
 
@@ -44,6 +44,8 @@ class FoxgloveOutput final : public TeamDisplay {
   std::string url() const;
   /// Call it at least ten times a second.
   void serve(Instant now);
+  /// A name for each client that is connected now.
+  std::vector<std::string> clients() const;
 
   void show(const WorldState& world, const MissionFollower& team) override;
   void show(const std::vector<std::string>& lines) override;
@@ -59,7 +61,7 @@ class FoxgloveOutput final : public TeamDisplay {
   std::string session_;
   LiveChannels channels_;
   LiveTopics topics_;
-  Instant next_places_{}, second_{};
+  Instant second_{};
   int notes_ = 0;  // since `second_`
   Connections connections_;
 };

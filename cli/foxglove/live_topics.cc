@@ -98,6 +98,10 @@ void LiveTopics::note_recalls(const WorldState& world, const MissionFollower& te
 }
 
 void LiveTopics::show_places(std::uint64_t time_ns) {
+  // A clock that is set back delays by no more than a period.
+  if (time_ns < next_places_ns_ && next_places_ns_ - time_ns <= kPlacesPeriod_ns) return;
+  if (std::ranges::none_of(agents_, [](const auto& one) { return one.second.is_new; })) return;
+  next_places_ns_ = time_ns + kPlacesPeriod_ns;
   for (auto& [id, agent] : agents_) {
     if (!std::exchange(agent.is_new, false)) continue;
     const Eigen::Vector3d& x_m = agent.newest.x_m;

@@ -25,6 +25,10 @@ class LiveTopics {
  public:
   /// The shortest time between two pictures of the coverage.
   static constexpr std::uint64_t kCoveragePeriod_ns = 1'000'000'000;
+  /// Limit (Page): places of an agent that Foxglove clients get in a second. Beyond it: only
+  /// the newest one is sent.
+  static constexpr std::uint64_t kPlacesPerSecond = 20;
+  static constexpr std::uint64_t kPlacesPeriod_ns = 1'000'000'000 / kPlacesPerSecond;
 
   /// @param channels  gets the topics; outlives this object
   /// @param origin    nothing: there are no locations
@@ -33,7 +37,7 @@ class LiveTopics {
 
   /// Takes in a part of the world's state. Old places and repeated ones change nothing.
   void take(const WorldState& world, const MissionFollower& team);
-  /// Shows the places that are new since the last call.
+  /// Shows the places that are new, at most kPlacesPerSecond times a second; call it more often.
   void show_places(std::uint64_t time_ns);
   void show_line(std::uint64_t time_ns, const std::string& line);
   /// Shows all else that has changed. @pre team.mission() is known
@@ -75,7 +79,7 @@ class LiveTopics {
   double metrics_s_ = -1;                           // mission time of the newest row
   std::optional<std::int32_t> target_number_;       // of the amendment; −1: the plan's
   std::int32_t next_amendment_ = 0;
-  std::uint64_t next_coverage_ns_ = 0;
+  std::uint64_t next_coverage_ns_ = 0, next_places_ns_ = 0;
 };
 
 }  // namespace ergocast::cli

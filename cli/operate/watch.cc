@@ -9,6 +9,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/foxglove/foxglove_output.h"
@@ -18,6 +20,7 @@
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
 #include "cli/tak/cot_output.h"
+#include "cli/watch/client_list.h"
 #include "cli/watch/find_run.h"
 #include "cli/watch/live_watch.h"
 #include "cli/watch/serve_page.h"
@@ -97,22 +100,20 @@ Result<CotOutput, int> open_cot(const CotOptions& options, const fs::path& run_d
 }
 
 /// The server for Foxglove; or prints an error, and returns the exit code.
-/// @param live  shows the clients in the page's log, as soon as there is one; outlives the server
+/// @param clients  gets sentences about clients; outlives the server
 Result<std::unique_ptr<FoxgloveOutput>, int> open_foxglove(const WatchOptions& options,
                                                            const fs::path& run_dir,
-                                                           const std::unique_ptr<LiveWatch>& live) {
+                                                           ClientList& clients) {
   if (options.foxglove_port == options.page.port)
     return failure(report_error(kExitBadInput, "--foxglove and --port name the same port, " +
                                                    std::to_string(options.foxglove_port) +
                                                    "; the page needs its own"));
-  FoxgloveOutput::Setup setup{.port = options.foxglove_port,
-                              .page = options.page,
-                              .origin = options.cot.origin,
-                              .target = {},
-                              .note = [&live](const std::string& sentence) {
-                                print_message(sentence);
-                                if (live) live->log(sentence);
-                              }};
+  FoxgloveOutput::Setup setup{
+      .port = options.foxglove_port,
+      .page = options.page,
+      .origin = options.cot.origin,
+      .target = {},
+      .note = [&clients](const std::string& sentence) { clients.note(sentence); }};
   if (!run_dir.empty()) {
     setup.target = read_target_density(run_dir / kTargetDensityFile).value_or(Field());
     if (!setup.origin) setup.origin = recorded_origin(run_dir).value_or(std::nullopt);
@@ -121,6 +122,15 @@ Result<std::unique_ptr<FoxgloveOutput>, int> open_foxglove(const WatchOptions& o
   if (!output) return failure(report_error(kExitUnavailable, output.error()));
   std::printf("connect Foxglove to %s\n", (*output)->url().c_str());
   return *std::move(output);
+}
+
+std::vector<std::string> names_of_clients(const PageServer& page, const FoxgloveOutput* foxglove,
+                                          const std::optional<CotOutput>& cot) {
+  std::vector<std::string> names = page.clients();
+  if (foxglove != nullptr)
+    for (std::string& name : foxglove->clients()) names.push_back(std::move(name));
+  if (cot) names.push_back(cot->name());
+  return names;
 }
 
 /// @param run_dir  the team's run directory; empty: not known here
@@ -134,9 +144,15 @@ int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals
     source.displays.push_back(&*cot);
   }
   std::unique_ptr<LiveWatch> live;
+  const bool has_log = !run_dir.empty();
+  ClientList clients(has_log ? run_dir / "log/watch.log" : "", "watch",
+                     [&live, has_log](const std::string& sentence) {
+                       if (!sentence.starts_with("browser ")) print_message(sentence);
+                       if (live && !has_log) live->log(sentence);
+                     });
   std::unique_ptr<FoxgloveOutput> foxglove;
   if (options.foxglove_port > 0) {
-    auto output = open_foxglove(options, run_dir, live);
+    auto output = open_foxglove(options, run_dir, clients);
     if (!output) return output.error();
     foxglove = *std::move(output);
     source.displays.push_back(foxglove.get());
@@ -152,6 +168,7 @@ int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals
   serve_until_stop(*server, signals, [&] {
     watch.listen(server->fd());
     if (foxglove) foxglove->serve(now());
+    clients.update(watch.run(), names_of_clients(*server, foxglove.get(), cot), now());
     if (watch.over()) watch.finish();
   });
   if (cot && !cot->losses().empty()) print_message(cot->losses());

@@ -33,6 +33,8 @@ class CotOutput final : public TeamDisplay {
   /// Sends the events that are due; call it a few times a second. Complains once, about the first
   /// event that is lost.
   void show(const TeamPicture& picture, const MissionFollower& team) override;
+  /// "TAK at udp://…": its clients do not answer.
+  std::string name() const { return "TAK at " + to_; }
   /// How many events were lost, for people; empty: none.
   std::string losses() const;
 

@@ -110,6 +110,7 @@ TeamPicture LiveTeam::look(Instant now) {
   TeamPicture picture = notice(now);
   if (!grid_) return picture;
   end_text_ = picture.reason;
+  picture.clients = clients_;
   status_ = Json::parse(team_json(picture));
   // The page's time continues in a pause, as in the record.
   status_["t_s"] = static_cast<double>(picture.tick) * picture.dt_s;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/team/agent_history.h"
@@ -43,6 +44,8 @@ class LiveTeam {
   /// @pre the message is of this view's run
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void log(std::string line);
+  /// Browsers and programs that displays on this host serve.
+  void name_clients(std::vector<std::string> clients) { clients_ = std::move(clients); }
   /// Looks for incidents; call it a few times a second. Returns the picture that it examined.
   TeamPicture notice(Instant now);
   /// Does the same, and keeps the agents' statuses for the browsers.
@@ -123,6 +126,7 @@ class LiveTeam {
   std::uint64_t statuses_ = 0, incident_changes_ = 0, rosters_ = 0, line_count_ = 0;
   std::int64_t roster_revision_ = -1;
   std::string end_text_;
+  std::vector<std::string> clients_;
 };
 
 }  // namespace ergocast

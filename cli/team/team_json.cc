@@ -119,6 +119,7 @@ std::string team_json(const TeamPicture& at) {
   json["law"] = law_json(at);
   json["other_versions"] = nlohmann::ordered_json::object();
   for (const auto& [host, version] : at.other_versions) json["other_versions"][host] = version;
+  json["clients"] = at.clients;
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {

@@ -295,6 +295,9 @@ std::string team_table(const TeamPicture& picture, bool colour) {
       rows[i].insert(rows[i].begin() + 1, Cell{picture.agents[i].kind});
   }
   if (!rows.empty()) text += '\n' + aligned(columns, rows, colour);
+  if (!picture.clients.empty()) text += '\n';
+  for (const std::string& client : picture.clients)
+    text += tinted("shown to", Tint::kFaint, colour) + "  " + printable(client) + '\n';
   return text;
 }
 

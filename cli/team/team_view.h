@@ -101,6 +101,8 @@ struct TeamPicture {
   /// `ergocast status`.
   std::map<std::string, std::string> other_versions;
   std::string version;
+  /// Browsers and programs that displays on this host serve; filled by the displays.
+  std::vector<std::string> clients;
   bool trouble = false;
   bool over = false;  ///< the mission has ended: its processes exit or have exited
 };

@@ -99,6 +99,13 @@ void Connections::serve(Instant now) {
   }
 }
 
+std::vector<std::string> Connections::peers() const {
+  std::vector<std::string> peers;
+  for (const auto& [fd, one] : open_)
+    if (one.phase == Phase::kStream) peers.push_back(one.peer);
+  return peers;
+}
+
 void Connections::accept_some(Instant now) {
   for (int i = 0; i < kAccepted; ++i) {
     sockaddr_storage from{};
@@ -184,7 +191,8 @@ void Connections::answer(Connection& one, Answer answer, Instant now) {
   one.body = std::move(answer.body);
   one.stream = std::move(answer.stream);
   one.dialogue = std::move(answer.dialogue);
-  if (one.dialogue) one.dialogue->begin(peer_of(one.fd()));
+  if (one.phase == Phase::kStream) one.peer = peer_of(one.fd());
+  if (one.dialogue) one.dialogue->begin(one.peer);
   one.next_text = now;
   one.next_sign = now + kSignPeriod;
   push(one, now);

@@ -88,6 +88,8 @@ class Connections {
   /// ten times a second.
   int fd() const { return epoll_.fd(); }
   void serve(Instant now);
+  /// The addresses and ports of all clients with an event stream or a dialogue.
+  std::vector<std::string> peers() const;
 
  private:
   enum class Phase { kHead, kAnswer, kStream, kLeaving };
@@ -104,6 +106,7 @@ class Connections {
 
     std::unique_ptr<ByteStream> bytes;
     Address address;
+    std::string peer;  ///< its address and port, of a stream or a dialogue
     Phase phase = Phase::kHead;
     Instant since{};   ///< in this phase
     Instant moved{};   ///< when bytes were last sent, or the phase began

@@ -13,6 +13,7 @@
 #include "cli/team/log_lines.h"
 #include "cli/team/recorded_team.h"
 #include "cli/team/team_monitor.h"
+#include "cli/watch/client_list.h"
 #include "plan/plan.h"
 #include "report/report.h"
 #include "report/web_page.h"
@@ -82,6 +83,7 @@ class Watch final : public LiveWatch {
   void log(const std::string& line) override {
     if (team_) team_->log(line);
   }
+  RunId run() const override { return team_ ? team_->run() : 0; }
   bool over() const override { return over_; }
   void finish() override {
     if (source_.run_dir.empty() || !source_.mission) {
@@ -170,6 +172,7 @@ void Watch::look() {
     for (const std::string& line : lines) team_->log(line);
     for (TeamDisplay* display : source_.displays) display->show(lines);
   }
+  team_->name_clients(named_clients(team_->run()));
   const TeamPicture picture = team_->look(now());
   if (team_->mission() != nullptr)
     for (TeamDisplay* display : source_.displays) display->show(picture, team_->follower());

@@ -40,6 +40,8 @@ class LiveWatch {
   virtual void listen(int wake_fd) = 0;
   /// Shows a line of this process in the page's log, if a team was received.
   virtual void log(const std::string& line) = 0;
+  /// The run that is shown; 0: none was received yet.
+  virtual RunId run() const = 0;
   /// Whether the mission's end has been received.
   virtual bool over() const = 0;
   /// Makes the page show the record of `run_dir`, or the received data if there is none. A separate

@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spdlog/logger.h>
-#include <spdlog/sinks/basic_file_sink.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "runtime/bus/clock.h"
+#include "runtime/process/logging.h"
 #include "text/printable.h"
 
 namespace ergocast::cli {
@@ -25,20 +25,6 @@ using namespace std::chrono_literals;
 constexpr auto kEndOfPage = 2s;
 /// Further ends of the process are not reported.
 constexpr int kMostEndsToReport = 5;
-
-/// Uses the format of the processes' logs (runtime/process/logging.cc).
-std::shared_ptr<spdlog::logger> open_log(const std::filesystem::path& file) {
-  try {
-    auto log = std::make_shared<spdlog::logger>(
-        "run", std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string()));
-    log->set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %n: %v");
-    log->flush_on(spdlog::level::info);
-    log->set_error_handler([](const std::string&) {});  // a full disk is reported elsewhere
-    return log;
-  } catch (const spdlog::spdlog_ex&) {
-    return nullptr;
-  }
-}
 
 }  // namespace
 
@@ -58,7 +44,7 @@ PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay&
       key_(setup.key),
       certificate_(setup.certificate),
       tls_key_(setup.tls_key) {
-  if (!setup.run_dir.empty()) log_ = open_log(setup.run_dir / "log/run.log");
+  if (!setup.run_dir.empty()) log_ = open_log_file(setup.run_dir / "log/run.log", "run");
   int ends[2] = {-1, -1};
   if (pipe2(ends, O_CLOEXEC) == 0) {
     until_.emplace(ends[0]);

@@ -93,6 +93,11 @@ class Server final : public PageServer {
 
   int fd() const override { return connections_.fd(); }
   void serve(Instant now) override { connections_.serve(now); }
+  std::vector<std::string> clients() const override {
+    std::vector<std::string> names;
+    for (const std::string& peer : connections_.peers()) names.push_back("browser " + peer);
+    return names;
+  }
 
  private:
   Connections::Answer answer(const std::string& head) {

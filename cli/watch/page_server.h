@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/watch/connections.h"
 #include "cli/watch/control_request.h"
@@ -43,6 +44,8 @@ class PageServer {
   /// Same as in Connections.
   virtual int fd() const = 0;
   virtual void serve(Instant now) = 0;
+  /// A name for each browser that follows the team now.
+  virtual std::vector<std::string> clients() const = 0;
 };
 
 }  // namespace ergocast::cli

@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
+#include "cli/watch/client_list.h"
 #include "cli/watch/live_watch.h"
 #include "cli/watch/page_control.h"
 #include "cli/watch/page_process.h"
@@ -101,8 +102,14 @@ int run_page(const RunPageOptions& options) {
   auto control = page_control();
   const auto server = PageServer::make(
       *std::move(socket), control ? control->joined(watch.content()) : watch.content());
+  const bool has_log = !options.run_dir.empty();
+  ClientList clients(has_log ? options.run_dir / "log/page.log" : "", "page",
+                     [&watch, has_log](const std::string& sentence) {
+                       if (!has_log) watch.log(sentence);
+                     });
   serve_until_stop(*server, signals, [&, over = false]() mutable {
     watch.listen(server->fd());
+    clients.update(watch.run(), server->clients(), now());
     if (control) control->listen(now());
     if (over || !closed(kPageUntil)) return;
     over = true;

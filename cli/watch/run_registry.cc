@@ -207,6 +207,15 @@ fs::path run_registry() {
   return "/tmp/ergocast-" + std::to_string(geteuid());
 }
 
+Result<Socket> open_run_registry(bool make) {
+  const fs::path registry = run_registry();
+  if (make && mkdir(registry.c_str(), 0700) != 0 && errno != EEXIST)
+    return failure(registry.string() + ": " + std::strerror(errno));
+  const auto opened = open_registry(registry);
+  if (!opened) return failure(opened.error());
+  return Socket(*opened);
+}
+
 Result<std::unique_ptr<RunEntry>> RunEntry::write(const LiveRun& run) {
   const fs::path registry = run_registry();
   const auto failed = [&registry] {

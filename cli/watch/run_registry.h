@@ -15,6 +15,7 @@
 #include "core/base/ids.h"
 #include "core/base/result.h"
 #include "runtime/bus/lcm_url.h"
+#include "runtime/bus/socket.h"
 
 namespace ergocast::cli {
 
@@ -37,6 +38,9 @@ Result<LiveRun> live_run_from(std::string_view text);
 
 /// The folder, whether it exists or not.
 std::filesystem::path run_registry();
+/// Opens the folder. Without it an invalid descriptor, or it is made. An error if it is not this
+/// user's alone, or if it cannot be made.
+Result<Socket> open_run_registry(bool make);
 
 /// The file <run>.json of this process's run: only its owner can read it; it is removed at the end.
 class RunEntry {

@@ -12,6 +12,7 @@
 #include "cli/report_error.h"
 #include "cli/team/team_monitor.h"
 #include "cli/team/team_view.h"
+#include "cli/watch/client_list.h"
 #include "cli/watch/diagnose_silence.h"
 #include "cli/watch/find_run.h"
 #include "cli/watch/team_screen.h"
@@ -65,6 +66,7 @@ class Listener {
   TeamPicture picture() const {
     TeamPicture picture = runs_.begin()->second.picture(now());
     picture.version = version();
+    picture.clients = named_clients(picture.run);
     picture.other_versions = other_versions_;
     picture.trouble |= !other_versions_.empty();
     return picture;

@@ -5,6 +5,7 @@
 
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/base_sink.h>
+#include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/dup_filter_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -72,6 +73,20 @@ std::shared_ptr<spdlog::sinks::sink> stderr_sink() {
 }
 
 }  // namespace
+
+std::shared_ptr<spdlog::logger> open_log_file(const std::filesystem::path& file,
+                                              const std::string& process_name) {
+  try {
+    auto log = std::make_shared<spdlog::logger>(
+        process_name, std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string()));
+    log->set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %n: %v");
+    log->flush_on(spdlog::level::info);
+    log->set_error_handler([](const std::string&) {});
+    return log;
+  } catch (const spdlog::spdlog_ex&) {
+    return nullptr;
+  }
+}
 
 bool is_journal(const char* journal_stream, int fd) {
   struct stat info {};

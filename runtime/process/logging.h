@@ -2,8 +2,14 @@
 // Sets up a process's log: its destination and format.
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
+
+namespace spdlog {
+class logger;
+}
 
 namespace ergocast {
 
@@ -15,6 +21,11 @@ inline const std::vector<std::string> kLogLevels{"trace", "debug", "info", "warn
 /// repeated within 5 s is counted and not written again.
 /// @param level  one of kLogLevels
 void set_up_logging(const std::string& process_name, const std::string& level);
+
+/// Appends to a file in the format of the standard error stream; null if it cannot be opened. A
+/// write that fails is not reported: a full disk is reported elsewhere.
+std::shared_ptr<spdlog::logger> open_log_file(const std::filesystem::path& file,
+                                              const std::string& process_name);
 
 /// Whether `fd` is the stream that systemd names in $JOURNAL_STREAM.
 /// @param journal_stream  that variable's value, "device:inode"; null: not set

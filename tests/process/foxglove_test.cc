@@ -81,6 +81,13 @@ class RawClient {
       in_.append(bytes, static_cast<std::size_t>(count));
     }
   }
+  /// As the team's displays name it.
+  std::string name() const {
+    sockaddr_in own{};
+    socklen_t size = sizeof own;
+    getsockname(socket_.fd(), reinterpret_cast<sockaddr*>(&own), &size);
+    return "Foxglove client 127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+  }
   /// Reads to the end of the connection; the code of the frame that closes it, 0: none.
   int close_code() {
     int code = 0;
@@ -208,6 +215,17 @@ TEST_F(ShownInFoxglove, LosesMessagesOfASlowClientAndNothingElse) {
   Child server = watch();
   RawClient slow;
   ASSERT_TRUE(slow.reads("/agents/7/location"));
+  // Everybody reads its name, and the record keeps it.
+  const std::string name = slow.name();
+  ASSERT_TRUE(shows(name + " is connected")) << shown();
+  ASSERT_EQ(ergocast({"status", "--json"}), 0) << output();
+  EXPECT_EQ(json::parse(output())["clients"], json{name});
+  ASSERT_EQ(ergocast({"status"}), 0) << output();
+  EXPECT_NE(output().find("shown to  " + name + '\n'), std::string::npos) << output();
+  HttpConnection page(8765);
+  page.send("GET /events HTTP/1.1\r\nHost: 127.0.0.1:8765\r\n\r\n");
+  page.read_until(
+      [&](const std::string& got) { return got.find("\"clients\":[\"" + name + '"') != got.npos; });
   slow.subscribe_to_all(5 + 2 * 8);
   ASSERT_TRUE(slow.reads("\"position\""));
   // From now on it reads nothing, until the server has noticed.
@@ -224,6 +242,9 @@ TEST_F(ShownInFoxglove, LosesMessagesOfASlowClientAndNothingElse) {
   end(server);
   EXPECT_EQ(shown().find("is too slow"), shown().rfind("is too slow")) << shown();
   end(mission);
+  const std::string log = text_of(out() / "log/watch.log");
+  EXPECT_NE(log.find(" info watch: " + name + " is connected\n"), std::string::npos) << log;
+  EXPECT_NE(log.find(" info watch: browser 127.0.0.1:"), std::string::npos) << log;
 }
 
 TEST_F(ShownInFoxglove, StandsHostileClients) {

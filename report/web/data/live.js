@@ -175,6 +175,7 @@ export function watchLive(page) {
       late: 0,
       authenticated: message.authenticated,
       replay: message.replay,
+      clients: [],
       state: same ? facts.state : null, // so an order always names a tick that was shown
     };
     page.began(run, facts);
@@ -215,6 +216,7 @@ export function watchLive(page) {
         missed: team.missed_deadlines,
         late: lateness.add(team),
         state: team,
+        clients: team.clients ?? [],
       });
     }
     addMetrics(run);

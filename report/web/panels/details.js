@@ -44,6 +44,7 @@ export function showFacts(live) {
         ...present([['hidden objects found', findsText(run)]]),
         ...foundFacts(run),
         ['authenticated', live.authenticated ? 'yes' : 'no'],
+        ...present([['shown to', live.clients.join(', ')]]),
         ['ticks', `${grouped(run.tickCount)} × ${mission.dt_s} s`],
         ['modes', mission.modes.join(' × ')],
         ['seed', mission.seed],

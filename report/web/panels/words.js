@@ -131,6 +131,7 @@ const FIGURES = {
   'late commands': 'Commands that were missing when their tick ended, since the start.',
   authenticated:
     'Whether the team has a key. Without one any host on the network may have sent what is shown.',
+  'shown to': 'Browsers, Foxglove and TAK: all that displays on the page’s host serve.',
 };
 const SECTIONS = [
   ['Top line', TOP],

@@ -125,12 +125,12 @@ TEST_F(FoxgloveClients, ThatAreSlowLoseTheOldestAndLearnOfIt) {
   EXPECT_EQ(data_[8].back(), "999");
   ASSERT_EQ(statuses().size(), 1U);
   EXPECT_EQ(statuses()[0], "984 messages were left out: the connection or the client is too slow");
-  ASSERT_EQ(notes_.size(), 2U);
-  EXPECT_NE(notes_[1].find("Foxglove client 127.0.0.1:50000 is too slow"), std::string::npos);
+  ASSERT_EQ(notes_.size(), 1U);
+  EXPECT_NE(notes_[0].find("Foxglove client 127.0.0.1:50000 is too slow"), std::string::npos);
   for (int i = 0; i < 1000; ++i) channels_.publish(target_, 5, std::to_string(i));
   ASSERT_TRUE(take());
   EXPECT_EQ(statuses().size(), 2U);
-  EXPECT_EQ(notes_.size(), 2U);  // people read it once
+  EXPECT_EQ(notes_.size(), 1U);  // people read it once
 }
 
 TEST_F(FoxgloveClients, ThatTakeNothingAreNamedOnce) {
@@ -138,12 +138,12 @@ TEST_F(FoxgloveClients, ThatTakeNothingAreNamedOnce) {
   ASSERT_TRUE(take());
   for (std::size_t i = 0; i < LiveChannels::kMostStates; ++i) channels_.publish(target_, 5, "{}");
   client_->receive("");
-  EXPECT_EQ(notes_.size(), 1U);
+  EXPECT_EQ(notes_.size(), 0U);
   for (int i = 0; i < 9; ++i) {
     channels_.publish(target_, 5, "{}");
     client_->receive("");
   }
-  EXPECT_EQ(notes_.size(), 2U);
+  EXPECT_EQ(notes_.size(), 1U);
 }
 
 TEST_F(FoxgloveClients, GetPortionsInWhichNoChannelWaitsForLong) {
@@ -222,7 +222,6 @@ TEST_F(FoxgloveClients, EndInOrder) {
   ASSERT_TRUE(channels_.is_wanted(target_));
   client_.reset();
   EXPECT_FALSE(channels_.is_wanted(target_));
-  EXPECT_EQ(notes_.back(), "Foxglove client 127.0.0.1:50000 has left");
 }
 
 }  // namespace

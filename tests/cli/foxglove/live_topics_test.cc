@@ -79,6 +79,27 @@ TEST_F(FoxgloveTopics, HaveEachNewPlaceOnce) {
   EXPECT_EQ(channel("/agents/0/pose").count, 1U);
 }
 
+TEST_F(FoxgloveTopics, HavePlacesAtMost20TimesASecond) {
+  announce_mission();
+  // A world of 1000 ticks a second, shown after each tick, for 3 s.
+  std::vector<std::uint64_t> shown_ns;
+  for (Tick tick = 0; tick <= 3000; ++tick) {
+    move(tick, {{100 + 0.1 * static_cast<double>(tick), 200, 0}, {300, 400, 0}});
+    const auto before = channel("/agents/0/pose").count;
+    const std::uint64_t time_ns = kTime_ns + static_cast<std::uint64_t>(tick) * 1'000'000;
+    topics_.show_places(time_ns);
+    if (channel("/agents/0/pose").count > before) shown_ns.push_back(time_ns);
+  }
+  EXPECT_EQ(shown_ns.size(), 61U);
+  for (std::size_t i = 20; i < shown_ns.size(); ++i)
+    EXPECT_GE(shown_ns[i] - shown_ns[i - 20], 1'000'000'000U) << i;
+  EXPECT_EQ(newest("/agents/0/pose")["pose"]["position"]["x"], 400);
+  // A clock that was set back by seconds stops nothing.
+  move(3001, {{500, 200, 0}});
+  topics_.show_places(kTime_ns - 3'000'000'000U);
+  EXPECT_EQ(newest("/agents/0/pose")["pose"]["position"]["x"], 500);
+}
+
 TEST_F(FoxgloveTopics, HaveTheCoverageOfAllPlacesThatCount) {
   announce_mission({{.from = 4, .until = 6}});
   ++channel("/coverage").subscribers;
