@@ -287,10 +287,12 @@ if(TARGET ergocast_ros2)
   ergocast_test(NAME ros2_tests LABELS unit
     SOURCES
       bridges/ros2/bridge_file_test.cc
+      bridges/ros2/display_test.cc
+      bridges/ros2/map_test.cc
       bridges/ros2/positions_test.cc
       bridges/ros2/robot_test.cc
       bridges/ros2/steering_test.cc
-    LIBS ergocast_ros2)
+    LIBS ergocast_ros2 ergocast::target)
 endif()
 
 ergocast_test(NAME doctor_tests LABELS unit

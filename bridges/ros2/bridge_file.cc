@@ -87,21 +87,11 @@ class Block {
 
   /// The name of a topic, as ROS 2 allows it.
   std::string topic(const std::string& field) const {
-    std::string name = text(field);
+    const std::string name = text(field);
     if (name.empty()) refuse(field, "is missing; name a topic, such as 'robot1/" + field + "'");
-    if (name.front() == '/') name.erase(0, 1);
-    char before = '/';
-    bool valid = name.size() < 200;
-    for (const char c : name) {
-      const bool digit = c >= '0' && c <= '9';
-      const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-      valid = valid && (letter || (digit && before != '/') || (c == '/' && before != '/'));
-      before = c;
-    }
-    if (!valid || before == '/')
-      refuse(field, "'" + printable(name.substr(0, 200)) +
-                        "' is no topic of ROS 2: letters, digits and _, with / between names");
-    return name;
+    const auto topic = topic_named(name);
+    if (!topic) refuse(field, no_topic(name));
+    return *topic;
   }
 
  private:
@@ -234,6 +224,24 @@ BridgeFile checked(const proto::Bridge& file, const Locations& locations) {
 }
 
 }  // namespace
+
+std::optional<std::string> topic_named(std::string name) {
+  if (name.starts_with('/')) name.erase(0, 1);
+  char before = '/';
+  bool valid = name.size() < 200;
+  for (const char c : name) {
+    const bool digit = c >= '0' && c <= '9';
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    valid = valid && (letter || (digit && before != '/') || (c == '/' && before != '/'));
+    before = c;
+  }
+  return valid && before != '/' ? std::optional(name) : std::nullopt;
+}
+
+std::string no_topic(const std::string& name) {
+  return "'" + printable(name.substr(0, 200)) +
+         "' is no topic of ROS 2: letters, digits and _, with / between names";
+}
 
 Result<BridgeFile> parse_bridge_file(std::string_view text, const std::string& name) {
   proto::Bridge file;

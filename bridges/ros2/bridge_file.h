@@ -45,6 +45,11 @@ struct BridgeFile {
   std::optional<DisplayTopics> display;
 };
 
+/// The name without a leading slash; nothing if ROS 2 has no such topics.
+std::optional<std::string> topic_named(std::string name);
+/// Why it is none.
+std::string no_topic(const std::string& name);
+
 /// Reads the file. An error is "FILE:LINE: FIELD: PROBLEM; REMEDY".
 Result<BridgeFile> read_bridge_file(const std::filesystem::path& file);
 /// The same of its text.

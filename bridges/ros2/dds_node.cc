@@ -278,7 +278,7 @@ std::string Reader::problem() const {
   }
   if (publishers.size() > 1)
     return std::to_string(publishers.size()) + " publishers are on " + name_ +
-           ": end all but one, because their positions would be mixed";
+           ": end all but one, because their messages would be mixed";
   return "";
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/measure/target_mass.h"
 #include "core/mission/amendments.h"
 #include "text/shortest.h"
 
@@ -27,6 +28,7 @@ void Display::receive(const Message& message, Bus bus, AgentId transmitter, Inst
     mission_ = in_cosines(me_->mission());
     sensors_ = Sensors(*mission_);
     sums_ = Coefficients::Zero(mission_->basis.mode_count());
+    detection_ = Detection(*mission_);
   }
   if (const auto* world = std::get_if<WorldState>(&message)) on(*world);
 }
@@ -34,6 +36,13 @@ void Display::receive(const Message& message, Bus bus, AgentId transmitter, Inst
 void Display::on(const WorldState& world) {
   if (!mission_) return;
   tick_ = std::max(tick_, world.header.tick);
+  const Tick counted = me_->counted(world.header.tick);
+  if (detected_target_ != target_number()) {
+    detected_target_ = target_number();
+    detection_.begin_target(
+        target_mass(mission_->basis, mission_->walls, present_target(), detection_.cells()),
+        counted);
+  }
   const bool counts = !me_->is_held(world.header.tick) && !me_->is_over(world.header.tick);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     const auto [newest, is_new] = newest_.try_emplace(vehicle.id, world.header.tick);
@@ -41,6 +50,7 @@ void Display::on(const WorldState& world) {
     newest->second = world.header.tick;
     add_position(vehicle.id, vehicle.position_m);
     if (!counts || !mission_->domain.contains(vehicle.position_m)) continue;
+    detection_.see(counted, vehicle.position_m);
     samples_ += sensors_.of(planned_kind(*mission_, vehicle.id))
                     .sample(BasisAt(vehicle.position_m, mission_->domain, mission_->basis),
                             mission_->basis, 1, sums_.data());
@@ -126,15 +136,55 @@ Grid Display::grid_of(const Coefficients& coefficients) const {
 Grid Display::coverage() const { return samples_ > 0 ? grid_of(sums_ / samples_) : Grid(); }
 Grid Display::target() const { return grid_of(present_target()); }
 
+/// What is missed in a cell of the grid is the mean over the cells of the measure in it, by their
+/// mass. Where none has its middle in it, that of the cell around the grid's middle counts.
+Grid Display::left() const {
+  Grid grid = target();
+  const Cells& cells = detection_.cells();
+  const auto index = [&](int axis, int at, std::uint32_t count) {
+    const double off_m = cells.center_m(axis, at) - mission_->domain.origin_m[axis];
+    return std::min(static_cast<std::uint32_t>(off_m / grid.resolution_m), count - 1);
+  };
+  std::vector<double> mass(grid.data.size(), 0), missed(grid.data.size(), 0);
+  for (int l = 0; l < cells.count.z(); ++l) {
+    for (int i = 0; i < cells.count.x(); ++i) {
+      const std::uint32_t column = index(0, i, grid.width);
+      for (int j = 0; j < cells.count.y(); ++j) {
+        const std::size_t from = cells.column(i, l) + static_cast<std::size_t>(j);
+        const std::size_t to = std::size_t{index(1, j, grid.height)} * grid.width + column;
+        mass[to] += detection_.mass()[from];
+        missed[to] += detection_.mass()[from] * detection_.missed()[from];
+      }
+    }
+  }
+  for (std::size_t to = 0; to < grid.data.size(); ++to) {
+    if (grid.data[to] <= 0) continue;
+    const auto column = static_cast<double>(to % grid.width);
+    const auto row = static_cast<double>(to / grid.width);
+    const Eigen::Vector3d middle_m =
+        mission_->domain.origin_m + grid.resolution_m * Eigen::Vector3d(column + 0.5, row + 0.5, 0);
+    const double share =
+        mass[to] > 0 ? missed[to] / mass[to] : detection_.missed()[cells.cell_of(middle_m)];
+    grid.data[to] = static_cast<std::int8_t>(std::lround(share * grid.data[to]));
+  }
+  return grid;
+}
+
 Display::Status Display::status(Instant now) const {
   const TeamPicture picture = view_->picture(now);
-  Status status{picture.ergodic_metric, picture.scenario};
+  Status status{picture.ergodic_metric, picture.detection_probability, {}, {}, picture.scenario};
+  for (const Find& find : picture.finds) status.finds_m.push_back(find.x_m);
+  for (const Contact& contact : picture.contacts)
+    status.contacts_m.emplace_back(contact.x_m.x(), contact.x_m.y(), 0);
   const char* state = picture.over ? "over" : picture.paused ? "paused" : "running";
   if (picture.state == MissionState::kWaiting) state = "waiting for agents";
   status.text += std::string(": ") + state + ", tick " + std::to_string(picture.counted) + " of " +
                  std::to_string(picture.tick_count) + ", " + std::to_string(picture.agents_alive) +
                  " of " + std::to_string(picture.agents_expected) + " agents";
   if (picture.ergodic_metric) status.text += ", φ² = " + shortest(*picture.ergodic_metric);
+  if (picture.objects > 0)
+    status.text += ", " + std::to_string(picture.finds.size()) + " of " +
+                   std::to_string(picture.objects) + " hidden objects found";
   for (const AgentRow& row : picture.agents) {
     if (row.condition == Condition::kOk || row.condition == Condition::kFinished) continue;
     status.text += "; agent " + std::to_string(row.author.agent) + " " + to_string(row.condition);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/team/team_view.h"
+#include "core/measure/detection.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
 #include "team/messages.h"
@@ -48,18 +49,27 @@ class Display {
   Grid coverage() const;
   /// The target that holds now. @pre begun()
   Grid target() const;
+  /// How much of the target an object may still be in: the target times the probability that no
+  /// sensor of the team has detected an object there since this display and the target began.
+  /// @pre begun()
+  Grid left() const;
   /// Changes whenever target() does.
   std::int32_t target_number() const;
   const std::map<AgentId, std::vector<Eigen::Vector3d>>& paths_m() const { return paths_m_; }
   /// Median of the agents' values, and one line about the team. @pre begun()
   struct Status {
     std::optional<double> ergodic_metric;
+    std::optional<double> found;  ///< P of core/measure/detection.h, as a logger reports it
+    std::vector<Eigen::Vector3d> finds_m, contacts_m;
     std::string text;
   };
   Status status(Instant now) const;
 
  private:
+  static constexpr std::int32_t kNoTarget = -2;
+
   void on(const WorldState& world);
+  void detect(const WorldState& world);
   const Coefficients& present_target() const;
   Grid grid_of(const Coefficients& coefficients) const;
   void add_position(AgentId id, const Eigen::Vector3d& at_m);
@@ -71,6 +81,8 @@ class Display {
   std::optional<TeamView> view_;
   std::optional<Mission> mission_;  // in cosines
   Sensors sensors_;
+  Detection detection_;
+  std::int32_t detected_target_ = kNoTarget;  // the one of `detection_`
   Coefficients sums_;
   double samples_ = 0;  // each weighted by its quality
   Tick tick_ = 0;

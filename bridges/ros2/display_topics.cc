@@ -34,7 +34,9 @@ Result<DisplayConnection> DisplayConnection::make(DdsNode& node, const DisplayTo
   };
   for (const auto& problem :
        {open(made.coverage_, kOccupancyGrid, "coverage"),
-        open(made.target_, kOccupancyGrid, "target"), open(made.metric_, kFloat64, "phi2"),
+        open(made.target_, kOccupancyGrid, "target"), open(made.left_, kOccupancyGrid, "left"),
+        open(made.metric_, kFloat64, "phi2"), open(made.found_, kFloat64, "found"),
+        open(made.finds_, kPoseArray, "finds"), open(made.contacts_, kPoseArray, "contacts"),
         open(made.status_, kString, "status")}) {
     if (problem) return failure(*problem);
   }
@@ -47,6 +49,12 @@ void DisplayConnection::show(const Display& display, const Moment& at) {
     const std_msgs_msg_dds__Float64_ metric{*status.ergodic_metric};
     metric_->write(&metric);
   }
+  if (status.found) {
+    const std_msgs_msg_dds__Float64_ found{*status.found};
+    found_->write(&found);
+  }
+  show_places(*finds_, status.finds_m, at);
+  show_places(*contacts_, status.contacts_m, at);
   const std_msgs_msg_dds__String_ text{const_cast<char*>(status.text.c_str())};
   status_->write(&text);
   if (target_number_ != display.target_number()) {
@@ -55,6 +63,7 @@ void DisplayConnection::show(const Display& display, const Moment& at) {
   }
   if (const Grid coverage = display.coverage(); coverage.width > 0)
     show_grid(*coverage_, coverage, display.domain(), at);
+  show_grid(*left_, display.left(), display.domain(), at);
   for (const auto& [id, path_m] : display.paths_m()) show_path(id, path_m, at);
 }
 
@@ -69,6 +78,17 @@ void DisplayConnection::show_grid(Writer& writer, const Grid& grid, const Box& d
   message.info.origin = pose_at(domain.origin_m - topics_.frame.origin_m);
   const auto size = static_cast<std::uint32_t>(grid.data.size());
   message.data = {size, size, const_cast<std::int8_t*>(grid.data.data()), false};
+  writer.write(&message);
+}
+
+void DisplayConnection::show_places(Writer& writer, const std::vector<Eigen::Vector3d>& places_m,
+                                    const Moment& at) {
+  std::vector<geometry_msgs_msg_dds__Pose_> poses;
+  for (const Eigen::Vector3d& x_m : places_m)
+    poses.push_back(pose_at(x_m - topics_.frame.origin_m));
+  const auto size = static_cast<std::uint32_t>(poses.size());
+  const geometry_msgs_msg_dds__PoseArray_ message{header_of(topics_.frame.name, at),
+                                                  {size, size, poses.data(), false}};
   writer.write(&message);
 }
 

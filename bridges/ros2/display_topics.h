@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bridges/ros2/bridge_file.h"
 #include "bridges/ros2/dds_node.h"
@@ -23,11 +24,12 @@ class DisplayConnection {
   DisplayConnection(DdsNode& node, DisplayTopics topics)
       : node_(&node), topics_(std::move(topics)) {}
   void show_grid(Writer& writer, const Grid& grid, const Box& domain, const Moment& at);
+  void show_places(Writer& writer, const std::vector<Eigen::Vector3d>& places_m, const Moment& at);
   void show_path(AgentId id, const std::vector<Eigen::Vector3d>& path_m, const Moment& at);
 
   DdsNode* node_;
   DisplayTopics topics_;
-  std::optional<Writer> coverage_, target_, metric_, status_;
+  std::optional<Writer> coverage_, target_, left_, metric_, found_, finds_, contacts_, status_;
   std::map<AgentId, Writer> paths_;
   std::optional<std::int32_t> target_number_;  // that was shown
 };

@@ -15,6 +15,7 @@
 #include "bridges/ros2/dds_node.h"
 #include "bridges/ros2/display_topics.h"
 #include "bridges/ros2/driver.h"
+#include "bridges/ros2/map_command.h"
 #include "bridges/ros2/options.h"
 #include "bridges/ros2/robot_topics.h"
 #include "runtime/bus/clock.h"
@@ -214,6 +215,7 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace ergocast;
+  if (ros2::is_map_command(argc, argv)) return ros2::map_command(argc, argv);
   ros2::Options options;
   if (const int code = ros2::read_command_line(argc, argv, options); code >= 0) return code;
   set_up_logging("ros2", options.node.log_level);

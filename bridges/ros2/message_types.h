@@ -16,6 +16,9 @@ inline const MessageType kTwistStamped{
 inline const MessageType kPoseStamped{
     geometry_msgs_msg_dds__PoseStamped__desc,
     "RIHS01_10f3786d7d40fd2b54367835614bff85d4ad3b5dab62bf8bca0cc232d73b4cd8"};
+inline const MessageType kPoseArray{
+    geometry_msgs_msg_dds__PoseArray__desc,
+    "RIHS01_af0cc36d190e104d546d168d6b39df04fa4b4ccecf59cb4c9ed328d3d5004aa0"};
 inline const MessageType kOdometry{
     nav_msgs_msg_dds__Odometry__desc,
     "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"};

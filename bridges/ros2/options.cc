@@ -11,9 +11,6 @@
 #include <string_view>
 
 namespace ergocast::ros2 {
-namespace {
-
-/// ROS_DOMAIN_ID; 0 if it is not set, nothing if it is no domain.
 std::optional<int> domain_of_environment() {
   const char* text = std::getenv("ROS_DOMAIN_ID");
   if (text == nullptr || *text == '\0') return 0;
@@ -23,6 +20,8 @@ std::optional<int> domain_of_environment() {
   const bool valid = error == std::errc() && end == digits.end() && domain >= 0 && domain <= 232;
   return valid ? std::optional(domain) : std::nullopt;
 }
+
+namespace {
 
 /// What is wrong with the file or the choice; empty if all is well.
 std::string read_file(const std::filesystem::path& file, const std::vector<AgentId>& chosen,
@@ -42,7 +41,7 @@ std::string read_file(const std::filesystem::path& file, const std::vector<Agent
     options.bridge.display.reset();
   }
   const auto domain = options.bridge.domain_id ? options.bridge.domain_id : domain_of_environment();
-  if (!domain) return "ROS_DOMAIN_ID is not a number from 0 to 232: correct or unset it";
+  if (!domain) return kNoDomain;
   options.domain_id = *domain;
   return "";
 }
@@ -62,7 +61,8 @@ int read_command_line(int argc, char** argv, Options& options) {
       ->check(CLI::Range(0, kMaxAgents - 1).description(""))
       ->type_name("N");
   app.footer(
-      "Exit codes: 0 done; 2 bad arguments or file; 3 LCM or DDS cannot be used on this machine; "
+      "ergocast-ros2 map --help: saves the map of a topic. Exit codes: 0 done; 2 bad arguments or "
+      "file; 3 LCM or DDS cannot be used on this machine; "
       "4 the\nmission failed, or was refused.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   const std::string problem = read_file(file, chosen, options);

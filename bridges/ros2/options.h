@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "bridges/ros2/bridge_file.h"
@@ -15,6 +16,11 @@ struct Options {
   BridgeFile bridge;
   int domain_id = 0;
 };
+
+/// ROS_DOMAIN_ID; 0 if it is not set, nothing if it is no domain.
+std::optional<int> domain_of_environment();
+inline constexpr const char* kNoDomain =
+    "ROS_DOMAIN_ID is not a number from 0 to 232: correct or unset it";
 
 /// The exit code if the program must end here (0 after --help), −1 if it continues.
 int read_command_line(int argc, char** argv, Options& options);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sends messages of any bytes by Fast DDS, several times: fast-sender FILE TOPIC TYPE TIMES. Each
 // line of FILE has the CDR of a message in hex. A message of twelve bytes or more gets a present
-// stamp.
+// stamp. With a fifth word, latched or volatile, it is the topic's durability: the messages are
+// sent once, and the program runs until a signal.
 #include <chrono>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -40,7 +41,8 @@ void stamp(RawBytes& bytes) {
   std::memcpy(&bytes[8], &nanosec, sizeof nanosec);
 }
 
-void send(const std::string& file, const std::string& topic, const std::string& type, int times) {
+void send(const std::string& file, const std::string& topic, const std::string& type, int times,
+          const std::string& durability) {
   std::vector<RawBytes> messages;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) messages.push_back(from_hex(line));
@@ -49,9 +51,15 @@ void send(const std::string& file, const std::string& topic, const std::string& 
   dds::TypeSupport raw(new RawType(type));
   raw.register_type(participant);
   auto* publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
+  dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
+  if (durability == "latched") qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  if (durability == "volatile") qos.durability().kind = dds::VOLATILE_DURABILITY_QOS;
   auto* writer = publisher->create_datawriter(
-      participant->create_topic("rt/" + topic, type, dds::TOPIC_QOS_DEFAULT),
-      dds::DATAWRITER_QOS_DEFAULT);
+      participant->create_topic("rt/" + topic, type, dds::TOPIC_QOS_DEFAULT), qos);
+  if (!durability.empty()) {
+    for (RawBytes& message : messages) writer->write(&message);
+    for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
   dds::PublicationMatchedStatus matched;
   while (matched.current_count == 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -69,4 +77,6 @@ void send(const std::string& file, const std::string& topic, const std::string& 
 }  // namespace
 }  // namespace ergocast::test
 
-int main(int, char** argv) { ergocast::test::send(argv[1], argv[2], argv[3], std::stoi(argv[4])); }
+int main(int argc, char** argv) {
+  ergocast::test::send(argv[1], argv[2], argv[3], std::stoi(argv[4]), argc > 5 ? argv[5] : "");
+}

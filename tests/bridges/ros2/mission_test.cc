@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "tests/bridges/order_socket.h"
 #include "tests/process/support/record.h"
@@ -147,14 +148,30 @@ TEST_F(RosRobots, SendMessagesThatOthersCanRead) {
   ASSERT_TRUE(one.sees(moves)) << driver.printed();
   // The target was sent before this program began.
   const std::string file = folder_ / "recorded.json";
-  Child recorder =
-      begin({ERGOCAST_BIN_DIR "/fast-recorder", file, "robot0/cmd_vel",
-             "geometry_msgs::msg::dds_::Twist_", "robot1/cmd_vel",
-             "geometry_msgs::msg::dds_::TwistStamped_", "ergocast/coverage",
-             "nav_msgs::msg::dds_::OccupancyGrid_", "ergocast/target",
-             "nav_msgs::msg::dds_::OccupancyGrid_", "ergocast/agent1/path",
-             "nav_msgs::msg::dds_::Path_", "ergocast/phi2", "std_msgs::msg::dds_::Float64_",
-             "ergocast/status", "std_msgs::msg::dds_::String_"});
+  Child recorder = begin({ERGOCAST_BIN_DIR "/fast-recorder",
+                          file,
+                          "robot0/cmd_vel",
+                          "geometry_msgs::msg::dds_::Twist_",
+                          "robot1/cmd_vel",
+                          "geometry_msgs::msg::dds_::TwistStamped_",
+                          "ergocast/coverage",
+                          "nav_msgs::msg::dds_::OccupancyGrid_",
+                          "ergocast/target",
+                          "nav_msgs::msg::dds_::OccupancyGrid_",
+                          "ergocast/left",
+                          "nav_msgs::msg::dds_::OccupancyGrid_",
+                          "ergocast/found",
+                          "std_msgs::msg::dds_::Float64_",
+                          "ergocast/finds",
+                          "geometry_msgs::msg::dds_::PoseArray_",
+                          "ergocast/contacts",
+                          "geometry_msgs::msg::dds_::PoseArray_",
+                          "ergocast/agent1/path",
+                          "nav_msgs::msg::dds_::Path_",
+                          "ergocast/phi2",
+                          "std_msgs::msg::dds_::Float64_",
+                          "ergocast/status",
+                          "std_msgs::msg::dds_::String_"});
   EXPECT_EQ(wait_for(recorder), 0) << driver.printed();
   Child reader =
       begin({"/usr/bin/env", "node", ERGOCAST_SOURCE_DIR "/tests/bridges/ros2/reference/cdr.cjs",
@@ -182,6 +199,15 @@ TEST_F(RosRobots, SendMessagesThatOthersCanRead) {
       EXPECT_LT(cells[corner], 20);
     }
   }
+  const auto left = read["ergocast/left"]["data"].get<std::vector<int>>();
+  const auto target = read["ergocast/target"]["data"].get<std::vector<int>>();
+  ASSERT_EQ(left.size(), target.size());
+  EXPECT_LT(std::accumulate(left.begin(), left.end(), 0),
+            std::accumulate(target.begin(), target.end(), 0));
+  for (std::size_t i = 0; i < left.size(); ++i) EXPECT_LE(left[i], target[i]) << i;
+  EXPECT_GT(read["ergocast/found"]["data"], 0);
+  EXPECT_EQ(read["ergocast/finds"]["poses"], json::array());
+  EXPECT_EQ(read["ergocast/contacts"]["header"]["frame_id"], "map");
   const json& path = read["ergocast/agent1/path"];
   ASSERT_FALSE(path["poses"].empty());
   EXPECT_NEAR(path["poses"][0]["pose"]["position"]["x"].get<double>(), 15, 2);
@@ -190,6 +216,85 @@ TEST_F(RosRobots, SendMessagesThatOthersCanRead) {
   const std::string status = read["ergocast/status"]["data"];
   EXPECT_NE(status.find("floor: running, tick "), status.npos) << status;
   EXPECT_NE(status.find("2 of 2 agents"), status.npos) << status;
+}
+
+/// Two rooms of 6 m × 8 m, as a message in JSON.
+json two_rooms() {
+  constexpr int kWidth = 120, kHeight = 80;
+  std::vector<int> cells;
+  for (int j = 0; j < kHeight; ++j)
+    for (int i = 0; i < kWidth; ++i) {
+      const bool edge = i < 2 || j < 2 || i >= kWidth - 2 || j >= kHeight - 2;
+      const bool wall = (i == 60 || i == 61) && (j < 30 || j > 50);
+      cells.push_back(edge || wall ? 100 : i > 100 && j > 70 ? -1 : 0);
+    }
+  const json zero = {{"x", 0}, {"y", 0}, {"z", 0}};
+  return {{"header", {{"stamp", {{"sec", 1}, {"nanosec", 0}}}, {"frame_id", "map"}}},
+          {"info",
+           {{"map_load_time", {{"sec", 1}, {"nanosec", 0}}},
+            {"resolution", 0.1},
+            {"width", kWidth},
+            {"height", kHeight},
+            {"origin",
+             {{"position", {{"x", -6}, {"y", -4.5}, {"z", 0}}},
+              {"orientation", {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 1}}}}}}},
+          {"data", std::move(cells)}};
+}
+
+/// Foxglove's writer and Fast DDS publish it; what is saved passes `ergocast new` and `check`.
+TEST_F(RosRobots, HaveScenariosInAMapOfATopic) {
+  const auto publish = [&](const std::string& topic, const json& map,
+                           const std::string& durability) {
+    const std::string message = folder_ / (topic + ".json"), file = folder_ / topic;
+    std::ofstream(message) << map;
+    Child writer =
+        begin({"/usr/bin/env", "node", ERGOCAST_SOURCE_DIR "/tests/bridges/ros2/reference/cdr.cjs",
+               ERGOCAST_NODE_ROS2, "map", message});
+    ASSERT_EQ(wait_for(writer), 0) << output();
+    std::ofstream(file) << output();
+    std::vector<std::string> sender{ERGOCAST_BIN_DIR "/fast-sender",       file, topic,
+                                    "nav_msgs::msg::dds_::OccupancyGrid_", "1",  durability};
+    mocks_.push_back(begin(sender));
+  };
+  const auto save = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command{ERGOCAST_BIN_DIR "/ergocast-ros2", "map"};
+    command.insert(command.end(), more.begin(), more.end());
+    Child child = begin(command);
+    return wait_for(child);
+  };
+  const json rooms = two_rooms();
+  publish("map", rooms, "latched");
+  const std::string yaml = folder_ / "rooms.yaml";
+  ASSERT_EQ(save({"--save", yaml, "--wait", "3600"}), 0) << output();
+  EXPECT_NE(output().find("ergocast new --map " + yaml), std::string::npos) << output();
+  const std::string scenario = folder_ / "rooms.textproto";
+  ASSERT_EQ(ergocast({"new", "--map", yaml, "--robots", "2", "--out", scenario}), 0) << output();
+  EXPECT_NE(text_of(scenario).find("walls { file: \"rooms.yaml\" }"), std::string::npos)
+      << text_of(scenario);
+  EXPECT_EQ(ergocast({"check", scenario}), 0) << output();
+
+  EXPECT_EQ(save({"--save", yaml}), 2);
+  EXPECT_NE(output().find("rooms.yaml is there already"), std::string::npos) << output();
+  const std::string other = folder_ / "other.yaml";
+  EXPECT_EQ(save({"--save", other, "--frame", "odom", "--wait", "3600"}), 2);
+  EXPECT_NE(output().find("map is in the frame 'map', not in 'odom'"), std::string::npos)
+      << output();
+  json bad = rooms;
+  bad["data"][121] = 101;
+  publish("bad_map", bad, "latched");
+  EXPECT_EQ(save({"--save", other, "--topic", "/bad_map", "--wait", "3600"}), 2);
+  EXPECT_NE(output().find("bad_map has the value 101 in cell (1, 1)"), std::string::npos)
+      << output();
+  publish("passing_map", rooms, "volatile");
+  EXPECT_EQ(save({"--save", other, "--topic", "passing_map", "--wait", "3600"}), 3);
+  EXPECT_NE(output().find("QoS of passing_map does not match, durability: its publisher offers "
+                          "VOLATILE, the bridge requests TRANSIENT_LOCAL"),
+            std::string::npos)
+      << output();
+  EXPECT_EQ(save({"--save", other, "--topic", "none", "--wait", "0.5"}), 3);
+  EXPECT_NE(output().find("no map came: nobody publishes none"), std::string::npos) << output();
+  EXPECT_EQ(save({"--save", other, "--topic", "no topic"}), 2);
+  EXPECT_FALSE(std::filesystem::exists(other));
 }
 
 /// Foxglove's writer makes an Odometry; then each shorter one and damaged ones arrive between.

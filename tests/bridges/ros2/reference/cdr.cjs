@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Foxglove's reader and writer of ROS 2 messages: cdr.cjs FOLDER read FILE prints recorded messages as JSON,
-// cdr.cjs FOLDER write prints an Odometry in hex.
+// cdr.cjs FOLDER write prints an Odometry in hex, and cdr.cjs FOLDER map FILE the OccupancyGrid that FILE has
+// as JSON.
 const fs = require('fs');
 const path = require('path');
 
@@ -53,4 +54,9 @@ function write() {
   return Buffer.from(writer.writeMessage(odometry)).toString('hex');
 }
 
-console.log(what === 'read' ? read() : write());
+function map() {
+  const writer = new MessageWriter(definitionsOf('nav_msgs/OccupancyGrid', ros2jazzy));
+  return Buffer.from(writer.writeMessage(JSON.parse(fs.readFileSync(file, 'utf8')))).toString('hex');
+}
+
+console.log({ read, write, map }[what]());
