@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# libergocast-dev and python3-ergocast on a bare Debian 12: each header compiles alone, the example
+# libergocast-dev, python3-ergocast and ergocast-ros2 on a bare Debian 12: each header compiles alone, the example
 # runs in a team of the packaged processes, Python reads the record, and nothing is left.
 # shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
@@ -82,9 +82,20 @@ check_figures() {
   [ -s "$work/simulated/figures/map.svg" ] || fail 'there is no map'
 }
 
+# The bridge to ROS 2 runs with the libraries that its package names. Nobody publishes a map there.
+check_ros2() {
+  apt_install /tmp/ergocast-ros2.deb
+  in_root ergocast-ros2 --version || fail 'ergocast-ros2 does not run'
+  local status=0
+  offline ergocast-ros2 map --wait 1 --save /tmp/test/map.yaml 2>"$work/said" || status=$?
+  [ "$status" -eq 3 ] && grep -q 'no map came: nobody publishes map' "$work/said" ||
+    fail "a map of nobody, code $status: $(cat "$work/said")"
+  expect_file usr/share/man/man1/ergocast-ros2.1.gz
+}
+
 make_bare_system
 pack
-for name in ergocast libergocast-dev python3-ergocast; do
+for name in ergocast ergocast-ros2 libergocast-dev python3-ergocast; do
   cp "$work"/${name}_*.deb "$root/tmp/$name.deb"
 done
 apt_install g++ cmake make /tmp/ergocast.deb /tmp/libergocast-dev.deb /tmp/python3-ergocast.deb
@@ -94,7 +105,8 @@ check_example
 check_bridge
 check_python
 check_figures
-in_root dpkg --purge ergocast libergocast-dev python3-ergocast >/dev/null
+check_ros2
+in_root dpkg --purge ergocast ergocast-ros2 libergocast-dev python3-ergocast >/dev/null
 left=$(files_of_system | grep -i ergocast || true)
 [ -z "$left" ] || fail "purged, and there still is: $left"
 echo 'an agent is embedded, and Python reads its run'
