@@ -82,7 +82,7 @@ check_figures() {
   [ -s "$work/simulated/figures/map.svg" ] || fail 'there is no map'
 }
 
-# The bridge to ROS 2 runs with the libraries that its package names. Nobody publishes a map there.
+# The bridge to ROS 2 runs with the libraries that its package names. A map that nobody publishes is an error.
 check_ros2() {
   apt_install /tmp/ergocast-ros2.deb
   in_root ergocast-ros2 --version || fail 'ergocast-ros2 does not run'
