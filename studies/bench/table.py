@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joins the rows of the bench's studies with rows from elsewhere, and makes table and heat maps.
+
+table.py DIR [ROWS.csv…]. docs/results/bench.md describes the files.
+"""
+
+import csv
+import html
+import math
+import sys
+from pathlib import Path
+
+from ergocast.plot import _interval  # the interval of order statistics, as on the page of a study
+
+# Column: title, whether less is better, how numbers are written.
+MEASURES = {
+    "ergodic_metric": ("φ² in cosines", True, "{:.2e}"),
+    "detection_probability": ("P(found)", False, "{:.3f}"),
+    "time_to_half_s": ("half found after [s]", True, "{:.0f}"),
+    "time_to_four_fifths_s": ("80 % found after [s]", True, "{:.0f}"),
+    "sliced_wasserstein_m": ("sliced W₂ [m]", True, "{:.1f}"),
+    "greatest_age_s": ("greatest age [s]", True, "{:.0f}"),
+    "path_m": ("path [m]", True, "{:.0f}"),
+}
+KEYS = ("target", "agents", "law", "seed")
+LAWS = {
+    "laws/smc.py:FirstOrder": "SMC",
+    "laws/smc.py:SecondOrder": "SMC2",
+    "laws/hedac.py:Hedac": "HEDAC",
+    "laws/random_walk.py:RandomWalk": "WALK",
+    "laws/random_walk.py:Waypoints": "WAYPOINTS",
+}
+FILES = {name: f"studies/bench/{file}" for file, name in LAWS.items()}
+MOST_ROWS = 1000000
+
+
+def problem(text):
+    sys.exit(f"table.py: {text}")
+
+
+def number(text, where):
+    """A measure: empty is unknown, inf is never."""
+    try:
+        value = float(text) if text else math.nan
+    except ValueError:
+        value = None
+    if value is None or text.strip().lower() == "nan" or value < 0:
+        problem(f"{where}: {text!r} is no number of 0 or more (leave it empty if it is unknown, inf for never)")
+    return value
+
+
+def rows_of_study(file):
+    """The rows of a study.csv of the bench, with the names of this table."""
+    with file.open(newline="") as opened:
+        for row in csv.DictReader(opened):
+            law = row["law.kind"]
+            yield {"target": row["scenario"], "agents": int(row["agents"]), "seed": int(row["seed"]),
+                   "law": LAWS.get(law, Path(law).stem if ".py:" in law else law),
+                   "from": law, **{key: number(row[key], file) for key in MEASURES}}
+
+
+def rows_added(file, targets):
+    """The rows of a file of the form of rows.csv, each checked."""
+    with open(file, newline="") as opened:
+        reader = csv.DictReader(opened)
+        missing = [key for key in KEYS if key not in (reader.fieldnames or [])]
+        if missing:
+            problem(f"{file}:1: there is no column {missing[0]} (the first line names {', '.join(KEYS)} and measures)")
+        unknown = [key for key in reader.fieldnames if key not in KEYS and key not in MEASURES]
+        if unknown:
+            problem(f"{file}:1: {unknown[0]!r} is no column of the bench (it has {', '.join(MEASURES)})")
+        for row in reader:
+            where = f"{file}:{reader.line_num}"
+            if None in row or None in row.values():
+                problem(f"{where}: expected {len(reader.fieldnames)} cells (give one for each column)")
+            if targets and row["target"] not in targets:
+                problem(f"{where}: {row['target']!r} is no target of this bench (it has {', '.join(sorted(targets))})")
+            if not row["law"].strip():
+                problem(f"{where}: the row names no law (write one into the column law)")
+            for key in ("agents", "seed"):
+                if not (row[key].isascii() and row[key].isdigit()):
+                    problem(f"{where}: {key} {row[key]!r} is no whole number (write its digits)")
+            yield {"target": row["target"], "agents": int(row["agents"]), "seed": int(row["seed"]),
+                   "law": row["law"].strip(), "from": Path(file).name,
+                   **{key: number(row.get(key) or "", f"{where}: {key}") for key in MEASURES}}
+
+
+def joined(folder, files):
+    """All rows by (target, agents, law, seed); what ran here comes before what was added."""
+    rows = {}
+    for study in sorted(folder.glob("*/study.csv")):
+        for row in rows_of_study(study):
+            rows.setdefault(tuple(row[key] for key in KEYS), row)
+    known, left_out = {key[0] for key in rows}, 0
+    for file in files:
+        for row in rows_added(file, known):
+            key = tuple(row[key] for key in KEYS)
+            left_out += key in rows
+            rows.setdefault(key, row)
+            if len(rows) > MOST_ROWS:
+                problem(f"{file}: more than {MOST_ROWS} rows (give fewer)")
+    if left_out:
+        print(f"{left_out} added rows left out: their runs are here already", file=sys.stderr)
+    if not rows:
+        problem(f"{folder} has no study with a row (run studies/bench/run)")
+    return rows
+
+
+def command_of(target, agents, law, source):
+    scenario = f"scenarios/bench/{target}.textproto --set agents.random_count={agents} --seed 1"
+    if ".py:" in source:
+        return f"/usr/bin/python3 -m ergocast --law {FILES.get(law, source)} {scenario}"
+    return f"ergocast run {scenario} --set law.kind={law}" if source == law else f"rows of {source}"
+
+
+def cells_of(rows):
+    """One a target, number of agents and law: the interval of each measure, and its rank."""
+    groups = {}
+    for row in rows.values():
+        groups.setdefault((row["target"], row["agents"], row["law"]), []).append(row)
+    cells = []
+    for (target, agents, law), runs in groups.items():
+        measures = {key: _interval([run[key] for run in runs]) for key in MEASURES}
+        cells.append({"target": target, "agents": agents, "law": law, "runs": len(runs),
+                      "command": command_of(target, agents, law, runs[0]["from"]),
+                      "measures": measures, "rank": {}})
+    for key, (_, less, _) in MEASURES.items():
+        for place in {(cell["target"], cell["agents"]) for cell in cells}:
+            rank([c for c in cells if (c["target"], c["agents"]) == place], key, less)
+    return cells
+
+
+def rank(cells, key, less):
+    """Marks the law with the best median, and those whose interval overlaps with its own."""
+    known = [c for c in cells if not math.isnan(c["measures"][key][1])]
+    if not known or key == "path_m":
+        return
+    best = (min if less else max)(known, key=lambda c: c["measures"][key][1])
+    low, middle, high = best["measures"][key]
+    if math.isinf(middle):
+        return  # nobody gets there
+    for cell in known:
+        if cell["measures"][key][0] <= high and cell["measures"][key][2] >= low:
+            cell["rank"][key] = "near"
+    best["rank"][key] = "best"
+
+
+def text_of(cell, key, interval=True):
+    form = MEASURES[key][2]
+    low, middle, high = ("–" if math.isnan(v) else "never" if math.isinf(v) else form.format(v)
+                         for v in cell["measures"][key])
+    return f"{middle} [{low}, {high}]" if interval and middle != "–" and low != high else middle
+
+
+def write_csv(folder, rows, cells):
+    with (folder / "rows.csv").open("w", newline="") as opened:
+        writer = csv.writer(opened, lineterminator="\n")
+        writer.writerow([*KEYS, *MEASURES])
+        for key in sorted(rows):
+            values = (rows[key][measure] for measure in MEASURES)
+            writer.writerow([*key, *("" if math.isnan(v) else f"{v:.6g}" for v in values)])
+    with (folder / "bench.csv").open("w", newline="") as opened:
+        writer = csv.writer(opened, lineterminator="\n")
+        writer.writerow(["target", "agents", "law", "measure", "runs", "median", "low", "high", "rank", "command"])
+        for cell in cells:
+            for key, (low, middle, high) in cell["measures"].items():
+                values = ("" if math.isnan(v) else f"{v:.6g}" for v in (middle, low, high))
+                writer.writerow([cell["target"], cell["agents"], cell["law"], key, cell["runs"], *values,
+                                 cell["rank"].get(key, ""), cell["command"]])
+
+
+def in_order(values):
+    return list(dict.fromkeys(values))
+
+
+def markdown(cells, key):
+    """One line a target and number of agents; the best is bold, a star marks what is not separated."""
+    laws = in_order(cell["law"] for cell in cells)
+    lines = [f"| {MEASURES[key][0]} | " + " | ".join(laws) + " |", "|---" * (len(laws) + 1) + "|"]
+    for target, agents in in_order((cell["target"], cell["agents"]) for cell in cells):
+        found = {c["law"]: c for c in cells if (c["target"], c["agents"]) == (target, agents)}
+        texts = []
+        for law in laws:
+            text = text_of(found[law], key, interval=False) if law in found else ""
+            kind = found[law]["rank"].get(key) if law in found else None
+            texts.append(f"**{text}**" if kind == "best" else f"{text}\\*" if kind == "near" else text)
+        lines.append(f"| {target}, {agents} | " + " | ".join(texts) + " |")
+    return "\n".join(lines)
+
+
+def shade(cell, key, others):
+    """0 for the worst law of the row, 1 for the best."""
+    less, scale = MEASURES[key][1], math.log if key == "ergodic_metric" else float
+    values = [scale(c["measures"][key][1]) for c in others
+              if math.isfinite(c["measures"][key][1]) and c["measures"][key][1] > 0]
+    own = cell["measures"][key][1]
+    if not values or not math.isfinite(own) or own <= 0 or max(values) == min(values):
+        return 0
+    share = (scale(own) - min(values)) / (max(values) - min(values))
+    return 1 - share if less else share
+
+
+def heat_map(cells, key):
+    laws = in_order(cell["law"] for cell in cells)
+    head = "".join(f"<th>{html.escape(law)}" for law in laws)
+    lines = [f"<table data-key={key}><tr><th>target<th>agents{head}<th>best"]
+    for target, agents in in_order((cell["target"], cell["agents"]) for cell in cells):
+        row = [c for c in cells if (c["target"], c["agents"]) == (target, agents)]
+        line, best = f"<tr><th>{html.escape(target)}<th>{agents}", ""
+        for law in laws:
+            cell = next((c for c in row if c["law"] == law), None)
+            if cell is None:
+                line += "<td class=none>–"
+                continue
+            kind = cell["rank"].get(key, "")
+            best = law if kind == "best" else best
+            title = html.escape(f"{cell['runs']} runs; one of them: {cell['command']}", quote=True)
+            line += (f'<td class="{kind}" title="{title}" style="--s:{shade(cell, key, row):.3f}">'
+                     f"{html.escape(text_of(cell, key))}")
+        lines.append(f"{line}<td>{html.escape(best)}")
+    return "\n".join(lines) + "</table>"
+
+
+PAGE = """<!doctype html><meta charset=utf-8><title>Ergocast's bench</title><style>
+body{font:14px system-ui,sans-serif;margin:24px;color:#1b1f24;background:#fff}table{border-collapse:collapse;display:none}
+table.on{display:table}td,th{padding:5px 8px;text-align:right;font-variant-numeric:tabular-nums;border:1px solid #fff}
+th{font-weight:600;text-align:left}td[style]{background:color-mix(in srgb,#2f7ebc calc(var(--s)*70%),#eef2f5)}
+td.best{font-weight:700;outline:2px solid #1b1f24;outline-offset:-2px}td.near::before{content:"● ";font-size:9px}
+td.none{color:#888}pre{white-space:pre-wrap;background:#eef2f5;padding:8px}</style>
+<h1>Laws on one table</h1><p>Medians over the seeds with intervals of 95 %. A frame marks the best law of a row, and a dot
+those whose interval overlaps with its own. The colour compares the laws of a row. A click on a cell shows its command.
+<p><label>Measure <select id=measure>OPTIONS</select></label><pre id=command>–</pre>TABLES<script>
+const choose=()=>document.querySelectorAll('table').forEach(t=>t.classList.toggle('on',t.dataset.key===measure.value));
+measure.onchange=choose;choose();
+document.onclick=e=>{const td=e.target.closest('td[title]');if(td)command.textContent=td.title;};
+</script>"""
+
+
+def write_page(folder, cells):
+    options = "".join(f"<option value={key}>{title}" for key, (title, _, _) in MEASURES.items())
+    tables = "\n".join(heat_map(cells, key) for key in MEASURES)
+    (folder / "bench.html").write_text(PAGE.replace("OPTIONS", options).replace("TABLES", tables), encoding="utf-8")
+
+
+def main(folder, *files):
+    folder = Path(folder)
+    rows = joined(folder, files)
+    cells = cells_of(rows)
+    write_csv(folder, rows, cells)
+    write_page(folder, cells)
+    for key in ("ergodic_metric", "detection_probability", "time_to_four_fifths_s"):
+        print(f"\n{markdown(cells, key)}")
+    print(f"\n{len(rows)} runs: {folder}/bench.html, bench.csv, rows.csv")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
