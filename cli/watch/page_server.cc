@@ -72,7 +72,20 @@ class Exchange final : public httplib::Stream {
 /// Never listens.
 class Protocol final : public httplib::Server {
  public:
-  using httplib::Server::process_request;
+  void process(Exchange& exchange) { process(*this, exchange); }
+
+ private:
+  /// A template, so that one call of the two compiles: since cpp-httplib 0.17 it also takes the
+  /// addresses of both ends, which nothing here reads.
+  template <typename Self>
+  static void process(Self& self, Exchange& exchange) {
+    bool closed = false;
+    if constexpr (requires { self.process_request(exchange, true, closed, {}); }) {
+      self.process_request(exchange, true, closed, {});
+    } else {
+      self.process_request(exchange, {}, 0, {}, 0, true, closed, {});
+    }
+  }
 };
 
 class Server final : public PageServer {
@@ -102,9 +115,8 @@ class Server final : public PageServer {
  private:
   Connections::Answer answer(const std::string& head) {
     Exchange exchange(without_ranges(head));
-    bool closed = false;
     answer_ = {};
-    protocol_.process_request(exchange, true, closed, {});
+    protocol_.process(exchange);
     answer_.head = exchange.take_answer();
     return std::move(answer_);
   }
