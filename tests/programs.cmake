@@ -236,6 +236,8 @@ ergocast_script_test(relay_sites hosts hosts/relay_sites.py ${CMAKE_RUNTIME_OUTP
   --duration 100 --delay-ms 5 --jitter-ms 4 --loss-percent 3)
 ergocast_script_test(relay_wireguard hosts hosts/relay_wireguard_test.sh
   ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto)
+ergocast_script_test(tinc hosts hosts/tinc_test.sh
+  ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto)
 # The pages of docs/reference/ are what the code prints now.
 add_test(NAME reference_is_current
   COMMAND ${CMAKE_SOURCE_DIR}/docs/reference/make --check ${CMAKE_BINARY_DIR})
