@@ -166,8 +166,11 @@ std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Missio
             .by = amend.by,
             .ordered_by = amend.header.incarnation};
   const bool has_content = wish.kind >= AmendmentKind::kTarget;
-  const auto content = has_content ? completed(amend) : std::nullopt;
-  if (has_content && !content) return std::nullopt;
+  std::optional<std::vector<std::byte>> content;
+  if (has_content) {
+    content = completed(amend);
+    if (!content) return std::nullopt;
+  }
   if (wish.kind == AmendmentKind::kTarget) {
     auto target = decode_target(*content, mission);
     if (!target) return std::nullopt;
