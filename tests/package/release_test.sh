@@ -27,34 +27,86 @@ commands_of() {
     "$source/docs/installing.md"
 }
 
+# What the web server has: first an older version with another default in its settings, then the release.
 serve() {
-  python3 -u -m http.server --bind 127.0.0.1 --directory "$ERGOCAST_RELEASE/apt" 0 >"$work/server" 2>&1 &
+  mkdir -p "$work/web"
+  python3 -u -m http.server --bind 127.0.0.1 --directory "$work/web" 0 >"$work/server" 2>&1 &
   server=$!
   until port=$(sed -n 's/.* port \([0-9]*\) .*/\1/p' "$work/server") && [ -n "$port" ]; do
     kill -0 "$server" || fail "no server: $(cat "$work/server")"
     sleep 0.1
   done
 }
+publish_old() {
+  mkdir "$work/web/$suite"
+  dpkg-deb -R "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*.deb "$work/old"
+  sed -i 's/^Version: .*/Version: 0.2.0/' "$work/old/DEBIAN/control"
+  echo '# an older default' >>"$work/old/etc/ergocast/ergocast.env"
+  dpkg-deb --root-owner-group -Zgzip -z1 -b "$work/old" "$work/web/$suite/ergocast_0.2.0_all.deb" >/dev/null
+  rm -r "$work/old"
+  # Older than the release, because apt ignores lists that are older than those it has.
+  SOURCE_DATE_EPOCH=1700000000 "$source/packaging/apt-index" "$work/web/$suite"
+}
+publish_release() {
+  rm -r "${work:?}/web/$suite"
+  cp -r "$ERGOCAST_RELEASE/apt/$suite" "$work/web/"
+}
+version_is() {
+  # shellcheck disable=SC2016  # a field of dpkg's
+  [ "$(in_root dpkg-query -W -f '${Version}' ergocast)" = "$1" ] || fail "$1 is not the version"
+}
+
+# Runs the commands of a section.
+follow() {
+  commands_of "$1" | sed "s/SERVER:8000/127.0.0.1:$port/" >"$work/commands"
+  grep -q ergocast "$work/commands" || fail "the page has no commands: $1"
+  in_root sh -e /tmp/test/commands >"$work/said" 2>&1 || { tail -n 20 "$work/said"; fail "the page's $1"; }
+  keep_archives "$suite" "$root" "$cache"
+}
+
+# The operator's files.
+kept='etc/ergocast/mission.key var/lib/ergocast/20260101-000000/summary.json'
+use_package() {
+  local file
+  for file in $kept; do
+    mkdir -p "$root/$(dirname "$file")"
+    echo kept >"$root/$file"
+  done
+  echo 'ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto' >"$root/etc/ergocast/ergocast.env"
+}
+expect_kept() {
+  local file
+  for file in $kept; do [ "$(cat "$root/$file")" = kept ] || fail "$1: $file is gone"; done
+  [ "$(cat "$root/etc/ergocast/ergocast.env")" = ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto ] ||
+    fail "$1: the settings are others"
+}
 
 make_bare_system
 serve
-commands_of Packages | sed "s/SERVER:8000/127.0.0.1:$port/" >"$work/install"
-grep -q 'apt-get install -y ergocast' "$work/install" || fail 'the page has other commands'
-in_root sh -e /tmp/test/install >"$work/said" 2>&1 || { tail -n 20 "$work/said"; fail 'the commands of the page'; }
-keep_archives "$suite" "$root" "$cache"
-kill "$server"
+publish_old
+follow Packages
+version_is 0.2.0
+use_package
+publish_release
+follow 'Upgrade and removal'
+version_is "$(dpkg-deb -f "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*.deb Version)"
+expect_kept upgraded
 for compiler in cc c++ g++ clang; do
   ! in_root sh -c "command -v $compiler" >/dev/null || fail "$compiler was installed"
 done
-grep -q '^ergocast [0-9.]* (LCM ' "$work/said" && grep -q '^commit [0-9a-f]\{12\}$' "$work/said" ||
-  fail "ergocast --version: $(tail -n 4 "$work/said")"
+in_root ergocast --version >"$work/said"
+[ "$(grep -cE '^(ergocast [0-9.]+ \(LCM |commit [0-9a-f]{12})' "$work/said")" = 2 ] ||
+  fail "ergocast --version: $(cat "$work/said")"
 
-commands_of 'The first team' >"$work/fly"
-offline sh -e /tmp/test/fly >"$work/said" 2>&1 || { cat "$work/said"; fail 'the first team'; }
+commands_of 'The first team' >"$work/team"
+offline sh -e /tmp/test/team >"$work/said" 2>&1 || { cat "$work/said"; fail 'the first team'; }
 grep -q '^done: mission complete' "$work/said" || { cat "$work/said"; fail 'the first team has not ended'; }
 
+kill "$server"
 in_root apt-get -qq remove -y ergocast >"$work/said" 2>&1 || { cat "$work/said"; fail remove; }
-expect_file etc/ergocast/ergocast.env
+expect_kept removed
 in_root apt-get -qq purge -y ergocast >"$work/said" 2>&1 || { cat "$work/said"; fail purge; }
-[ ! -e "$root/etc/ergocast" ] || fail 'purged, and there still are settings'
+for file in etc/ergocast var/lib/ergocast; do
+  [ ! -e "$root/$file" ] || fail "purged, and there still is $file: $(ls "$root/$file")"
+done
 echo "docs/installing.md leads to a team on $suite"

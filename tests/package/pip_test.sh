@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# `pip install ./python` in a virtual environment, as docs/installing.md has it; what it installs
+# simulates a mission and equals the program's trajectory.
+#   pip_test.sh BIN_DIR      python=PROGRAM: another Python than Debian's
+set -euo pipefail
+bin=$(cd "$1" && pwd)
+source=$(cd "$(dirname "$0")/../.." && pwd)
+python=${python:-/usr/bin/python3}
+fail() { echo "FAILED: $*" >&2; exit 1; }
+"$python" -c 'import ensurepip, numpy, pandas' 2>/dev/null && [ -d /usr/include/pybind11 ] ||
+  { echo 'skipped: needs python3-venv, python3-numpy, python3-pandas, pybind11-dev'; exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# numpy and pandas are Debian's, so nothing comes from the network.
+(cd "$source" && "$python" -m venv --system-site-packages "$work/env" &&
+  "$work/env/bin/pip" install --no-index ./python) >"$work/said" 2>&1 || { tail -n 30 "$work/said"; fail 'pip install'; }
+cd "$work"
+env/bin/python -c '
+import ergocast, sys
+assert ergocast.__file__.startswith(sys.prefix), ergocast.__file__
+run = ergocast.simulate("quadrimodal_corners", set={"time.duration_s": 20})
+print(ergocast.__version__, len(run.trajectory), repr(float(run.trajectory.x_m.sum())))' >python
+"$bin/ergocast" simulate quadrimodal_corners --duration 20 --out run >/dev/null
+env/bin/python -c '
+import ergocast
+run = ergocast.load("run")
+print(ergocast.__version__, len(run.trajectory), repr(float(run.trajectory.x_m.sum())))' >program
+cmp python program || fail "$(cat python) from Python, $(cat program) from the program"
+env/bin/pip uninstall -y ergocast >/dev/null 2>&1 || fail 'pip uninstall'
+! env/bin/python -c 'import ergocast' 2>/dev/null || fail 'uninstalled, and it is still there'
+echo "pip installs a package that simulates: $("$python" --version), $(cat python)"
