@@ -181,7 +181,9 @@ void validate_ways_home(const Mission& mission, Checks& checks) {
                      "time.duration_s");
     } else if (const Battery* const battery = battery_of(mission, id);
                battery != nullptr && needed_s >= endurance_s(*battery)) {
-      checks.problem(indexed("agents.kind", planned_kind(mission, id)) + ".battery",
+      const std::string its = indexed("agents.kind", planned_kind(mission, id)) + ".battery";
+      if (!checks.sound(its)) continue;
+      checks.problem(its,
                      "lasts for " + shortest(rounded_down(endurance_s(*battery))) +
                          " s without its reserve, and from the start of agent " +
                          std::to_string(id) + " the station is " + shortest(rounded_up(needed_s)) +
