@@ -122,15 +122,11 @@ std::optional<Refusal> SearchExchange::receive(const Effort& theirs, Tick newest
 }
 
 void SearchExchange::merge_early(Participant& me) {
-  std::vector<Early> still_early;
-  for (const Early& one : early_) {
-    if (efforts_.is_early(one.tiles.header.tick)) {
-      still_early.push_back(one);
-    } else if (const auto refusal = merge(one.tiles, one.by_author)) {
-      me.count_refused(*refusal);
-    }
-  }
-  early_ = std::move(still_early);
+  std::erase_if(early_, [&](const Early& one) {
+    if (efforts_.is_early(one.tiles.header.tick)) return false;
+    if (const auto refusal = merge(one.tiles, one.by_author)) me.count_refused(*refusal);
+    return true;
+  });
 }
 
 std::optional<Refusal> SearchExchange::merge(const Effort& theirs, bool by_author) {

@@ -98,6 +98,28 @@ TEST(SearchExchange, LooksOfAStoppedAgentReachAnotherThatComesLater) {
   EXPECT_EQ(wrong_cells(*team[2].efforts(), right, author_of(0)), 0);
 }
 
+/// In lockstep an author may be a tick ahead: its tiles are from after a halving that is to come.
+TEST(SearchExchange, TilesFromAfterTheNextHalvingWaitForIt) {
+  Mission mission = searching();
+  mission.law.memory_half_life_s = 5;
+  const auto halving = static_cast<Tick>(5 / mission.timing.dt_s);
+  LiveTeam team(mission);
+  run_ticks(team, mission, 0, halving);
+  const std::size_t last = team[1].efforts()->cells().tile_count() - 1;
+  Effort early;
+  early.header = {kRun, 0, author_of(0).incarnation, 1000, halving};
+  early.parts = 1;
+  early.tile_count = 1;
+  early.tiles[0].number = static_cast<std::int32_t>(last);
+  early.tiles[0].content.newest_look = halving;
+  early.tiles[0].content.looks[0] = 1;
+  ASSERT_EQ(team[1].efforts()->looks({last, 0}), 0u);
+  give(team[1], early, at((halving - 1) * 100ms), 0);
+  EXPECT_EQ(team[1].efforts()->looks({last, 0}), 0u) << "the halving has not come";
+  run_ticks(team, mission, halving, halving + 1);
+  EXPECT_EQ(team[1].efforts()->looks({last, 0}), 1u);
+}
+
 /// In lockstep agents wait for what teammates have to send, but not for what nobody will send.
 TEST(SearchExchange, ForgedPartsStallNobody) {
   Mission mission = searching();
