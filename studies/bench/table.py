@@ -31,6 +31,7 @@ LAWS = {
     "laws/random_walk.py:Waypoints": "WAYPOINTS",
 }
 FILES = {name: f"studies/bench/{file}" for file, name in LAWS.items()}
+ORDER = ["COVER", "MOW", "SEARCH", *LAWS.values()]
 MOST_ROWS = 1000000
 
 
@@ -173,9 +174,15 @@ def in_order(values):
     return list(dict.fromkeys(values))
 
 
+def laws_of(cells):
+    """Those of the bench first, then those of others."""
+    laws = in_order(cell["law"] for cell in cells)
+    return sorted(laws, key=lambda law: ORDER.index(law) if law in ORDER else len(ORDER))
+
+
 def markdown(cells, key):
     """One line a target and number of agents; the best is bold, a star marks what is not separated."""
-    laws = in_order(cell["law"] for cell in cells)
+    laws = laws_of(cells)
     lines = [f"| {MEASURES[key][0]} | " + " | ".join(laws) + " |", "|---" * (len(laws) + 1) + "|"]
     for target, agents in in_order((cell["target"], cell["agents"]) for cell in cells):
         found = {c["law"]: c for c in cells if (c["target"], c["agents"]) == (target, agents)}
@@ -201,7 +208,7 @@ def shade(cell, key, others):
 
 
 def heat_map(cells, key):
-    laws = in_order(cell["law"] for cell in cells)
+    laws = laws_of(cells)
     head = "".join(f"<th>{html.escape(law)}" for law in laws)
     lines = [f"<table data-key={key}><tr><th>target<th>agents{head}<th>best"]
     for target, agents in in_order((cell["target"], cell["agents"]) for cell in cells):
