@@ -40,7 +40,7 @@ class Table(unittest.TestCase):
         self.assertEqual(self.run_with().returncode, 0)
         cells = self.cells()
         best = cells["COVER", "ergodic_metric"]
-        # Of seven values the interval of 95 % reaches from the smallest to the largest.
+        # With seven values the interval of 95 % reaches from the smallest to the largest.
         self.assertEqual([best[key] for key in ("runs", "median", "low", "high", "rank")],
                          ["7", "0.0004", "0.0001", "0.0007", "best"])
         self.assertEqual(cells["SMC", "ergodic_metric"]["rank"], "")

@@ -63,7 +63,7 @@ class SecondOrder(FirstOrder):
         gradient = self.spectral_gradients(now)
         u_max = now.u_max_mps[:, None]
         dt_s = now.mission.dt_s
-        # What the vehicles did, not what they were told: at an edge both differ.
+        # The measured velocity: at an edge it differs from the command.
         known = self.before_m is not None and self.before_m.shape == now.x_m.shape
         velocity = (now.x_m - self.before_m) / dt_s if known else np.zeros_like(now.x_m)
         self.before_m = now.x_m.copy()
