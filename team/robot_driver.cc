@@ -68,8 +68,8 @@ void RobotDriver::begin_mission(Tick tick, Instant now) {
   running_ = true;
   if (filters_again(me_.mission()) && !guard_) guard_.emplace(me_.mission(), 0);
   tick_ = tick;
-  begun_ = next_tick_ = now;
-  if (!has_all_) next_tick_ += kListening;
+  next_tick_ = has_all_ ? now : now + kListening;
+  begun_ = next_tick_;
   begin(me_.mission());
 }
 

@@ -223,14 +223,14 @@ def heat_map(cells, key):
             best = law if kind == "best" else best
             title = html.escape(f"{cell['runs']} runs; one of them: {cell['command']}", quote=True)
             line += (f'<td class="{kind}" title="{title}" style="--s:{shade(cell, key, row):.3f}">'
-                     f"{html.escape(text_of(cell, key))}")
+                     f"{html.escape(text_of(cell, key)).replace(' [', '<br>[')}")
         lines.append(f"{line}<td>{html.escape(best)}")
     return "\n".join(lines) + "</table>"
 
 
 PAGE = """<!doctype html><meta charset=utf-8><title>Ergocast's bench</title><style>
 body{font:14px system-ui,sans-serif;margin:24px;color:#1b1f24;background:#fff}table{border-collapse:collapse;display:none}
-table.on{display:table}td,th{padding:5px 8px;text-align:right;font-variant-numeric:tabular-nums;border:1px solid #fff}
+table.on{display:table}td,th{padding:5px 8px;text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums;border:1px solid #fff}
 th{font-weight:600;text-align:left}td[style]{background:color-mix(in srgb,#2f7ebc calc(var(--s)*70%),#eef2f5)}
 td.best{font-weight:700;outline:2px solid #1b1f24;outline-offset:-2px}td.near::before{content:"● ";font-size:9px}
 td.none{color:#888}pre{white-space:pre-wrap;background:#eef2f5;padding:8px}</style>

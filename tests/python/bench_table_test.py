@@ -51,7 +51,7 @@ class Table(unittest.TestCase):
                       "--set agents.random_count=4 --seed 1", cells["SMC", "ergodic_metric"]["command"])
         page = (self.folder / "bench.html").read_text()
         self.assertIn('<td class="best" title="7 runs; one of them: ergocast run scenarios/bench/ring', page)
-        self.assertIn("4.00e-04 [1.00e-04, 7.00e-04]", page)
+        self.assertIn("4.00e-04<br>[1.00e-04, 7.00e-04]", page)
 
     def test_rows_of_others_stand_beside_them(self):
         file = self.write("theirs.csv", "target,agents,law,seed,ergodic_metric\nring,4,THEIRS <b>,1,5e-5\nring,4,COVER,1,9\n")

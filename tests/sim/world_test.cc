@@ -90,15 +90,15 @@ TEST(WorldInLockstep, TakesTheFirstAnswerToATickAndNoOther) {
 }
 
 TEST(WorldInLockstep, PublishesLargeTeamsInParts) {
-  World world = running_world(small_mission(19));
+  World world = running_world(small_mission(kMaxVehiclesPerState + 3));
   const auto states = states_after(world, at(0s));
   ASSERT_EQ(states.size(), 2u);
   EXPECT_EQ(states[0].parts, 2);
   EXPECT_EQ(states[0].part, 0);
   EXPECT_EQ(states[1].part, 1);
-  EXPECT_EQ(states[0].vehicle_count, 16);
+  EXPECT_EQ(states[0].vehicle_count, kMaxVehiclesPerState);
   EXPECT_EQ(states[1].vehicle_count, 3);
-  EXPECT_EQ(states[1].vehicles[2].id, 18);
+  EXPECT_EQ(states[1].vehicles[2].id, kMaxVehiclesPerState + 2);
 }
 
 // ---- motion ----
