@@ -67,10 +67,7 @@ class StationRules {
   void reserve(int i) {
     const std::string path = indexed("agents.kind", i) + ".reserve_s";
     if (!kinds_[i].has_reserve_s() || !checks_.sound(path)) return;
-    if (kinds_[i].station_size() == 0) {
-      return checks_.problem(path, "has no effect without a station",
-                             "remove it, or add station { x_m: … y_m: … }");
-    }
+    if (kinds_[i].station_size() == 0) return without_station(path);
     const double duration_s = scenario_.time().duration_s();
     if (!checks_.sound("time") || kinds_[i].reserve_s() < duration_s) return;
     checks_.problem(path,
@@ -81,7 +78,11 @@ class StationRules {
 
   void battery(int i) {
     if (!kinds_[i].has_battery() || kinds_[i].station_size() > 0) return;
-    checks_.problem(indexed("agents.kind", i) + ".battery", "has no effect without a station",
+    without_station(indexed("agents.kind", i) + ".battery");
+  }
+
+  void without_station(const std::string& path) {
+    checks_.problem(path, "has no effect without a station",
                     "remove it, or add station { x_m: … y_m: … }");
   }
 

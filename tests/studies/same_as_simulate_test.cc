@@ -125,7 +125,8 @@ TEST(SameAsSimulate, ForDrawnScenariosWithEveryField) {
   }
   EXPECT_EQ(
       ::testing::PrintToString(unused),
-      R"({ "Kind.reserve_s", "Kind.station", "Objects.end_when_found", "Polygon.solid_white", )"
+      R"({ "Battery.capacity_wh", "Battery.charge_w", "Battery.power_w", "Battery.reserve", "Kind.battery", )"
+      R"("Kind.reserve_s", "Kind.station", "Objects.end_when_found", "Polygon.solid_white", )"
       R"("Polygon.unknown_free" })")
       << "fields that no ideal team had; with stations or an end by finding none is ideal, and "
          "neither maps nor "

@@ -14,7 +14,7 @@ const COLUMNS = [
   {
     head: 'Battery',
     live: true,
-    shown: ({ stations }) => stations?.some(({ battery }) => battery),
+    shown: ({ stations }) => stations?.some(({ battery }) => battery) ?? false,
     text: ({ status }) => own(status, 'charge', v => `${(100 * v).toFixed(0)} %`),
   },
   { head: 'Speed', text: ({ speed }) => (speed === null ? '–' : `${speed.toFixed(1)} m/s`) },
