@@ -19,6 +19,9 @@ finds() { grep -qF -- "$1" "$work/output" || fail "nothing found: $1"; }
 # A tree whose set-up does nothing and whose formatter finds nothing.
 mkdir -p "$work/tree/.ci" "$work/tree/packaging" "$work/tree/core" "$work/tree/docs" "$work/bin"
 cp "$source/.ci/checks" "$source/.ci/prose" "$work/tree/.ci"
+mkdir -p "$work/tree/tests/mutants"
+cp "$source/tests/mutants/run" "$work/tree/tests/mutants"
+echo "No mutants." >"$work/tree/tests/mutants/list.txt"
 echo 'say() { echo "$*"; }' >"$work/tree/packaging/setup.sh"
 printf '#!/bin/sh\n' >"$work/bin/clang-format"
 chmod +x "$work/bin/clang-format"
