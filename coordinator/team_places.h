@@ -33,9 +33,8 @@ class TeamPlaces {
     for (const RosterEntry& entry : roster) {
       if (entry.active_until >= 0) continue;
       const auto found = known_.find(entry.author.agent);
-      agents.push_back({entry.author.agent, found == known_.end()
-                                                ? std::optional<Eigen::Vector3d>()
-                                                : found->second.x_m});
+      agents.push_back({entry.author.agent, found == known_.end() ? std::optional<Eigen::Vector3d>()
+                                                                  : found->second.x_m});
     }
     return agents;
   }

@@ -219,7 +219,8 @@ TEST(Amending, AnEndIsNotDelayed) {
   EXPECT_EQ(coordinator.amendments().named, 0);
 }
 
-// A large team's state arrives in parts. Drivers of one vehicle each send a part, too, and each goes by its own clock.
+// A large team's state arrives in parts. Drivers of one vehicle each send a part, too, and each
+// goes by its own clock.
 TEST(TeamPlaces, AreTheNewestOfEachAgentAndAsOldAsTheOldest) {
   const auto part = [](Tick tick, AgentId id, Incarnation driver = 1) {
     WorldState world = world_state(tick, {{1.0 * static_cast<double>(tick), 0, 0}});

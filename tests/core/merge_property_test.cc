@@ -58,9 +58,9 @@ std::vector<Contribution> everything_sent(std::uint64_t history) {
     const auto ticks = static_cast<Tick>(1 + dice.below(12));
     const Tick born = static_cast<Tick>(dice.below(50));
     for (Tick tick = born; tick < born + ticks; ++tick) {
-      const Eigen::Vector3d x_m =
-          uniform_in(kTwoSquares, history, Purpose::kStart, static_cast<std::uint32_t>(author.agent),
-                     author.incarnation + static_cast<std::uint64_t>(tick));
+      const Eigen::Vector3d x_m = uniform_in(kTwoSquares, history, Purpose::kStart,
+                                             static_cast<std::uint32_t>(author.agent),
+                                             author.incarnation + static_cast<std::uint64_t>(tick));
       own.add_sample(author, BasisAt(x_m, kTwoSquares, small_basis()));
       if (dice.below(3) == 0) continue;
       for (int b = 0; b < 2; ++b) {

@@ -25,8 +25,8 @@ agents { starts { x_m: 0 y_m: 0 } starts { x_m: 50 y_m: 40 } starts { x_m: 100 y
 constexpr int kAgents = 3;
 
 constexpr const char* kMessageTypes[] = {"Hello",       "MissionPart", "Contribution",
-                                  "AgentStatus", "TeamStatus",  "Stop",
-                                  "WorldState",  "Command",     "RecordAck"};
+                                         "AgentStatus", "TeamStatus",  "Stop",
+                                         "WorldState",  "Command",     "RecordAck"};
 
 struct Outcome {
   std::string trajectory;

@@ -130,11 +130,11 @@ TEST(RasterIntegral, TurningAMapByHalfATurnChangesTheSignOfOddModes) {
 }
 
 TEST(RasterIntegral, OfAUniformMapIsTheUniformTarget) {
-  PlaneCoefficients expected = PlaneCoefficients::Zero(kUnequalModes.modes_x, kUnequalModes.modes_y);
+  PlaneCoefficients expected =
+      PlaneCoefficients::Zero(kUnequalModes.modes_x, kUnequalModes.modes_y);
   expected(0, 0) = 1;
   for (const auto& [columns, rows] : {std::pair(1, 1), {7, 5}, {300, 200}}) {
-    const PlaneIntegrals ours =
-        shares_of({kWide, columns, rows}, {}, [](int, int) { return 0.1; });
+    const PlaneIntegrals ours = shares_of({kWide, columns, rows}, {}, [](int, int) { return 0.1; });
     EXPECT_LE(largest_difference(ours.values, expected), ours.error_bound);
     EXPECT_LE(ours.error_bound, 1e-13);
   }

@@ -77,7 +77,8 @@ TEST(TargetInSpace, OfAnObliqueGaussianIsItsCharacteristicFunction) {
             sum += std::exp(-0.5 * k.dot(g.covariance_m2 * k)) * std::cos(k.dot(mean_m)) / 4;
           }
         }
-        EXPECT_NEAR(ours.values[(l * kModesInSpace.modes_x + m) * kModesInSpace.modes_y + n], sum, 1e-11);
+        EXPECT_NEAR(ours.values[(l * kModesInSpace.modes_x + m) * kModesInSpace.modes_y + n], sum,
+                    1e-11);
       }
     }
   }
