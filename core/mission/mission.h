@@ -110,7 +110,6 @@ struct VehicleLimits {
   bool operator==(const VehicleLimits&) const = default;
 };
 
-/// Agents that move and see alike; core/mission/kinds.h.
 /// The battery of a vehicle: core/motion/charge.h.
 struct Battery {
   double capacity_wh = 0;  ///< 0: the vehicle has none that counts
@@ -121,6 +120,7 @@ struct Battery {
   bool any() const { return capacity_wh > 0; }
 };
 
+/// Agents that move and see alike; core/mission/kinds.h.
 struct AgentKind {
   std::string name;
   int count = 1;  ///< number of its agents; their ids follow those of the kinds before

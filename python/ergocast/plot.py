@@ -157,7 +157,7 @@ def study(table: Place, ax: Any = None, *, x: str | None = None, y: str = "ergod
         ax = _new_axes() if ax is None else ax
         for i, (label, line) in enumerate(lines.items()):
             groups = line.groupby(places[line.index])[y]
-            low, middle, high = np.array([_interval(values) for _, values in groups]).T
+            low, middle, high = np.array([interval(values) for _, values in groups]).T
             at = np.array([place for place, _ in groups])
             # A little beside each other, so that all intervals are seen.
             step, span = 0.01 * (i - (len(lines) - 1) / 2), places.max() - places.min()
@@ -340,7 +340,7 @@ def _metric_band(group: Sequence[Run]) -> tuple[Floats, Floats, Floats, Floats]:
     rows = pd.concat([run.metrics[run.metrics["t_s"] > 0] for run in group])
     if len(group) > 1:
         times = rows.groupby("t_s")["ergodic_metric"]
-        bands = np.array([_interval(values) for _, values in times]).reshape(-1, 3)
+        bands = np.array([interval(values) for _, values in times]).reshape(-1, 3)
         return np.array([t for t, _ in times]), bands[:, 0], bands[:, 1], bands[:, 2]
     middle, half = rows["ergodic_metric"].to_numpy(), rows["metric_spread"].to_numpy() / 2
     return rows["t_s"].to_numpy(), np.maximum(middle - half, middle / 100), middle, middle + half
@@ -376,7 +376,7 @@ def _lines(rows: pd.DataFrame, fields: list[str]) -> dict[str, pd.DataFrame]:
     return {str(label): line for label, line in rows.groupby(labels, sort=False)}
 
 
-def _interval(values: pd.Series | Floats) -> tuple[float, float, float]:
+def interval(values: pd.Series | Floats) -> tuple[float, float, float]:
     """The median between the ends of its interval of 95 %: from the r-th smallest value to the r-th
     largest, r by the binomial distribution; of fewer than six, from the smallest to the largest."""
     found = np.sort(np.asarray(values, dtype=float))

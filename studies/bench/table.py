@@ -10,7 +10,7 @@ import math
 import sys
 from pathlib import Path
 
-from ergocast.plot import _interval  # the interval of order statistics, as on the page of a study
+from ergocast.plot import interval
 
 # Column: title, whether less is better, how numbers are written.
 MEASURES = {
@@ -33,6 +33,7 @@ LAWS = {
 FILES = {name: f"studies/bench/{file}" for file, name in LAWS.items()}
 ORDER = ["COVER", "MOW", "SEARCH", *LAWS.values()]
 MOST_ROWS = 1000000
+TARGETS = {file.stem for file in (Path(__file__).resolve().parents[2] / "scenarios/bench").glob("*.textproto")}
 
 
 def problem(text):
@@ -60,7 +61,7 @@ def rows_of_study(file):
                    "from": law, **{key: number(row[key], file) for key in MEASURES}}
 
 
-def rows_added(file, targets):
+def rows_added(file):
     """The rows of a file of the form of rows.csv, each checked."""
     with open(file, newline="") as opened:
         reader = csv.DictReader(opened)
@@ -74,8 +75,8 @@ def rows_added(file, targets):
             where = f"{file}:{reader.line_num}"
             if None in row or None in row.values():
                 problem(f"{where}: expected {len(reader.fieldnames)} cells (give one for each column)")
-            if targets and row["target"] not in targets:
-                problem(f"{where}: {row['target']!r} is no target of this bench (it has {', '.join(sorted(targets))})")
+            if row["target"] not in TARGETS:
+                problem(f"{where}: {row['target']!r} is no target of the bench (it has {', '.join(sorted(TARGETS))})")
             if not row["law"].strip():
                 problem(f"{where}: the row names no law (write one into the column law)")
             for key in ("agents", "seed"):
@@ -92,16 +93,20 @@ def joined(folder, files):
     for study in sorted(folder.glob("*/study.csv")):
         for row in rows_of_study(study):
             rows.setdefault(tuple(row[key] for key in KEYS), row)
-    known, left_out = {key[0] for key in rows}, 0
+    here, repeated, elsewhere = {key[0] for key in rows}, 0, 0
     for file in files:
-        for row in rows_added(file, known):
+        for row in rows_added(file):
             key = tuple(row[key] for key in KEYS)
-            left_out += key in rows
+            if here and row["target"] not in here:
+                elsewhere += 1
+                continue
+            repeated += key in rows
             rows.setdefault(key, row)
             if len(rows) > MOST_ROWS:
                 problem(f"{file}: more than {MOST_ROWS} rows (give fewer)")
-    if left_out:
-        print(f"{left_out} added rows left out: their runs are here already", file=sys.stderr)
+    for count, why in ((repeated, "their runs are here already"), (elsewhere, "their targets were not run here")):
+        if count:
+            print(f"{count} added rows left out: {why}", file=sys.stderr)
     if not rows:
         problem(f"{folder} has no study with a row (run studies/bench/run)")
     return rows
@@ -121,7 +126,7 @@ def cells_of(rows):
         groups.setdefault((row["target"], row["agents"], row["law"]), []).append(row)
     cells = []
     for (target, agents, law), runs in groups.items():
-        measures = {key: _interval([run[key] for run in runs]) for key in MEASURES}
+        measures = {key: interval([run[key] for run in runs]) for key in MEASURES}
         cells.append({"target": target, "agents": agents, "law": law, "runs": len(runs),
                       "command": command_of(target, agents, law, runs[0]["from"]),
                       "measures": measures, "rank": {}})

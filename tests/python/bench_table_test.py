@@ -66,6 +66,14 @@ class Table(unittest.TestCase):
         self.assertEqual(cells["THEIRS <b>", "ergodic_metric"]["command"], "rows of theirs.csv")
         self.assertNotIn("<b>", (self.folder / "bench.html").read_text())
 
+    def test_rows_of_targets_that_were_not_run_are_left_out(self):
+        file = self.write("theirs.csv", "target,agents,law,seed,ergodic_metric\nlake,4,THEIRS,1,5e-5\nring,4,THEIRS,1,5e-5\n")
+        result = self.run_with(file)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 added rows left out: their targets were not run here", result.stderr)
+        self.assertIn(("THEIRS", "ergodic_metric"), self.cells())
+        self.assertNotIn("lake", (self.folder / "rows.csv").read_text())
+
     def test_its_own_rows_can_be_added_to_another_bench(self):
         self.run_with()
         rows = (self.folder / "rows.csv").read_text()
@@ -79,7 +87,7 @@ class Table(unittest.TestCase):
         for text, why in (
             ("target,agents,seed\n", "theirs.csv:1: there is no column law"),
             (head.replace("ergodic_metric", "phi2"), "'phi2' is no column of the bench (it has ergodic_metric"),
-            (head + "square,4,A,1,1\n", "theirs.csv:2: 'square' is no target of this bench (it has ring)"),
+            (head + "square,4,A,1,1\n", "theirs.csv:2: 'square' is no target of the bench (it has box, four_peaks, lake"),
             (head + "ring,four,A,1,1\n", "theirs.csv:2: agents 'four' is no whole number"),
             (head + "ring,4,A,-1,1\n", "theirs.csv:2: seed '-1' is no whole number"),
             (head + "ring,4, ,1,1\n", "theirs.csv:2: the row names no law"),

@@ -199,7 +199,7 @@ class Studies(WithFolder):
 
     def test_intervals_are_those_of_the_binomial_distribution(self):
         for count, rank in ((1, 1), (5, 1), (6, 1), (8, 1), (9, 2), (20, 6), (100, 40), (3000, 1446)):
-            low, middle, high = plot._interval(np.arange(1.0, count + 1))
+            low, middle, high = plot.interval(np.arange(1.0, count + 1))
             self.assertEqual((low, high), (rank, count + 1 - rank), count)
             self.assertEqual(middle, (count + 1) / 2)
 
