@@ -242,6 +242,7 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
   const auto watching = begin_page(options, setup, display);
   if (!watching) return report_error(kExitUnavailable, watching.error());
   ControlledPage* const page = watching->get();
+  if (page != nullptr) page->page().wait_until_it_listens(signals.fd());
   entry.reset();
   auto registered = RunEntry::write(live_run(setup, scenario));
   if (!registered) {

@@ -5,10 +5,12 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spdlog/logger.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -23,6 +25,7 @@ using namespace std::chrono_literals;
 
 /// How long the process may take to exit by itself.
 constexpr auto kEndOfPage = 2s;
+constexpr auto kBeginOfPage = 30s;
 /// Further ends of the process are not reported.
 constexpr int kMostEndsToReport = 5;
 
@@ -41,15 +44,16 @@ PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay&
     : socket_(std::move(socket)),
       control_token_(setup.control_token),
       display_(display),
+      listens_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       key_(setup.key),
       certificate_(setup.certificate),
       tls_key_(setup.tls_key) {
   if (!setup.run_dir.empty()) log_ = open_log_file(setup.run_dir / "log/run.log", "run");
   int ends[2] = {-1, -1};
-  if (pipe2(ends, O_CLOEXEC) == 0) {
+  if (listens_.fd() >= 0 && pipe2(ends, O_CLOEXEC) == 0) {
     until_.emplace(ends[0]);
     running_.emplace(ends[1]);
-    program_.descriptors = {socket_.fd(), until_->fd()};
+    program_.descriptors = {socket_.fd(), until_->fd(), listens_.fd()};
   }
   if (setup.control != nullptr) {
     program_.descriptors.push_back(setup.control->fd());
@@ -94,6 +98,13 @@ void PageProcess::launch(Instant now) {
     child_ = *started;
   } else {
     restart_at_ = now + restart_delay(ends_++);
+  }
+}
+
+void PageProcess::wait_until_it_listens(int stop_fd) {
+  pollfd events[] = {{listens_.fd(), POLLIN, 0}, {stop_fd, POLLIN, 0}};
+  for (const Instant until = now() + kBeginOfPage; child_ && child_->running() && now() < until;) {
+    if (poll(events, std::size(events), 50) > 0) return;
   }
 }
 

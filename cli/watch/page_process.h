@@ -30,7 +30,8 @@ namespace ergocast::cli {
 /// variables that only this user can read.
 inline constexpr int kPageSocket = 3;
 inline constexpr int kPageUntil = 4;    ///< a pipe that ends when the mission has ended
-inline constexpr int kPageControl = 5;  ///< of a page with control: its end of the ControlLink
+inline constexpr int kPageListens = 5;  ///< an eventfd that it writes to when it receives messages
+inline constexpr int kPageControl = 6;  ///< of a page with control: its end of the ControlLink
 inline constexpr const char* kPageToken = "ERGOCAST_PAGE_TOKEN";
 inline constexpr const char* kControlToken = "ERGOCAST_CONTROL_TOKEN";
 
@@ -57,6 +58,10 @@ class PageProcess {
 
   /// The address that a person opens. What follows # never leaves the browser.
   std::string url() const;
+  /// Waits until the process receives messages or has ended, or until `stop_fd` is readable. A page
+  /// that misses the first places cannot compute what the team has found. The mission does not wait
+  /// longer than 30 s.
+  void wait_until_it_listens(int stop_fd);
   /// Starts the process again if it has ended; call it often.
   void attend(Instant now);
   /// Writes a line to the page's log, log/run.log.
@@ -74,9 +79,10 @@ class PageProcess {
   PageSocket socket_;
   std::string control_token_;
   ProgressDisplay& display_;
-  std::shared_ptr<spdlog::logger> log_;                    // null: it cannot be opened
-  std::optional<Socket> until_;                            // the process's end of the pipe
-  std::optional<Socket> running_;                          // ours, as long as the mission runs
+  std::shared_ptr<spdlog::logger> log_;  // null: it cannot be opened
+  std::optional<Socket> until_;          // the process's end of the pipe
+  std::optional<Socket> running_;        // ours, as long as the mission runs
+  Socket listens_;
   std::optional<SealedFile> key_, certificate_, tls_key_;  // each new process inherits them
   Child::Program program_;
   std::optional<Child> child_;

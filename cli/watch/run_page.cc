@@ -2,6 +2,7 @@
 // `ergocast run-page`: `ergocast run --watch` and `ergocast watch --control` start it to serve
 // their page (cli/watch/page_process.h).
 #include <poll.h>
+#include <sys/eventfd.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -97,6 +98,7 @@ int run_page(const RunPageOptions& options) {
   }
   auto opened = LiveWatch::open(std::move(source));
   if (!opened) return report_error(kExitUnavailable, opened.error());
+  eventfd_write(kPageListens, 1);
   LiveWatch& watch = **opened;
   const rlimit former = limit_memory();
   auto control = page_control();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <iostream>
 #include <optional>
 
 #include "tests/process/support/mission.h"
@@ -47,8 +48,28 @@ class PageInABrowser : public RunningMission {
   std::string text(const std::string& id) {
     return js("return document.getElementById('" + id + "').textContent");
   }
+  /// What a live page knew when a test failed.
+  void describe_page() {
+    const auto state = js(
+        "const s = window.ergocast?.S; if (!s?.run) return document.body.innerText.slice(0, 300);"
+        "const { run, facts } = s, last = list => list[list.length - 1];"
+        "return { banner: document.getElementById('banner').textContent, rows: run.rows,"
+        "  stride: run.stride, end_s: run.end, counted_s: run.counted(run.end), holds: run.holds,"
+        "  recalled: [...run.recalledFrom], metric_t: last(run.metrics.t),"
+        "  metrics: run.metrics.t.length, found: run.metrics.found.length,"
+        "  last_found: last(run.metrics.found), curve: run.foundCurve.values.length,"
+        "  looks_done: run.foundCurve.detection.done, amendments: run.amendments,"
+        "  tracks: run.tracks.map(t => [t.id, t.first, t.last, t.hasGaps, String(t.member)]),"
+        "  world_tick: facts?.state?.world_tick, live: s.live }");
+    std::cerr << "the page at the end: " << state.dump() << "\n";
+    for (const std::string& error : browser_->errors())
+      std::cerr << "its console: " << error << "\n";
+  }
   void TearDown() override {
-    if (HasFailure()) screenshot("failed");
+    if (HasFailure()) {
+      screenshot("failed");
+      describe_page();
+    }
     browser_.reset();  // its processes are on this host, too
     RunningMission::TearDown();
   }

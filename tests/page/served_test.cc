@@ -140,6 +140,22 @@ TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {
   close_page_of(mission);
 }
 
+/// A browser closes a stream of events for good when its request is refused.
+TEST_F(PageInABrowser, ConnectsAgainAfterARefusal) {
+  browser_->run_first(
+      "window.streams = [];"
+      "window.EventSource = class extends EventSource {"
+      "  constructor(url) { super(streams.length ? url : 'no-such-page'); streams.push(this); } }");
+  Child mission =
+      launch_endless(scenario("pace: REALTIME"), {"--watch", "--port", "8819", "--lcm-url", kUrl});
+  browser_->open("http://127.0.0.1:8819/");
+  EXPECT_TRUE(browser_->becomes("return window.ergocast?.S.run?.end > 1"));
+  EXPECT_EQ(js("return streams.map(({ readyState }) => readyState)"), nlohmann::json({2, 1}));
+  EXPECT_TRUE(js("return document.getElementById('banner').hidden"));
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  close_page_of(mission);
+}
+
 // A φ² of the positions that arrived would be another one.
 TEST_F(PageInABrowser, ShowsWhatTheAgentsReportIfPositionsWereLost) {
   Child mission = launch_endless(scenario("pace: REALTIME realtime_factor: 10"),

@@ -112,6 +112,11 @@ json Browser::ask(const std::string& method, const std::string& path, const json
 
 void Browser::open(const std::string& url) { ask("POST", "/url", {{"url", url}}); }
 
+void Browser::run_first(const std::string& script) {
+  ask("POST", "/goog/cdp/execute",
+      {{"cmd", "Page.addScriptToEvaluateOnNewDocument"}, {"params", {{"source", script}}}});
+}
+
 void Browser::resize(int width, int height) {
   ask("POST", "/goog/cdp/execute",
       {{"cmd", "Emulation.setDeviceMetricsOverride"},

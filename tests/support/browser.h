@@ -23,6 +23,8 @@ class Browser {
   Browser& operator=(const Browser&) = delete;
 
   void open(const std::string& url);
+  /// Runs a script in each page that is opened from now on, before the page's own scripts.
+  void run_first(const std::string& script);
   void resize(int width, int height);
   /// What a script returns: "return document.title".
   nlohmann::json run(const std::string& script);

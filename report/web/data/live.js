@@ -8,6 +8,7 @@ import { $, element } from '../text.js';
 const MOST_LINES = 400,
   MOST_STATUSES = 20000,
   LATELY_MS = 10000,
+  AGAIN_MS = 1000,
   MOST_FOUND_MS = 20; // in a frame
 
 // Messages in the last two seconds of wall time, each second.
@@ -147,11 +148,12 @@ const toldBefore = past =>
 export function watchLive(page) {
   const rate = new Rate(),
     lateness = new Lateness(),
-    stream = new EventSource('events');
-  let run = null,
+    handlers = new Map(); // by the name of the event
+  let stream = null,
+    run = null,
     facts = null,
     over = false;
-  const on = (name, handle) => stream.addEventListener(name, event => handle(JSON.parse(event.data)));
+  const on = (name, handle) => handlers.set(name, event => handle(JSON.parse(event.data)));
   on('mission', message => {
     // also after a new connection, which repeats everything
     const before = run;
@@ -234,10 +236,18 @@ export function watchLive(page) {
   });
   on('control', message => page.controlled(message));
   on('notice', message => page.lost(message.text));
-  stream.onerror = () => {
-    if (!over) page.lost('No connection to ergocast watch; it is tried again.');
+  // After a refusal, such as 503, the browser itself does not try again.
+  const connect = () => {
+    stream = new EventSource('events');
+    for (const [name, handle] of handlers) stream.addEventListener(name, handle);
+    stream.onopen = () => page.lost('');
+    stream.onerror = () => {
+      if (over) return;
+      page.lost('No connection to ergocast watch; it is tried again.');
+      if (stream.readyState === EventSource.CLOSED) setTimeout(connect, AGAIN_MS);
+    };
   };
-  stream.onopen = () => page.lost('');
+  connect();
 }
 
 // The record, with what only the live page has heard.
