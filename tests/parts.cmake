@@ -245,7 +245,6 @@ ergocast_test(NAME scenario_tests LABELS unit
     scenario/map_walls_test.cc
     scenario/new_target_test.cc
     scenario/other_peoples_data_test.cc
-    scenario/other_peoples_drawings_test.cc
     scenario/plan_proto_test.cc
     scenario/scenario_to_plan_test.cc
     scenario/polygon_flaw_test.cc
@@ -316,13 +315,10 @@ ergocast_test(NAME layering_tests LABELS unit
 
 ergocast_test(NAME lab_tests LABELS lab OPTIMISED
   SOURCES
-    lab/charge_test.cc
-    lab/foresight_test.cc
     lab/invariants_home_test.cc
     lab/invariants_known_test.cc
     lab/invariants_test.cc
     lab/laboratory_test.cc
-    lab/large_team_test.cc
     lab/message_loss_test.cc
     lab/pause_test.cc
     lab/planned_targets_test.cc

@@ -20,9 +20,15 @@ if(TARGET ergocast_example_mujoco)
     LIBS ergocast_example_mujoco ergocast_lab ergocast::scenario)
 endif()
 
+ergocast_test(NAME drawing_tests LABELS unit
+  SOURCES scenario/other_peoples_drawings_test.cc
+  LIBS ergocast::scenario)
 ergocast_test(NAME long_lab_tests LABELS lab
   SOURCES
+    lab/charge_test.cc
+    lab/foresight_test.cc
     lab/judgement_test.cc
+    lab/large_team_test.cc
     lab/moved_scenario_test.cc
     studies/same_as_simulate_test.cc
     support/drawn_agreement.cc
