@@ -27,6 +27,7 @@ LAWS = {
     "laws/smc.py:FirstOrder": "SMC",
     "laws/smc.py:SecondOrder": "SMC2",
     "laws/hedac.py:Hedac": "HEDAC",
+    "laws/kernel.py:Kernel": "KERNEL",
     "laws/random_walk.py:RandomWalk": "WALK",
     "laws/random_walk.py:Waypoints": "WAYPOINTS",
 }

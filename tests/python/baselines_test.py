@@ -17,6 +17,7 @@ import ergocast
 LAWS = Path(sys.argv.pop())
 sys.path.insert(0, str(LAWS))
 import hedac  # noqa: E402
+import kernel  # noqa: E402
 import random_walk  # noqa: E402
 import smc  # noqa: E402
 import target  # noqa: E402
@@ -193,6 +194,49 @@ class Hedac(unittest.TestCase):
                 hedac.Field(mission_of(name))
 
 
+class Kernel(unittest.TestCase):
+    @staticmethod
+    def discrepancy(law, places_m):
+        """MMD² but for its first term, pair by pair."""
+        def k(a, b):
+            return np.exp(-sum((u - v) ** 2 for u, v in zip(a, b)) / (2 * law.width_m**2))
+        n = len(places_m)
+        target = sum(m * k(x, y) for x in places_m for m, y in zip(law.mass, law.cells_m))
+        return -2 / n * target + sum(k(x, y) for x in places_m for y in places_m) / n**2
+
+    def test_the_next_place_lowers_the_discrepancy_along_the_gradient(self):
+        self.addCleanup(setattr, kernel, "CELLS", kernel.CELLS)
+        kernel.CELLS = {2: 12, 3: 6}
+        for name in ("four_peaks", "box"):
+            mission = mission_of(name)
+            axes, size_m = mission.mu.ndim, np.asarray(mission.domain.size_m)[:mission.mu.ndim]
+            law = kernel.Kernel()
+            law.measure(mission, axes)
+            visited_m = np.random.default_rng(3).uniform(0, 1, (7, axes)) * size_m
+            law.visited_m = visited_m
+            for x_m in visited_m[-3:]:
+                # The derivative of the discrepancy with one more place there, by differences.
+                slope, n = np.zeros(axes), len(visited_m)
+                for i in range(axes):
+                    step = np.eye(axes)[i] * 0.5
+                    ends = [self.discrepancy(law, np.vstack([visited_m, x_m + s * step])) for s in (1, -1)]
+                    slope[i] = ends[0] - ends[1]
+                gradient = law.gradient(x_m[None])[0]
+                # The new place weighs 1/(n + 1); the mean of the visits then has n of n + 1 shares.
+                mean = law.pull(x_m[None], visited_m, np.full(n, 1 / n))[0]
+                descent = gradient + mean / (n + 1)
+                expected = -slope * (n + 1) * law.width_m**2 / 2
+                self.assertLess(np.abs(descent - expected).max(), 1e-4 * np.abs(expected).max() + 1e-12)
+
+    def test_agents_go_at_full_speed_to_what_is_missing(self):
+        mission = mission_of("one_peak")
+        law = kernel.Kernel()
+        wanted = law.wanted_mps(tick_of(mission, [[700, 900], [1000, 1200]], mission.mu))
+        self.assertTrue(np.allclose(np.linalg.norm(wanted, axis=1), 20))
+        self.assertGreater(wanted[0, 1], 19)   # north, to the peak at (700, 1200)
+        self.assertLess(wanted[1, 0], -19)     # west
+
+
 class RandomWalks(unittest.TestCase):
     def test_the_walk_spends_its_time_as_the_target_demands(self):
         """A long chain by next_goal() alone, without motion: its histogram is the density."""
@@ -242,7 +286,7 @@ class RandomWalks(unittest.TestCase):
 
 class Missions(unittest.TestCase):
     def test_every_law_runs_in_the_domains_that_it_allows_and_repeats(self):
-        everywhere = [smc.FirstOrder, smc.SecondOrder, random_walk.RandomWalk, random_walk.Waypoints]
+        everywhere = [smc.FirstOrder, smc.SecondOrder, kernel.Kernel, random_walk.RandomWalk, random_walk.Waypoints]
         for name in ("four_peaks", "rooms", "box"):
             laws = everywhere + ([hedac.Hedac] if name == "four_peaks" else [])
             for law in laws:
