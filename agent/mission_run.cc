@@ -71,6 +71,7 @@ void MissionRun::note_roster(const Participant& me) {
   has_known_ends_ = has_known_ends_ || !ends_.is_plans();
   shift_.note(known.amendments());
   if (shift_.any_of_samples()) exchange_.allow_shifts();
+  if (search_) search_->note(known.amendments());
   motion_.note_zones(known.amendments().zones, me.mission());
   motion_.note_roster(known.roster());
   if (!known.holds().empty()) held_roster_ = in_counted_ticks(known.roster(), known.holds());

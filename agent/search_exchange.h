@@ -13,6 +13,7 @@
 
 #include "agent/agent_step.h"
 #include "core/base/ids.h"
+#include "core/mission/amendments.h"
 #include "core/mission/mission.h"
 #include "core/mission/roster.h"
 #include "core/search/efforts.h"
@@ -28,6 +29,8 @@ class SearchExchange {
   SearchExchange(const Mission& mission, const RosterEntry& self);
 
   const Efforts& efforts() const { return efforts_; }
+  /// Takes in the newest list, of which sightings and dismissals count.
+  void note(const Amendments& list) { efforts_.note(list.notes, list.holds); }
 
   /// The counted tick of `step` has come. The agent looks and notes what its sensor reports, if it
   /// covers, and sends what is due.

@@ -99,6 +99,8 @@ bool Amending::may_name(const Amend& amend, const TickWatch& ticks) const {
   if (amend.kind == AmendmentKind::kEnd)
     return list_.ends.size() < kMaxEnds && amend.delay_ticks == 0;
   if (amend.kind == AmendmentKind::kReopen) return amend.delay_ticks == 0;
+  if (amend.kind == AmendmentKind::kDismiss)
+    return list_.notes.size() < kMaxSearchNotes && amend.delay_ticks == 0;
   return true;
 }
 
@@ -172,9 +174,15 @@ std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Missio
     if (!content) return std::nullopt;
   }
   if (wish.kind == AmendmentKind::kTarget) {
-    auto target = decode_target(*content, mission);
+    const std::size_t target_size = std::min(content->size(), target_bytes(mission));
+    auto target = decode_target(std::span(*content).first(target_size), mission);
     if (!target) return std::nullopt;
     wish.target = *std::move(target);
+    if (content->size() > target_size) {
+      wish.note = decode_search_note(std::span(*content).subspan(target_size), mission);
+      if (!wish.note || !wish.note->is_sighting() || list_.notes.size() >= kMaxSearchNotes)
+        return std::nullopt;
+    }
   }
   if (wish.kind == AmendmentKind::kEnd) {
     const auto tick_count = decode_end(*content, mission);
@@ -190,6 +198,10 @@ std::optional<Amending::Wish> Amending::wish_of(const Amend& amend, const Missio
     const auto number = decode_reopening(*content);
     if (!number) return std::nullopt;
     wish.number = *number;
+  }
+  if (wish.kind == AmendmentKind::kDismiss) {
+    wish.note = decode_search_note(*content, mission);
+    if (!wish.note || wish.note->is_sighting()) return std::nullopt;
   }
   if (wish.kind == AmendmentKind::kZone) {
     const auto& [refused, since] = refused_zone_;
@@ -296,9 +308,12 @@ void Amending::list_wish(Tick now, Tick tick, Wish wish) {
   const Tick delay = wish.delay_ticks;
   switch (wish.kind) {
     case AmendmentKind::kTarget:
-      return waits(list_.targets, tick + delay)
-                 ? replace_target(list_, std::move(wish.target))
-                 : name_target(list_, tick + delay, std::move(wish.target));
+      waits(list_.targets, tick + delay) ? replace_target(list_, std::move(wish.target))
+                                         : name_target(list_, tick + delay, std::move(wish.target));
+      if (wish.note) note_sighting(list_, *wish.note);
+      return;
+    case AmendmentKind::kDismiss:
+      return name_dismissal(list_, tick, *wish.note);
     case AmendmentKind::kLaw:
       return waits(list_.laws, tick + delay) ? replace_law(list_, std::move(wish.law))
                                              : name_law(list_, tick + delay, std::move(wish.law));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Names the amendments of the mission: pauses, new targets, other ends, zones and their
-// cancellation, and other laws, each with the tick from which it holds (core/mission/amendments.h).
+// cancellation, other laws, sightings and dismissed contacts, each with the tick from which it
+// holds (core/mission/amendments.h).
 //
 // All agents must change at the same tick. In lockstep the world first stands by: it stays at a
 // tick until it knows which one is named. In real time the team gets notice.
@@ -72,12 +73,13 @@ class Amending {
   struct Wish {
     AmendmentKind kind = AmendmentKind::kPause;
     Tick delay_ticks = 0;
-    TargetChange target{};    // of kTarget
-    Tick tick_count = 0;      // of kEnd; 0: as soon as possible
-    Zone zone{};              // of kZone
-    LawChange law{};          // of kLaw
-    std::int32_t number = 0;  // of kReopen: the zone's
-    std::string by{};         // its operator
+    TargetChange target{};             // of kTarget
+    Tick tick_count = 0;               // of kEnd; 0: as soon as possible
+    Zone zone{};                       // of kZone
+    LawChange law{};                   // of kLaw
+    std::int32_t number = 0;           // of kReopen: the zone's
+    std::optional<SearchNote> note{};  // of kDismiss, and of kTarget if it is a sighting
+    std::string by{};                  // its operator
     Incarnation ordered_by = 0;
   };
   /// The parts of one AMEND that have arrived.

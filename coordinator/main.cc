@@ -113,6 +113,9 @@ class MissionLog {
       } else if (one.kind == AmendmentKind::kReopen) {
         spdlog::info("the zone of amendment {} is cancelled: it ends at tick {} (amendment {})",
                      one.hash, one.from, named_text(one));
+      } else if (const SearchNote* note = note_of(one, coordinator.amendments().notes)) {
+        spdlog::info("{} from tick {} on (amendment {})", to_text(*note), one.from,
+                     named_text(one));
       } else {
         spdlog::info("mission {} from tick {} on (amendment {})", effect_of(one.kind), one.from,
                      named_text(one));
@@ -132,6 +135,12 @@ class MissionLog {
         to_hex(amendment.hash), zone->closed, zone->from, zone->end(), named_text(amendment));
   }
 
+  /// Null if the amendment is no sighting and no dismissal.
+  static const SearchNote* note_of(const Amendment& one, std::span<const SearchNote> notes) {
+    const auto note = std::ranges::find(notes, one.number, &SearchNote::number);
+    return note == notes.end() ? nullptr : &*note;
+  }
+
   /// "3, by anna@base"
   static std::string named_text(const Amendment& amendment) {
     return std::to_string(amendment.number) + (amendment.by.empty() ? "" : ", by " + amendment.by);
@@ -139,8 +148,9 @@ class MissionLog {
 
   MissionState state_ = MissionState::kWaiting;
   static const char* effect_of(AmendmentKind kind) {
-    constexpr const char* kEffects[] = {"is paused",       "counts", "has another target",
-                                        "has another end", "",       "has another law"};
+    constexpr const char* kEffects[] = {
+        "is paused",       "counts", "has another target", "has another end", "",
+        "has another law", "",       "forgets a contact"};
     return kEffects[static_cast<int>(kind)];
   }
 

@@ -94,6 +94,7 @@ void IdealTeam::note(const Amendments& list) {
   shift_.note(list);
   law_changes_ = list.laws;
   targets_ = list.targets;
+  if (efforts_) efforts_->note(list.notes, list.holds);
   if (shift_.any_of_samples()) table_.allow_shifts();
 }
 

@@ -301,6 +301,7 @@ class Invariants {
   void check_end_by_finding(double t_s, Tick excused);
   void note_looks(const Effort& own);
   void check_looks(double t_s, const TableView& holder);
+  std::string remembered(const TableView& holder) const;
   bool all_states_count(Tick excused) const;
   void check_home(double t_s, const WorldState& world);
   bool counts_for_home(AgentId id) const;

@@ -32,10 +32,20 @@ class SimulatedOperator {
     if (paused_until_ && *paused_until_ <= now) paused_until_.reset();
   }
   /// Wants the team to cover another target. It then wants no earlier one any more.
-  void want_target(const TargetChange& target, Tick delay = 0) {
+  /// @param sighting  from which the target follows
+  void want_target(const TargetChange& target, Tick delay = 0,
+                   const std::optional<SearchNote>& sighting = {}) {
     target_hash_ = target_hash(target);
     target_ = encode_target(target);
     target_delay_ = delay;
+    if (!sighting) return;
+    const auto place = encode_search_note(*sighting);
+    target_.insert(target_.end(), place.begin(), place.end());
+  }
+  /// Wants a contact to be dismissed. The coordinator may refuse it; then it gives up.
+  void want_dismissal(const SearchNote& note) {
+    dismissal_ = note;
+    dismissal_sent_ = 0;
   }
   /// Wants the mission to have another end. The coordinator may refuse it; then it gives up.
   void want_end(Tick tick_count) {
@@ -68,7 +78,7 @@ class SimulatedOperator {
   /// Whether it has wanted nothing yet, and wants nothing now.
   bool idle() const {
     return messages_ == 0 && !paused_until_ && recalls_.empty() && target_.empty() && !end_ &&
-           zone_.empty() && !cancelled_zone_ && law_.empty();
+           zone_.empty() && !cancelled_zone_ && law_.empty() && !dismissal_;
   }
   /// The parts of the target that it sends now. It repeats them until the coordinator has named it.
   std::vector<Amend> targets(Instant now, RunId run, const Coordinator& coordinator) {
@@ -127,6 +137,22 @@ class SimulatedOperator {
                  .number = list.named,
                  .kind = AmendmentKind::kReopen,
                  .content = encode_reopening(*cancelled_zone_)};
+  }
+
+  /// What it sends now to dismiss a contact: some times, until the coordinator has named it.
+  std::optional<Amend> dismissal(Instant now, RunId run, const Coordinator& coordinator) {
+    if (!dismissal_ || now < next_dismissal_) return {};
+    const Amendments& list = coordinator.amendments();
+    const bool named = newest_hash(AmendmentKind::kDismiss, list) == search_note_hash(*dismissal_);
+    if (++dismissal_sent_ > kMostEndsSent || named) {
+      dismissal_.reset();
+      return {};
+    }
+    next_dismissal_ = now + kPeriod;
+    return Amend{.header = {run, kOperator, 5, ++messages_, coordinator.tick()},
+                 .number = list.named,
+                 .kind = AmendmentKind::kDismiss,
+                 .content = encode_search_note(*dismissal_)};
   }
 
   /// The law that it sends now. It repeats it until the coordinator has named it.
@@ -213,6 +239,9 @@ class SimulatedOperator {
   Instant zone_wanted_, next_zone_;
   std::optional<std::int32_t> cancelled_zone_;  // that it wants to end
   Instant next_cancel_;
+  std::optional<SearchNote> dismissal_;  // that it wants
+  int dismissal_sent_ = 0;
+  Instant next_dismissal_;
   std::vector<std::byte> law_;  // that it wants
   std::uint64_t law_hash_ = 0;
   Tick law_delay_ = 0;

@@ -166,6 +166,7 @@ class Simulation {
   bool takes_orders() const;
   void want_zone(std::uint64_t word);
   void want_cancel(std::uint64_t word);
+  void want_target(std::uint64_t word);
   Tick drawn_delay(std::uint64_t word) const;
   TargetChange drawn_target(std::uint64_t word) const;
   Tick drawn_end(std::uint64_t word) const;

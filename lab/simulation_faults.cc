@@ -77,7 +77,7 @@ void Simulation::begin(const FaultEvent& event) {
       return;
     case kTarget:
       ++counts_.targets;
-      operator_.want_target(drawn_target(event.who), drawn_delay(event.who));
+      want_target(event.who);
       return;
     case kEnd:
       ++counts_.ends;
@@ -147,6 +147,23 @@ TargetChange Simulation::drawn_target(std::uint64_t word) const {
   return change;
 }
 
+/// A target. A team that searches gets it, as often as not, with a sighting, or a contact is
+/// dismissed in its place.
+void Simulation::want_target(std::uint64_t word) {
+  RandomStream random(word, 2);
+  std::optional<SearchNote> note;
+  if (mission_.law.kind == LawKind::kSearch && random.coin()) {
+    const Box& domain = mission_.domain;
+    note.emplace();
+    for (int axis = 0; axis < 2; ++axis)
+      note->x_m[axis] = domain.origin_m[axis] + random.uniform() * domain.size_m[axis];
+    if (mission_.sensor.has_false_alarms() && random.coin()) return operator_.want_dismissal(*note);
+    note->sigma_m = (0.02 + 0.2 * random.uniform()) * domain.shortest_side_m();
+    note->share = 0.1 + 0.8 * random.uniform();
+  }
+  operator_.want_target(drawn_target(word), drawn_delay(word), note);
+}
+
 /// An end between four fifths and six fifths of the plan's time.
 Tick Simulation::drawn_end(std::uint64_t word) const {
   const auto planned = static_cast<double>(mission_.timing.tick_count);
@@ -177,7 +194,8 @@ bool Simulation::takes_orders() const {
 /// is one.
 void Simulation::want_cancel(std::uint64_t word) {
   if (!takes_orders()) return;
-  const auto& [named, recent, holds, targets, ends, zones, laws] = coordinator().amendments();
+  const auto& [named, recent, holds, targets, ends, zones, laws, notes] =
+      coordinator().amendments();
   const auto before = [](const auto& changes, auto plans) {
     return changes.size() > 1 ? changes[changes.size() - 2] : plans;
   };
@@ -245,6 +263,8 @@ void Simulation::send_to_coordinator() {
     deliver(node, part, by_operator);
   if (const auto cancel = operator_.cancelled_zone(now_, run_, coordinator()))
     deliver(node, *cancel, by_operator);
+  if (const auto dismissal = operator_.dismissal(now_, run_, coordinator()))
+    deliver(node, *dismissal, by_operator);
   for (const Amend& part : operator_.laws(now_, run_, coordinator()))
     deliver(node, part, by_operator);
   // The operator repeats it; only the first one has an effect.

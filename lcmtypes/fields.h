@@ -206,7 +206,7 @@ struct Fields<Amend> {
   static void list(auto& io, auto& m) {
     io.bytes(m.signature);
     io.within(m.number, 0, kMaxAmendments);
-    io.enumerator(m.kind, AmendmentKind::kReopen);
+    io.enumerator(m.kind, AmendmentKind::kDismiss);
     io.count(m.delay_ticks);
     io.within(m.part, 0, kMaxAmendParts - 1);
     io.within(m.parts, 1, kMaxAmendParts);
@@ -283,7 +283,16 @@ struct Fields<RecordAck> {
       io.within(find.object, 0, kMaxObjects - 1);
       io.within(find.agent, 0, kMaxAgents - 1);
       io.count(find.tick);
-      io.vector(find.x_m);
+      io.finite(find.x_m.x());
+      io.finite(find.x_m.y());
+    }
+    for (auto& contact : io.length(m.contacts, m.contact_count)) {
+      io.within(contact.cell, 0, kMaxSearchCells - 1);
+      io.within(contact.reports, 0, std::numeric_limits<std::int32_t>::max());
+      io.count(contact.newest);
+      io.quantity(contact.probability);
+      io.holds(contact.probability <= 1);
+      io.flag(contact.confirmed);
     }
   }
 };

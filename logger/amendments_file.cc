@@ -45,6 +45,14 @@ Json without_numbers(const ReceivedAmendment& one, double dt_s) {
     json["until_tick"] = one.zone->until;
     if (one.zone->cancelled >= 0) json["cancelled_tick"] = one.zone->cancelled;
   }
+  if (one.note) {
+    json["x_m"] = one.note->x_m.x();
+    json["y_m"] = one.note->x_m.y();
+    if (one.note->is_sighting()) {
+      json["sigma_m"] = one.note->sigma_m;
+      json["share"] = one.note->share;
+    }
+  }
   if (!amendment.by.empty()) json["by"] = amendment.by;
   if (one.is_void) json["void"] = true;
   return json;
@@ -92,9 +100,10 @@ std::optional<std::int64_t> count_in(const Json& object, const char* key, std::i
 }
 
 std::optional<AmendmentKind> kind_in(const Json& object) {
-  constexpr std::array kKinds{AmendmentKind::kPause, AmendmentKind::kResume, AmendmentKind::kTarget,
-                              AmendmentKind::kEnd,   AmendmentKind::kZone,   AmendmentKind::kLaw,
-                              AmendmentKind::kReopen};
+  constexpr std::array kKinds{AmendmentKind::kPause,  AmendmentKind::kResume,
+                              AmendmentKind::kTarget, AmendmentKind::kEnd,
+                              AmendmentKind::kZone,   AmendmentKind::kLaw,
+                              AmendmentKind::kReopen, AmendmentKind::kDismiss};
   const Json& name = value_in(object, "kind");
   const auto found =
       std::ranges::find_if(kKinds, [&](AmendmentKind kind) { return name == to_string(kind); });
@@ -193,7 +202,27 @@ Result<LawChange> law_in(const Json& entry, const Amendment& amendment, const Mi
   return change;
 }
 
-/// Takes in the content of an entry other than a target, if it is there.
+/// The sighting or dismissal of an entry that has its place.
+Result<SearchNote> note_in(const Json& entry, const Amendment& amendment, const Mission& mission) {
+  SearchNote note{amendment.number, amendment.from};
+  const auto bad = [] {
+    return failure("its place is none of the mission of " + std::string(kPlanFile));
+  };
+  for (const auto& [key, number] :
+       {std::pair("x_m", &note.x_m.x()), std::pair("y_m", &note.x_m.y()),
+        std::pair("sigma_m", &note.sigma_m), std::pair("share", &note.share)}) {
+    const Json& value = value_in(entry, key);
+    if (!value.is_number() && !value.is_null()) return bad();
+    if (value.is_number()) *number = value.get<double>();
+  }
+  const bool is_sighting = amendment.kind == AmendmentKind::kTarget;
+  if (note.is_sighting() != is_sighting || !is_search_note(note, mission)) return bad();
+  if (!is_sighting && search_note_hash(note) != amendment.hash)
+    return failure("its place has another hash");
+  return note;
+}
+
+/// Takes in the content of an entry, if it is there.
 std::optional<std::string> read_content(const Json& entry, const Mission& mission,
                                         ReceivedAmendment& one) {
   if (one.amendment.kind == AmendmentKind::kZone && entry.contains("corners_m")) {
@@ -205,6 +234,13 @@ std::optional<std::string> read_content(const Json& entry, const Mission& missio
     auto law = law_in(entry, one.amendment, mission);
     if (!law) return law.error();
     one.law = *std::move(law);
+  }
+  const bool has_place =
+      one.amendment.kind == AmendmentKind::kTarget || one.amendment.kind == AmendmentKind::kDismiss;
+  if (has_place && entry.contains("x_m")) {
+    const auto note = note_in(entry, one.amendment, mission);
+    if (!note) return note.error();
+    one.note = *note;
   }
   if (one.amendment.kind == AmendmentKind::kTarget && entry.contains("target")) {
     auto target = target_in(entry, one.amendment, mission);
@@ -357,7 +393,8 @@ std::optional<std::string> missing_target(const std::filesystem::path& run_dir, 
   if (!names_targets || std::filesystem::exists(run_dir / kAmendmentsFile, ignored))
     return std::nullopt;
   return std::string(kAmendmentsFile) +
-         " is missing, which has the targets, zones and laws that its summary names; copy it from "
+         " is missing, which has the targets, zones, laws and contacts that its summary names; "
+         "copy it from "
          "where the run was recorded";
 }
 

@@ -60,7 +60,18 @@ void ReceivedAmendments::note(const Amendments& list) {
     auto& known = add({change.number, AmendmentKind::kLaw, change.from, law_hash(change)}).law;
     if (!known) known = change;
   }
+  for (const SearchNote& note : list.notes) take_in(note);
   note_cancelled(list);
+}
+
+/// A sighting belongs to the target of its number.
+void ReceivedAmendments::take_in(const SearchNote& note) {
+  if (!note.is_sighting()) {
+    add({note.number, AmendmentKind::kDismiss, note.from, search_note_hash(note)}).note = note;
+    return;
+  }
+  for (ReceivedAmendment& one : all_)
+    if (one.amendment.number == note.number && !one.is_void) one.note = note;
 }
 
 /// Notes which zones are cancelled. An amendment that is void cancels nothing.
@@ -107,6 +118,19 @@ std::vector<EndChange> ReceivedAmendments::ends() const {
   return ends;
 }
 
+std::vector<SearchNote> ReceivedAmendments::notes() const {
+  std::vector<SearchNote> notes;
+  for (const ReceivedAmendment& one : all_) {
+    if (one.is_void) continue;
+    if (one.amendment.kind == AmendmentKind::kTarget)
+      std::erase_if(notes, [&one](const SearchNote& note) {
+        return note.is_sighting() && note.from == one.amendment.from;
+      });
+    if (one.note) notes.push_back(*one.note);
+  }
+  return notes;
+}
+
 const ReceivedAmendment* ReceivedAmendments::target_at(Tick tick) const {
   const auto holds = [tick](const ReceivedAmendment& one) {
     return one.target && !one.is_void && one.amendment.from <= tick;
@@ -120,7 +144,8 @@ const ReceivedAmendment* ReceivedAmendments::unknown_content() const {
     const bool lacks_target = one.amendment.kind == AmendmentKind::kTarget && !one.target;
     const bool lacks_zone = one.amendment.kind == AmendmentKind::kZone && !one.zone;
     const bool lacks_law = one.amendment.kind == AmendmentKind::kLaw && !one.law;
-    return (lacks_target || lacks_zone || lacks_law) && !one.is_void;
+    const bool lacks_note = one.amendment.kind == AmendmentKind::kDismiss && !one.note;
+    return (lacks_target || lacks_zone || lacks_law || lacks_note) && !one.is_void;
   });
   return found == all_.end() ? nullptr : &*found;
 }
@@ -129,6 +154,7 @@ Amendments ReceivedAmendments::list() const {
   Amendments list;
   list.holds = holds_;
   list.ends = ends();
+  list.notes = notes();
   for (const ReceivedAmendment& one : all_) {
     if (one.is_void) continue;
     list.named = one.amendment.number + 1;

@@ -23,6 +23,9 @@ struct ReceivedAmendment {
   std::optional<Zone> zone{};
   /// kLaw: its numbers; nothing if no list that was received has them.
   std::optional<LawChange> law{};
+  /// kDismiss, and kTarget if it follows from a sighting; nothing if no list that was received has
+  /// it.
+  std::optional<SearchNote> note{};
   /// Whether a later list lacks it: its coordinator stopped before another process knew of it.
   bool is_void = false;
 
@@ -51,16 +54,21 @@ class ReceivedAmendments {
   const std::vector<Hold>& holds() const { return holds_; }
   /// The ends that are not void.
   std::vector<EndChange> ends() const;
+  /// Sightings and dismissals that are not void. A sighting whose target was replaced before it
+  /// held is not among them.
+  std::vector<SearchNote> notes() const;
   /// The target that holds at a tick of the world; null: the plan's. Its numbers are there.
   const ReceivedAmendment* target_at(Tick tick) const;
-  /// The first that is not void and whose target, zone or law was not received; null: there is
-  /// none.
+  /// The first that is not void and whose target, zone, law or contact was not received; null:
+  /// there is none.
   const ReceivedAmendment* unknown_content() const;
-  /// Those that are not void as one list, with all targets, zones and laws that were received.
+  /// Those that are not void as one list, with all targets, zones, laws and notes that were
+  /// received.
   Amendments list() const;
 
  private:
   void compare(const Amendments& list);
+  void take_in(const SearchNote& note);
   void note_cancelled(const Amendments& list);
   ReceivedAmendment& add(const Amendment& amendment);
 

@@ -236,6 +236,7 @@ void RecordTables::begin_row(const Context& context) {
   const std::optional<Amendment> present =
       facts_.targets.empty() ? std::nullopt : facts_.targets.back().amendment;
   if (wanted != present) begin_target(context, change);
+  confirmations_.note(context.known.amendments.notes(), context.known.follower.holds());
 }
 
 /// @param change  null: the plan's target, because the change that held is void

@@ -134,6 +134,7 @@ class RecordTables {
   RunFacts& facts() { return facts_; }
   /// How likely the rows so far have found an object of the newest target.
   double detection_probability() const { return measures_.detection().probability(); }
+  std::vector<Contact> contacts() const { return confirmations_.contacts(); }
   /// What the team has achieved so far; costs a pass over all cells. @pre begun()
   TeamFigures team_figures() const { return measures_.figures(); }
 

@@ -30,6 +30,8 @@ constexpr auto kLeadTicks = static_cast<Tick>(kMaxWaitingStates);
 constexpr auto kRepeatPatience = 500ms;
 /// How long after the end, or the last row, a missing state or an agent's last status may arrive.
 constexpr auto kLinger = 1s;
+/// How often contacts are listed anew.
+constexpr double kContactsPeriod_s = 1;
 
 }  // namespace
 
@@ -160,11 +162,33 @@ void Recorder::write_rows(Instant now) {
   }
 }
 
-RecordAck Recorder::record_ack(bool last) const {
+std::vector<Contact> Recorder::contacts() const {
+  std::vector<Contact> all = tables_.contacts();
+  for (Contact& one : all) one.t_s = static_cast<double>(one.newest) * mission().timing.dt_s;
+  return all;
+}
+
+/// Contacts are listed anew once a second of the mission, because that costs a renewal.
+bool Recorder::contacts_are_old() const {
+  const double dt_s = mission().timing.dt_s;
+  return !contacts_at_ ||
+         static_cast<double>(row_.tick - *contacts_at_) * dt_s >= kContactsPeriod_s;
+}
+
+RecordAck Recorder::record_ack(bool last) {
+  if (me_.knows_mission() && mission().sensor.has_false_alarms() && contacts_are_old()) {
+    contacts_ = tables_.contacts();
+    contacts_at_ = row_.tick;
+  }
   RecordAck ack{{}, last, tables_.detection_probability()};
   ack.wrong_confirmations = tables_.facts().wrong_confirmations.value_or(0);
   for (const Find& find : tables_.facts().finds.list())
     ack.finds[static_cast<std::size_t>(ack.find_count++)] = find;
+  const std::int32_t room = ack.contact_room();
+  for (const Contact& contact : contacts_) {
+    if (ack.contact_count >= room) break;
+    ack.contacts[static_cast<std::size_t>(ack.contact_count++)] = contact;
+  }
   return ack;
 }
 

@@ -78,6 +78,8 @@ class Recorder {
   std::optional<TeamFigures> team_figures() const {
     return tables_.begun() ? std::optional(tables_.team_figures()) : std::nullopt;
   }
+  /// With false alarms: Confirmations::contacts(), with their times.
+  std::vector<Contact> contacts() const;
   /// All amendments of the mission that this recorder or a former one has received.
   const ReceivedAmendments& amendments() const { return amendments_; }
   /// The newest status of each incarnation that Liveness holds, with the worst loop lag of all its
@@ -113,7 +115,8 @@ class Recorder {
   void begin();
   void write_rows(Instant now);
   void acknowledge(Instant now, Outbox& out);
-  RecordAck record_ack(bool last) const;
+  bool contacts_are_old() const;
+  RecordAck record_ack(bool last);
   bool write_next_row(Instant now);
   bool awaits_mission(const TickState& state, Instant now);
   MissionKnowledge known() const { return {follower(), reports_, amendments_}; }
@@ -147,6 +150,8 @@ class Recorder {
   Ending ending_;
   std::optional<RunData> former_rows_;  // of a former process, until the mission is known
   bool resumed_ = false;                // whether there was one
+  std::vector<Contact> contacts_;       // with false alarms, as RECORD_ACK lists them, …
+  std::optional<Tick> contacts_at_;     // … by what was recorded before that row
 };
 
 }  // namespace ergocast

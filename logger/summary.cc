@@ -257,6 +257,20 @@ void add_team(const Recorder& recorder, const Mission& mission, Json& summary) {
   summary["path_m"] = number(team->path_m);
 }
 
+/// With false alarms: what is confirmed, and what may still be an object.
+void add_contacts(const Recorder& recorder, Json& summary) {
+  Json list = Json::array();
+  for (const Contact& contact : recorder.contacts()) {
+    list.push_back({{"x_m", contact.x_m.x()},
+                    {"y_m", contact.x_m.y()},
+                    {"probability", contact.probability},
+                    {"reports", contact.reports},
+                    {"t_s", contact.t_s},
+                    {"confirmed", contact.confirmed}});
+  }
+  summary["contacts"] = std::move(list);
+}
+
 /// Which of the mission's objects the team has found, in the order of the finds.
 void add_objects(const RunFacts& facts, Json& summary) {
   if (facts.wrong_confirmations) summary["wrong_confirmations"] = *facts.wrong_confirmations;
@@ -331,6 +345,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   add_ticks(recorder, summary);
   add_metric(facts, mission, summary);
   if (mission) add_team(recorder, *mission, summary);
+  if (facts.wrong_confirmations) add_contacts(recorder, summary);
   add_objects(facts, summary);
   if (mission) summary["conventions"] = conventions(mission->basis);
   add_wall_time(facts, context, summary);

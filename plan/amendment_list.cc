@@ -81,6 +81,13 @@ void place_fields(auto& io, auto& zone) {
   });
 }
 
+constexpr auto kNote = [](auto& io, auto& note) {
+  io.value(note.x_m.x());
+  io.value(note.x_m.y());
+  io.value(note.sigma_m);
+  io.value(note.share);
+};
+
 constexpr auto kLawNumbers = [](auto& io, auto& numbers) {
   io.value(numbers.u_max_mps);
   io.value(numbers.noise_intensity);
@@ -126,10 +133,15 @@ void list_fields(auto& io, auto& amendments) {
     wire.value(change.from);
     wire.list(change.kinds, kLawNumbers);
   });
+  io.list(amendments.notes, [](auto& wire, auto& note) {
+    wire.value(note.number);
+    wire.value(note.from);
+    kNote(wire, note);
+  });
 }
 
 bool is_kind(const Amendment& amendment) {
-  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kReopen;
+  return amendment.kind >= AmendmentKind::kPause && amendment.kind <= AmendmentKind::kDismiss;
 }
 
 }  // namespace
@@ -214,6 +226,21 @@ std::optional<TargetChange> decode_target(std::span<const std::byte> bytes,
   return change;
 } catch (...) {
   return std::nullopt;  // memory is missing
+}
+
+std::vector<std::byte> encode_search_note(const SearchNote& note) {
+  ListWriter writer;
+  kNote(writer, note);
+  return writer.take();
+}
+
+std::optional<SearchNote> decode_search_note(std::span<const std::byte> bytes,
+                                             const Mission& mission) noexcept {
+  SearchNote note;
+  ListReader reader(bytes);
+  kNote(reader, note);
+  if (!reader.complete() || !is_search_note(note, mission)) return std::nullopt;
+  return note;
 }
 
 std::vector<std::byte> encode_law(const LawChange& change) {

@@ -39,6 +39,13 @@ std::vector<std::byte> encode_target(const TargetChange& change);
 std::optional<TargetChange> decode_target(std::span<const std::byte> bytes,
                                           const Mission& mission) noexcept;
 
+/// A sighting or dismissal as AMEND carries it: place, σ and share. A sighting follows its target.
+std::vector<std::byte> encode_search_note(const SearchNote& note);
+/// The note of these bytes, without number and tick; nothing if `mission` cannot have it
+/// (is_search_note()).
+std::optional<SearchNote> decode_search_note(std::span<const std::byte> bytes,
+                                             const Mission& mission) noexcept;
+
 /// A law as AMEND carries it: the numbers of each kind.
 std::vector<std::byte> encode_law(const LawChange& change);
 /// The law of these bytes, without number and tick; nothing if `mission` cannot have it (is_law()).

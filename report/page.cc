@@ -75,6 +75,7 @@ void add_amendments(const ReceivedAmendments& heard, const Mission& mission, Jso
   std::vector<Amendment> list;
   std::vector<Zone> zones;
   std::vector<LawChange> laws;
+  std::vector<SearchNote> notes;
   Json targets = Json::object();
   for (const ReceivedAmendment& one : heard.all()) {
     if (one.is_void) continue;
@@ -82,8 +83,9 @@ void add_amendments(const ReceivedAmendments& heard, const Mission& mission, Jso
     if (one.target) targets[page_target_name(one.amendment.hash)] = page_target(*one.target);
     if (one.zone) zones.push_back(*one.zone);
     if (one.law) laws.push_back(*one.law);
+    if (one.note) notes.push_back(*one.note);
   }
-  record["amendments"] = page_amendments(list, laws, mission);
+  record["amendments"] = page_amendments(list, laws, notes, mission);
   record["targets"] = std::move(targets);
   if (!zones.empty()) record["zones"] = page_zones(zones, mission.domain);
 }

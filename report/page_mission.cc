@@ -189,7 +189,7 @@ Json page_mission(const Mission& flown, const Field& density) {
 }
 
 Json page_amendments(std::span<const Amendment> list, std::span<const LawChange> laws,
-                     const Mission& mission) {
+                     std::span<const SearchNote> notes, const Mission& mission) {
   Json json = Json::array();
   for (const Amendment& one : list) {
     Json entry = {{"number", one.number}, {"kind", to_string(one.kind)}, {"from", one.from}};
@@ -198,6 +198,8 @@ Json page_amendments(std::span<const Amendment> list, std::span<const LawChange>
     if (one.kind == AmendmentKind::kReopen) entry["zone"] = one.hash;
     const auto law = std::ranges::find(laws, one.number, &LawChange::number);
     if (law != laws.end()) entry["law"] = law_text(*law, mission);
+    const auto note = std::ranges::find(notes, one.number, &SearchNote::number);
+    if (note != notes.end()) entry["text"] = to_text(*note);
     if (!one.by.empty()) entry["by"] = one.by;
     json.push_back(std::move(entry));
   }

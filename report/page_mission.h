@@ -29,10 +29,13 @@ namespace ergocast {
 nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
 
 /// [{"number", "kind": "target", "from": the world's tick, "hash": of the target, in hexadecimal,
-/// "by": its operator}, …]; of an end "tick_count", of a law "law", law_text().
-/// @param laws  of these amendments, those that are known
+/// "by": its operator}, …]; of an end "tick_count", of a law "law", law_text(); of a
+/// sighting or dismissal "text", to_text().
+/// @param laws   of these amendments, those that are known
+/// @param notes  likewise
 nlohmann::ordered_json page_amendments(std::span<const Amendment> list,
-                                       std::span<const LawChange> laws, const Mission& mission);
+                                       std::span<const LawChange> laws,
+                                       std::span<const SearchNote> notes, const Mission& mission);
 /// [{"number", "closed", "from", "until": the world's ticks, "corners_m": from the domain's corner,
 /// in a box also "heights_m"}, …]
 nlohmann::ordered_json page_zones(std::span<const Zone> zones, const Box& domain);

@@ -110,6 +110,15 @@ Result<Scenario, Problems> Scenario::load_target(const std::filesystem::path& fi
   return compile(written);
 }
 
+Result<Scenario, Problems> Scenario::parse_target(std::string_view text,
+                                                  const std::string& running) {
+  Written written{{}, "the new target", Findings("the new target"), proto::Scenario()};
+  Findings misread("the running mission");
+  if (!read_text(running, *written.running, misread)) return failure(misread.take());
+  if (!read_text(text, written.text, written.findings)) return failure(written.findings.take());
+  return compile(written);
+}
+
 Result<Scenario, Problems> Scenario::compile(Written& written) {
   auto& [scenario, file, findings, running] = written;
   std::vector<std::filesystem::path> by_whole_path;

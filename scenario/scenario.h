@@ -41,6 +41,10 @@ class Scenario {
                                                             const Overrides& overrides,
                                                             const std::string& running);
 
+  /// The same for the text of a target, in which nothing names a file.
+  static Result<Scenario, std::vector<Problem>> parse_target(std::string_view text,
+                                                             const std::string& running);
+
   /// The same with another seed and new random starts: the result of load() with that seed.
   Scenario with_seed(std::uint64_t seed) const;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -18,6 +19,7 @@
 #include "core/mission/amendments.h"
 #include "core/mission/roster.h"
 #include "core/motion/charge.h"
+#include "core/search/contact.h"
 #include "core/search/efforts.h"
 #include "plan/plan.h"
 
@@ -37,13 +39,15 @@ inline constexpr int kMaxPlanParts = 1024;
 static_assert(std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage == kMaxPlanBytes);
 /// Limit (Messages): parts of a MISSION: those of a plan, and of its amendments. Beyond it: the
 /// part is refused with `range`.
-inline constexpr int kMaxMissionParts = 1195;
+inline constexpr int kMaxMissionParts = 1201;
 static_assert(kMaxMissionParts >= kMaxPlanParts &&
               std::size_t{kMaxMissionParts} * kMaxRosterEntriesPerMessage >= kMaxRosterEntries);
-/// Limit (Messages): parts of an AMEND: as many as the largest target needs. Beyond it: the part is
-/// refused with `range`.
+/// Limit (Messages): parts of an AMEND: as many as the largest sighting needs. Beyond it: the part
+/// is refused with `range`.
 inline constexpr int kMaxAmendParts =
-    (kMaxModes * static_cast<int>(sizeof(double)) - 1) / kMaxPlanBytesPerMessage + 1;
+    ((kMaxModes + kSearchNoteNumbers) * static_cast<int>(sizeof(double)) - 1) /
+        kMaxPlanBytesPerMessage +
+    1;
 inline constexpr int kMaxEchoesPerMessage = kMostLeasedAgents;
 inline constexpr int kMaxReasonLength = 150;
 /// The period of an agent's status in wall time.
@@ -281,6 +285,13 @@ struct Beacon {
   std::array<std::uint16_t, kMaxEchoesPerMessage> echoes{};
 };
 
+/// Limit (Messages): contacts that RECORD_ACK names. Beyond it, and beyond 20 finds: the least
+/// likely are not listed.
+inline constexpr std::int32_t kMaxContactsPerMessage = 16;
+/// Room for finds of 32 bytes and contacts of 25 in a RECORD_ACK.
+inline constexpr std::int32_t kFindAndContactBytes = 1124;
+static_assert(kFindAndContactBytes >= 32 * kMaxObjects);
+
 /// The logger has recorded all ticks up to and including header.tick (−1: it is ready).
 struct RecordAck {
   Header header;
@@ -290,9 +301,18 @@ struct RecordAck {
   std::int32_t find_count = 0;
   std::array<Find, kMaxObjects>
       finds{};  ///< in the recorded ticks, in their order; t_s is not sent
+  std::int32_t contact_count = 0;
+  std::array<Contact, kMaxContactsPerMessage> contacts{};  ///< Confirmations::contacts()
 
   std::span<const Find> all_finds() const {
     return std::span(finds).first(static_cast<std::size_t>(find_count));
+  }
+  std::span<const Contact> all_contacts() const {
+    return std::span(contacts).first(static_cast<std::size_t>(contact_count));
+  }
+  /// How many contacts fit in beside the finds.
+  std::int32_t contact_room() const {
+    return std::min(kMaxContactsPerMessage, (kFindAndContactBytes - 32 * find_count) / 25);
   }
 };
 /// Lockstep: how many ticks the world may be ahead of the logger's acknowledgement, unless it has

@@ -35,6 +35,7 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/search/contacts_test.cc
     core/search/drift_test.cc
     core/search/objects_test.cc
+    core/search/search_notes_test.cc
     core/noise_test.cc
     core/perturbation_test.cc
     core/potential_test.cc

@@ -134,6 +134,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/mow_test.cc
     process/objects_test.cc
     process/search_test.cc
+    process/sighting_test.cc
     process/zone_test.cc
     support/http.cc
     support/tls.cc

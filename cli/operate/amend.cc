@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast amend`: gives a running team a new target, another end or another law, sends it out of
-// a zone, cancels an amendment, or lists what has changed in the mission.
+// `ergocast amend`: gives a running team a new target, a sighting, another end or another law,
+// sends it out of a zone, dismisses a contact, cancels an amendment, or lists what has changed.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -16,6 +16,7 @@
 #include "cli/record/new_end.h"
 #include "cli/record/new_law.h"
 #include "cli/record/new_target.h"
+#include "cli/record/sighting.h"
 #include "cli/watch/find_run.h"
 #include "core/motion/zones.h"
 #include "plan/amendment_list.h"
@@ -29,6 +30,8 @@ namespace {
 
 /// Limit (Commands): time that `amend --at` counts from now [s]. Beyond it: it is refused.
 constexpr double kMostDelay_s = 1e7;
+/// How long `--dismiss` waits for the logger, which knows the contacts.
+constexpr std::chrono::seconds kRecordPatience{10};
 
 struct AmendOptions : BusOptions {
   std::filesystem::path target;
@@ -41,6 +44,7 @@ struct AmendOptions : BusOptions {
   double zone_lasts_s = 0;
   bool force = false;
   std::vector<LawWish> law;
+  std::optional<SearchNote> sighting, dismissal;
   std::string by;  // empty: user and host of this process
 };
 
@@ -57,14 +61,43 @@ class Amending : public TeamCommand {
     if (options_.cancel) return cancel(*options_.cancel);
     if (!options_.zone.empty()) return zone();
     if (!options_.law.empty()) return order_law();
+    if (options_.sighting) return order_sighting();
+    if (options_.dismissal) return dismiss();
     const auto compiled = compile();
     if (!compiled) return kExitBadInput;
     const TargetChange change = target_change_of(*compiled);
     // What has arrived meanwhile.
     if (!listen()) return interrupted();
-    if (!options_.dry_run) return order(wish_of(change), delay());
-    const auto problem = why_impossible(team(), wish_of(change), delay());
+    return order_target(wish_of(change), change);
+  }
+
+  int order_target(AmendmentWish wish, const TargetChange& change) {
+    if (!options_.dry_run) return order(std::move(wish), delay());
+    const auto problem = why_impossible(team(), wish, delay());
     return problem ? report_error(kExitFailed, *problem) : describe(change);
+  }
+
+  int order_sighting() {
+    if (!listen()) return interrupted();
+    const Mission& mission = team().mission();
+    const TargetChange holds = target_now(mission, team().amendments(), team().tick());
+    const auto sighted = target_with(mission, holds, *options_.sighting);
+    if (!sighted) return report_error(kExitBadInput, sighted.error());
+    for (const Problem& warning : sighted->warnings)
+      print_message("warning: " + to_string(warning));
+    return order_target(wish_of_sighting(sighted->target, sighted->sighting), sighted->target);
+  }
+
+  int dismiss() {
+    const Mission& mission = team().mission();
+    const Instant since = now();
+    while (mission.wait_for_logger && !team().recorded() && now() - since < kRecordPatience)
+      if (!listen()) return interrupted();
+    auto problem = why_not_dismissed(mission, *options_.dismissal);
+    if (!problem && team().recorded())
+      problem = why_no_contact(mission, *options_.dismissal, *team().recorded());
+    if (problem) return report_error(kExitBadInput, std::vector{*problem});
+    return order(wish_of_dismissal(*options_.dismissal), 0);
   }
 
   const MonitoredRun& team() const { return runs_.begin()->second; }
@@ -296,6 +329,48 @@ LawWish law_from(const std::string& text) {
                    "agents of one kind");
 }
 
+void add_search_options(CLI::App& command, AmendOptions& options) {
+  auto* sighting =
+      command
+          .add_option_function<std::string>(
+              "--sighting",
+              [&options](const std::string& text) {
+                options.sighting = sighting_from(text);
+                if (!options.sighting)
+                  throw CLI::ValidationError(
+                      "--sighting", "\"" + text + "\" is no sighting: write " + kSightingForm +
+                                        ", such as 412,77.5,50,0.8 for one that is right with a "
+                                        "probability of 0.8, within some 50 m");
+              },
+              "Where an object may be [m]. The target gets a Gaussian there with the standard "
+              "deviation SIGMA_M and the SHARE of the mass, by default 0.5; a team that searches "
+              "looks there again")
+          ->type_name(kSightingForm);
+  auto* dismissed =
+      command
+          .add_option_function<std::string>(
+              "--dismiss",
+              [&options](const std::string& text) {
+                const auto x_m = place_from(text);
+                if (!x_m)
+                  throw CLI::ValidationError(
+                      "--dismiss", "\"" + text +
+                                       "\" is no place: write X,Y of a contact in metres, "
+                                       "such as 412,77.5");
+                options.dismissal = SearchNote{.x_m = *x_m};
+              },
+              "The place of a contact that is no object [m]: what sensors have reported in its "
+              "cell "
+              "and the neighbouring ones counts no more")
+          ->type_name("X,Y");
+  sighting->excludes(dismissed);
+  for (auto* one : {sighting, dismissed})
+    for (const char* other :
+         {"--target", "--set", "--list", "--end", "--cancel", "--zone", "--law"})
+      one->excludes(command.get_option(other));
+  for (const char* other : {"--at", "--dry-run"}) dismissed->excludes(command.get_option(other));
+}
+
 void add_law_options(CLI::App& command, AmendOptions& options) {
   auto* law = command
                   .add_option_function<std::vector<std::string>>(
@@ -378,13 +453,15 @@ void add_target_options(CLI::App& command, AmendOptions& options) {
   command.get_option("--end")->excludes(command.get_option("--cancel"));
   add_zone_options(command, options);
   add_law_options(command, options);
+  add_search_options(command, options);
 }
 
 }  // namespace
 
 void add_amend(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand(
-      "amend", "Give a running team a new target, another end or speed, or send it out of a zone");
+  auto* command = app.add_subcommand("amend",
+                                     "Give a running team a new target, a sighting, another end or "
+                                     "speed, or send it out of a zone");
   auto options = std::make_shared<AmendOptions>();
   add_target_options(*command, *options);
   add_bus_options(*command, *options);
@@ -402,9 +479,11 @@ void add_amend(CLI::App& app, Action& action) {
       "amendment took its place, or agents are in the zone.");
   command->callback([&action, options, command] {
     const bool has_target = !options->target.empty() || !options->overrides.fields.empty();
-    if (!has_target && options->zone.empty() && options->law.empty() && !options->list &&
-        !options->end && !options->cancel)
-      throw CLI::RequiredError("--target, --set, --zone, --law, --end, --cancel or --list");
+    const bool searches = options->sighting || options->dismissal;
+    if (!has_target && !searches && options->zone.empty() && options->law.empty() &&
+        !options->list && !options->end && !options->cancel)
+      throw CLI::RequiredError(
+          "--target, --set, --zone, --law, --sighting, --dismiss, --end, --cancel or --list");
     action = [options, command] {
       if (const auto code = find_run(*command, *options)) return *code;
       return Amending(*options).carry_out();

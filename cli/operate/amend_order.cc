@@ -40,8 +40,16 @@ std::string numbers_text(const MonitoredRun& team, std::int32_t number) {
   return found == laws.end() ? "" : " (" + law_text(*found, team.mission()) + ")";
 }
 
+/// The sighting or dismissal of an amendment; null if the list has none.
+const SearchNote* note_of(const MonitoredRun& team, const Amendment& amendment) {
+  const auto& notes = team.amendments().notes;
+  const auto found = std::ranges::find(notes, amendment.number, &SearchNote::number);
+  return found == notes.end() ? nullptr : &*found;
+}
+
 /// "target 5f0c…".
 std::string kind_text(const MonitoredRun& team, const Amendment& amendment) {
+  if (const SearchNote* const note = note_of(team, amendment)) return to_text(*note);
   switch (amendment.kind) {
     case AmendmentKind::kPause:
       return "a pause";
@@ -55,6 +63,8 @@ std::string kind_text(const MonitoredRun& team, const Amendment& amendment) {
       return "the end of the zone of amendment " + std::to_string(amendment.hash);
     case AmendmentKind::kLaw:
       return "law " + to_hex(amendment.hash) + numbers_text(team, amendment.number);
+    case AmendmentKind::kDismiss:
+      return "a dismissed contact";
     default:
       return "target " + to_hex(amendment.hash);
   }
@@ -104,6 +114,14 @@ std::optional<std::string> why_not_cancelled(const MonitoredRun& team, const Ame
   return "that zone ends by itself before all agents can know of an earlier end";
 }
 
+/// Why there can be no further sighting or dismissal; nothing if there can.
+std::optional<std::string> why_no_note(const MonitoredRun& team) {
+  if (team.amendments().notes.size() < kMaxSearchNotes) return std::nullopt;
+  return "a mission can get " + std::to_string(kMaxSearchNotes) +
+         " sightings and dismissed contacts, and this one has had them: change its target with "
+         "--target";
+}
+
 /// The coordinator decides by the same rules, with newer places.
 std::optional<std::string> why_no_end(const MonitoredRun& team, const AmendmentWish& wish,
                                       Tick delay) {
@@ -142,7 +160,8 @@ std::string since_text(const MonitoredRun& team, Tick from) {
 
 /// The amendment that ends what another one has changed; null if none is named.
 const Amendment* successor_of(const MonitoredRun& team, const Amendment& amendment) {
-  if (amendment.kind == AmendmentKind::kReopen || amendment.kind == AmendmentKind::kResume)
+  if (amendment.kind == AmendmentKind::kReopen || amendment.kind == AmendmentKind::kResume ||
+      amendment.kind == AmendmentKind::kDismiss)
     return nullptr;
   const bool is_zone = amendment.kind == AmendmentKind::kZone;
   const auto kind = is_zone                                   ? AmendmentKind::kReopen
@@ -214,6 +233,21 @@ AmendmentWish wish_of(const Zone& zone) {
   return {AmendmentKind::kZone, encode_zone(zone), zone_hash(zone)};
 }
 
+AmendmentWish wish_of_sighting(const TargetChange& target, const SearchNote& note) {
+  AmendmentWish wish = wish_of(target);
+  const auto place = encode_search_note(note);
+  wish.content.insert(wish.content.end(), place.begin(), place.end());
+  wish.has_note = true;
+  return wish;
+}
+
+AmendmentWish wish_of_dismissal(const SearchNote& note) {
+  return {.kind = AmendmentKind::kDismiss,
+          .content = encode_search_note(note),
+          .hash = search_note_hash(note),
+          .has_note = true};
+}
+
 AmendmentWish wish_of_reopening(std::int32_t number) {
   return {AmendmentKind::kReopen, encode_reopening(number), static_cast<std::uint64_t>(number)};
 }
@@ -260,6 +294,10 @@ Result<AmendmentWish, std::string> wish_to_cancel(const MonitoredRun& team, std:
                    "shows when");
   if (found != list.recent.end() && found->kind == AmendmentKind::kReopen)
     return failure(name + " cancelled a zone: ergocast amend --zone closes one again");
+  if (found != list.recent.end() && found->kind == AmendmentKind::kDismiss)
+    return failure(name +
+                   " dismissed a contact, whose reports are forgotten: give a sighting with "
+                   "ergocast amend --sighting");
   return failure("a later amendment has replaced " + name +
                  ": ergocast amend --list shows which can be cancelled");
 }
@@ -316,6 +354,8 @@ std::optional<std::string> why_impossible(const MonitoredRun& team, const Amendm
   if (wish.kind == AmendmentKind::kEnd) return why_no_end(team, wish, delay);
   if (wish.kind == AmendmentKind::kZone) return why_no_place(team);
   if (wish.kind == AmendmentKind::kReopen) return why_not_cancelled(team, wish);
+  if (wish.has_note)
+    if (auto problem = why_no_note(team)) return problem;
   const auto waiting = waiting_for(wish.kind, team);
   const std::chrono::duration<double> patience = Order::kAnswerPatience;
   if (wish.brings_back || !waiting || team.seconds_until(waiting->from) < patience.count())

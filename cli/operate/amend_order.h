@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order to cover another target, to end at another time, to leave a zone, to cancel a zone, or
-// to follow another law.
+// The order to cover another target, to end at another time, to leave a zone, to cancel a zone, to
+// follow another law, to look where something was sighted, or to dismiss a contact.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +22,7 @@ struct AmendmentWish {
   std::vector<std::byte> content;  ///< as AMEND carries it
   std::uint64_t hash;              ///< as Amendment has it
   bool brings_back = false;        ///< the target or law that held before the newest one
+  bool has_note = false;           ///< a sighting or dismissal
 };
 /// @param target  of the mission's basis: is_target(); number and tick do not count
 AmendmentWish wish_of(const TargetChange& target);
@@ -33,6 +34,11 @@ AmendmentWish wish_of(const Zone& zone);
 
 /// @param law  is_law() of the mission; number and tick do not count
 AmendmentWish wish_of(const LawChange& law);
+
+/// A sighting with the target that follows from it, or a dismissal without one.
+/// @param note  is_search_note() of the mission; number and tick do not count
+AmendmentWish wish_of_sighting(const TargetChange& target, const SearchNote& note);
+AmendmentWish wish_of_dismissal(const SearchNote& note);
 
 /// @param number  of the amendment of the zone that ends
 AmendmentWish wish_of_reopening(std::int32_t number);

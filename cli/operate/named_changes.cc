@@ -8,10 +8,11 @@ namespace ergocast::cli {
 namespace {
 
 const char* what(AmendmentKind kind) {
-  return kind == AmendmentKind::kTarget   ? "new target"
-         : kind == AmendmentKind::kEnd    ? "another end"
-         : kind == AmendmentKind::kReopen ? "cancelled zone"
-                                          : to_string(kind);
+  return kind == AmendmentKind::kTarget    ? "new target"
+         : kind == AmendmentKind::kEnd     ? "another end"
+         : kind == AmendmentKind::kReopen  ? "cancelled zone"
+         : kind == AmendmentKind::kDismiss ? "dismissed contact"
+                                           : to_string(kind);
 }
 
 }  // namespace

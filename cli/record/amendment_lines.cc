@@ -22,6 +22,11 @@ class Lines {
     return "target    amendment " + std::to_string(amendment.number) + " from " +
            time_of(amendment.from) + " on" + replaced(amendment);
   }
+  std::string note(const Amendment& amendment, const SearchNote& note) const {
+    return std::string(note.is_sighting() ? "sighting" : "contact ") + "  amendment " +
+           std::to_string(amendment.number) + " from " + time_of(amendment.from) +
+           " on: " + to_text(note) + replaced(amendment);
+  }
   std::string end(const Amendment& amendment) const {
     return "end       amendment " + std::to_string(amendment.number) + " at " +
            text_of(static_cast<Tick>(amendment.hash)) + ", from " + time_of(amendment.from) +
@@ -57,6 +62,7 @@ class Lines {
 
   /// ", replaced by amendment 4 before", or nothing.
   std::string replaced(const Amendment& amendment) const {
+    if (amendment.kind == AmendmentKind::kDismiss) return "";
     const auto& all = run_.amendments.all();
     const auto next = std::ranges::find_if(all, [&](const ReceivedAmendment& one) {
       return !one.is_void && one.amendment.number > amendment.number &&
@@ -101,7 +107,10 @@ std::vector<std::string> amendment_lines(const RunData& run, const Mission& miss
   std::vector<std::string> all;
   for (const ReceivedAmendment& one : run.amendments.all()) {
     if (one.is_void) continue;
-    if (one.amendment.kind == AmendmentKind::kTarget) all.push_back(lines.target(one.amendment));
+    if (one.note)
+      all.push_back(lines.note(one.amendment, *one.note));
+    else if (one.amendment.kind == AmendmentKind::kTarget)
+      all.push_back(lines.target(one.amendment));
     if (one.amendment.kind == AmendmentKind::kEnd) all.push_back(lines.end(one.amendment));
     if (one.law) all.push_back(lines.law(one.amendment, *one.law));
     if (one.zone) all.push_back(lines.zone(*one.zone));

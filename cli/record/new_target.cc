@@ -76,6 +76,15 @@ Result<Scenario, std::vector<Problem>> load_new_target(const Mission& mission, c
   return loaded;
 }
 
+Result<Scenario, std::vector<Problem>> parse_new_target(const Mission& mission,
+                                                        std::string_view text) {
+  auto parsed = Scenario::parse_target(text, mission_text(mission));
+  if (!parsed) return parsed;
+  if (auto problem = difference(mission, parsed->mission()))
+    return failure(std::vector{*std::move(problem)});
+  return parsed;
+}
+
 std::string zone_context(const Mission& mission, const fs::path& recorded) {
   return mission_text(mission) + origin_text(recorded);
 }

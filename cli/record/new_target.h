@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
@@ -20,6 +21,10 @@ Result<Scenario, std::vector<Problem>> load_new_target(const Mission& mission,
                                                        const std::filesystem::path& file,
                                                        const Overrides& overrides,
                                                        const std::filesystem::path& recorded);
+
+/// The same for the text of a target, in which nothing names a file.
+Result<Scenario, std::vector<Problem>> parse_new_target(const Mission& mission,
+                                                        std::string_view text);
 
 /// The text that load_zone() needs: the mission with the origin of its recorded scenario.
 std::string zone_context(const Mission& mission, const std::filesystem::path& recorded);

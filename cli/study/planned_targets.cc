@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/record/new_target.h"
+#include "cli/record/sighting.h"
 #include "cli/report_error.h"
 #include "core/motion/end_rules.h"
 #include "core/motion/zones.h"
@@ -78,8 +79,29 @@ PlannedAmendment planned_law_from(const std::string& text) {
   return {.t_s = *t_s, .law = wish, .flag = "--law " + text};
 }
 
+PlannedAmendment planned_sighting_from(const std::string& text) {
+  const auto [time, rest] = at_colon(text);
+  const auto t_s = seconds_in(time);
+  const auto sighting = t_s ? sighting_from(rest) : std::nullopt;
+  if (!sighting)
+    throw CLI::ValidationError("--sighting", "\"" + text + "\" is not T:" + kSightingForm +
+                                                 ", such as 60:412,77.5,50 for one at t = 60 s");
+  return {.t_s = *t_s, .note = sighting, .flag = "--sighting " + text};
+}
+
+PlannedAmendment planned_dismissal_from(const std::string& text) {
+  const auto [time, rest] = at_colon(text);
+  const auto t_s = seconds_in(time);
+  const auto x_m = t_s ? place_from(rest) : std::nullopt;
+  if (!x_m)
+    throw CLI::ValidationError("--dismiss", "\"" + text +
+                                                "\" is not T:X,Y, such as 60:412,77.5 for a "
+                                                "contact there, at t = 60 s");
+  return {.t_s = *t_s, .note = SearchNote{.x_m = *x_m}, .flag = "--dismiss " + text};
+}
+
 bool is_zone_file(const PlannedAmendment& one) {
-  return !one.end && !one.law && (one.lasts_s || looks_like_zone(one.file));
+  return !one.end && !one.law && !one.note && (one.lasts_s || looks_like_zone(one.file));
 }
 
 using Planned = std::vector<std::pair<Tick, PlannedAmendment>>;
@@ -94,7 +116,8 @@ std::optional<std::string> why_impossible(Tick tick, const PlannedAmendment& one
   if (tick >= end)
     return one.flag + ": the mission has ended then, at t = " +
            shortest(static_cast<double>(end) * timing.dt_s) + " s: name an earlier time";
-  const bool is_target = !one.end && !one.law && !is_zone_file(one);
+  const bool is_target =
+      one.note ? one.note->is_sighting() : !one.end && !one.law && !is_zone_file(one);
   if (is_target && !list.targets.empty() && list.targets.back().from == tick)
     return one.flag + ": another target holds from the same tick on: name another time";
   return std::nullopt;
@@ -148,6 +171,23 @@ bool append_target(Tick tick, const PlannedAmendment& one, const Mission& missio
   }
   for (const Problem& warning : loaded->warnings()) print_message("warning: " + to_string(warning));
   add_target(list, tick, target_change_of(*loaded));
+  return true;
+}
+
+/// Appends a sighting with its target, or a dismissal; an error was printed if that is not
+/// possible.
+bool append_note(Tick tick, const SearchNote& note, const Mission& mission, Amendments& list) {
+  if (!note.is_sighting()) {
+    if (const auto problem = why_not_dismissed(mission, note))
+      return report_error(kExitBadInput, std::vector{*problem}) == kExitDone;
+    name_dismissal(list, tick, note);
+    return true;
+  }
+  const auto sighted = target_with(mission, target_now(mission, list, tick), note);
+  if (!sighted) return report_error(kExitBadInput, sighted.error()) == kExitDone;
+  for (const Problem& warning : sighted->warnings) print_message("warning: " + to_string(warning));
+  add_target(list, tick, sighted->target);
+  note_sighting(list, sighted->sighting);
   return true;
 }
 
@@ -224,6 +264,28 @@ CLI::Option* add_law_option(CLI::App& command, std::vector<PlannedAmendment>& pl
       ->type_name("T:FIELD=VALUE");
 }
 
+void add_search_options(CLI::App& command, std::vector<PlannedAmendment>& planned,
+                        CLI::Option* excluded) {
+  const auto add = [&](const char* name, auto read, const char* description) {
+    return command
+        .add_option_function<std::vector<std::string>>(
+            name,
+            [&planned, read](const std::vector<std::string>& texts) {
+              for (const std::string& text : texts) planned.push_back(read(text));
+            },
+            description)
+        ->allow_extra_args(false)
+        ->excludes(excluded);
+  };
+  add("--sighting", planned_sighting_from,
+      "A sighting at mission time T [s], as `ergocast amend --sighting` gives it; once for each")
+      ->type_name(std::string("T:") + kSightingForm);
+  add("--dismiss", planned_dismissal_from,
+      "A contact that is dismissed at mission time T [s], as `ergocast amend --dismiss` does it; "
+      "once for each")
+      ->type_name("T:X,Y");
+}
+
 std::optional<Amendments> amendments_with(const std::vector<PlannedAmendment>& planned,
                                           const Scenario& scenario,
                                           const std::filesystem::path& file) {
@@ -244,8 +306,9 @@ std::optional<Amendments> amendments_with(const std::vector<PlannedAmendment>& p
       return std::nullopt;
     }
     if (one.end || one.law) continue;
-    const bool appended = is_zone_file(one) ? append_zone(tick, one, mission, file, list)
-                                            : append_target(tick, one, mission, file, list);
+    const bool appended = one.note            ? append_note(tick, *one.note, mission, list)
+                          : is_zone_file(one) ? append_zone(tick, one, mission, file, list)
+                                              : append_target(tick, one, mission, file, list);
     if (!appended) return std::nullopt;
   }
   for (Amendment& one : list.recent) one.by = "simulate";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// New targets, zones, ends and laws that a simulated coordinator knows from the beginning:
-// `ergocast simulate --amend`, `--end` and `--law`.
+// New targets, zones, ends, laws, sightings and dismissals that a simulated coordinator knows from
+// the beginning: `ergocast simulate --amend`, `--end`, `--law`, `--sighting` and `--dismiss`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,12 +16,13 @@
 namespace ergocast::cli {
 
 struct PlannedAmendment {
-  double t_s = 0;                   ///< mission time from which it holds
-  std::filesystem::path file{};     ///< a target or a zone
-  std::optional<EndWish> end{};     ///< in the place of a file
-  std::optional<LawWish> law{};     ///< in the place of a file
-  std::optional<double> lasts_s{};  ///< of a zone; nothing: until the end, or no zone
-  std::string flag;                 ///< as written, for problems
+  double t_s = 0;                    ///< mission time from which it holds
+  std::filesystem::path file{};      ///< a target or a zone
+  std::optional<EndWish> end{};      ///< in the place of a file
+  std::optional<LawWish> law{};      ///< in the place of a file
+  std::optional<SearchNote> note{};  ///< in the place of a file
+  std::optional<double> lasts_s{};   ///< of a zone; nothing: until the end, or no zone
+  std::string flag;                  ///< as written, for problems
 };
 
 /// --amend T:FILE, and T+TIME:FILE for a zone.
@@ -32,6 +33,10 @@ CLI::Option* add_end_option(CLI::App& command, std::vector<PlannedAmendment>& pl
 
 /// --law T:FIELD=VALUE.
 CLI::Option* add_law_option(CLI::App& command, std::vector<PlannedAmendment>& planned);
+
+/// --sighting T:X,Y[,SIGMA_M[,SHARE]] and --dismiss T:X,Y.
+void add_search_options(CLI::App& command, std::vector<PlannedAmendment>& planned,
+                        CLI::Option* excluded);
 
 /// These amendments as a list. If one of them or its time has a problem, prints it and returns
 /// nothing. Whether agents reach their stations before an earlier end is not checked.

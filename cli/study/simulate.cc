@@ -89,6 +89,7 @@ void add_simulate(CLI::App& app, Action& action) {
   add_amend_option(*command, options->amendments)->excludes(seeds);
   add_end_option(*command, options->amendments)->excludes(seeds);
   add_law_option(*command, options->amendments)->excludes(seeds);
+  add_search_options(*command, options->amendments, seeds);
   command
       ->add_flag("--event-log", options->event_log,
                  "Write every message, as run does: events-000.lcm …")

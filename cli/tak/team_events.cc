@@ -123,7 +123,7 @@ CotEvent TeamEvents::contact(const TeamPicture& picture, const Contact& contact)
   point.type = "b-m-p-s-m";
   point.callsign += "contact";
   point.argb = kYellow;
-  point.remarks = "not confirmed; sensors reported it " + std::to_string(contact.reports) + "×";
+  point.remarks = to_text(contact);
   return point;
 }
 
@@ -138,10 +138,7 @@ std::vector<CotEvent> TeamEvents::due(const TeamPicture& picture, const Mission&
     if (has_new_place(picture, row)) add(robot(picture, mission, row), kRobotPeriod);
   for (const Zone& one : picture.zones) add(zone(picture, mission, one), kOtherPeriod);
   for (const Find& one : picture.finds) add(find(picture, one), kOtherPeriod);
-  std::vector<Contact> contacts = picture.contacts;
-  std::ranges::stable_sort(contacts, std::greater(), &Contact::reports);
-  contacts.resize(std::min(contacts.size(), kMostCotContacts));
-  for (const Contact& one : contacts) add(contact(picture, one), kOtherPeriod);
+  for (const Contact& one : picture.contacts) add(contact(picture, one), kOtherPeriod);
   std::erase_if(sent_, [now](const auto& one) { return now - one.second > 2 * kOtherPeriod; });
   return events;
 }

@@ -14,10 +14,6 @@
 
 namespace ergocast::cli {
 
-/// Limit (Page): contacts that `ergocast watch --cot` sends. Beyond it: those with fewer reports
-/// are left out.
-inline constexpr std::size_t kMostCotContacts = 64;
-
 /// Each event has the same uid as long as its mission lasts, also if processes or this one are
 /// restarted.
 class TeamEvents {

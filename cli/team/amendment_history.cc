@@ -47,6 +47,7 @@ void AmendmentHistory::note(const Amendments& list) {
   const std::int32_t oldest = amendments_.empty() ? first : amendments_.front().number;
   replace_zones(list.zones, amendments_, zones_);
   replace_from(first, oldest, list.laws, laws_);
+  replace_from(first, oldest, list.notes, notes_);
   ++changes_;
 }
 
@@ -65,7 +66,7 @@ void AmendmentHistory::add_new(Cursor& cursor, const Mission& mission,
   const auto fresh = std::min<std::uint64_t>(targets_ever_ - cursor.targets, targets_.size());
   for (auto at = targets_.end() - static_cast<std::ptrdiff_t>(fresh); at != targets_.end(); ++at)
     targets[page_target_name(at->hash)] = at->coefficients;
-  frame["amendments"] = page_amendments(amendments_, laws_, mission);
+  frame["amendments"] = page_amendments(amendments_, laws_, notes_, mission);
   frame["zones"] = page_zones(zones_, mission.domain);
   cursor = {changes_, targets_ever_};
 }

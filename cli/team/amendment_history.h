@@ -41,6 +41,7 @@ class AmendmentHistory {
   std::vector<Amendment> amendments_;  // ascending by number
   std::vector<Zone> zones_;            // those of amendments_
   std::vector<LawChange> laws_;        // the same
+  std::vector<SearchNote> notes_;      // the same
   std::deque<Target> targets_;         // in the order of their arrival
   std::uint64_t changes_ = 0, targets_ever_ = 0;
 };

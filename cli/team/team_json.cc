@@ -38,6 +38,18 @@ nlohmann::ordered_json objects_json(const TeamPicture& at) {
   return {{"count", at.objects}, {"found", at.finds.size()}, {"finds", std::move(finds)}};
 }
 
+nlohmann::ordered_json contacts_json(const TeamPicture& at) {
+  auto contacts = nlohmann::ordered_json::array();
+  for (const Contact& contact : at.contacts)
+    contacts.push_back({{"x_m", contact.x_m.x()},
+                        {"y_m", contact.x_m.y()},
+                        {"probability", contact.probability},
+                        {"reports", contact.reports},
+                        {"t_s", contact.t_s},
+                        {"confirmed", contact.confirmed}});
+  return contacts;
+}
+
 nlohmann::ordered_json json_of(const AgentRow& row) {
   nlohmann::ordered_json json = {{"id", row.author.agent},
                                  {"incarnation", to_hex(row.author.incarnation)},
@@ -101,7 +113,10 @@ std::string team_json(const TeamPicture& at) {
       {"clamped_commands", at.clamped_commands},
       {"forgotten", at.forgotten}};
   json["objects"] = objects_json(at);
-  if (at.wrong_confirmations) json["wrong_confirmations"] = *at.wrong_confirmations;
+  if (at.wrong_confirmations) {
+    json["wrong_confirmations"] = *at.wrong_confirmations;
+    json["contacts"] = contacts_json(at);
+  }
   json["holds"] = nlohmann::ordered_json::array();
   for (const Hold& hold : at.holds)
     json["holds"].push_back({hold.from, or_null(!hold.open(), hold.until)});

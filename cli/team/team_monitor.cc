@@ -74,7 +74,9 @@ void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
 }
 
 void MonitoredRun::on(const RecordAck& ack, const Arrival& arrival) {
-  if (arrival.fresh) note_end(arrival, ack.last);
+  if (!arrival.fresh) return;
+  note_end(arrival, ack.last);
+  recorded_ = ack;
 }
 
 /// A process's last message may be read before earlier messages on another bus.

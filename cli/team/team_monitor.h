@@ -75,6 +75,8 @@ class MonitoredRun {
   /// See core/mission/hold.h. @pre knows_mission()
   const Amendments& amendments() const { return me_.follower().amendments(); }
   std::span<const Hold> holds() const { return amendments().holds; }
+  /// The newest RECORD_ACK; nothing: none was received.
+  const std::optional<RecordAck>& recorded() const { return recorded_; }
   bool unheard() const;
   bool coordinator_seen() const { return seen(kCoordinator); }
   bool world_seen() const { return !vehicles_.empty(); }
@@ -132,6 +134,7 @@ class MonitoredRun {
   std::map<Author, AgentPhase> agents_;      // as each reported last; kJoining: it reported none
   std::map<Author, bool> processes_;         // worlds and loggers: whether they reported their end
   std::map<AgentId, VehicleSeen> vehicles_;  // in the newest state that names it
+  std::optional<RecordAck> recorded_;
   Tick tick_ = 0;
   bool over_ = false;  // the coordinator reported it
   std::string reason_;

@@ -76,9 +76,6 @@ void TeamView::on(const WorldState& world, const Arrival& arrival) {
   clamped_commands_ = std::max(clamped_commands_, world.clamped_commands);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     const auto [at, is_new] = vehicles_.try_emplace(vehicle.id);
-    const bool reports = vehicle.reported_cell != kNoCell;
-    if (reports && (is_new || arrival.from.tick > at->second.first))
-      ++reports_[vehicle.reported_cell];
     if (is_new || arrival.from.tick >= at->second.first) at->second = {arrival.from.tick, vehicle};
   }
 }
@@ -86,6 +83,7 @@ void TeamView::on(const WorldState& world, const Arrival& arrival) {
 void TeamView::on(const RecordAck& ack, const Arrival& arrival) {
   if (!arrival.fresh) return;
   detection_probability_ = ack.detection_probability;
+  contacts_.assign(ack.all_contacts().begin(), ack.all_contacts().end());
   const auto finds = ack.all_finds();
   if (finds.size() > finds_.size()) finds_.assign(finds.begin(), finds.end());
   wrong_confirmations_ = std::max(wrong_confirmations_, ack.wrong_confirmations);
@@ -230,13 +228,13 @@ void TeamView::add_forgotten(TeamPicture& picture) const {
 
 void TeamView::add_contacts(TeamPicture& picture) const {
   const auto& mission = follower().mission();
-  if (reports_.empty() || !mission || !mission->domain.planar()) return;
-  const Cells cells = SearchCells(*mission).cells;
-  const int rows = cells.count.y();
-  for (const auto& [cell, reports] : reports_) {
-    if (static_cast<std::size_t>(cell) >= cells.total()) continue;
-    const Eigen::Vector2d x_m(cells.center_m(0, cell / rows), cells.center_m(1, cell % rows));
-    picture.contacts.push_back({cell, x_m, reports});
+  if (!mission || !mission->sensor.has_false_alarms()) return;
+  const SearchCells search(*mission);
+  for (Contact contact : contacts_) {
+    if (static_cast<std::size_t>(contact.cell) >= search.cells.total()) continue;
+    contact.x_m = search.middle_m(contact.cell);
+    contact.t_s = static_cast<double>(contact.newest) * mission->timing.dt_s;
+    picture.contacts.push_back(contact);
   }
 }
 

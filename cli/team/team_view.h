@@ -48,13 +48,6 @@ struct AgentRow {
   std::optional<bool> moves{};
 };
 
-/// A cell of core/search/search_cells.h in which sensors with false alarms have reported something.
-struct Contact {
-  std::int32_t cell = 0;
-  Eigen::Vector2d x_m{0, 0};  ///< its middle
-  int reports = 0;            ///< that were received
-};
-
 /// Coordinator, world or logger.
 struct ProcessRow {
   std::string name;
@@ -90,7 +83,7 @@ struct TeamPicture {
   int objects = 0;                         ///< that the world hides, by the plan
   std::vector<Find> finds;                 ///< in their order, as a logger has reported them
   std::optional<int> wrong_confirmations;  ///< likewise, with false alarms
-  std::vector<Contact> contacts;           ///< with false alarms, ascending by cell
+  std::vector<Contact> contacts;           ///< likewise, those that are confirmed first
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
@@ -160,10 +153,10 @@ class TeamView {
   std::map<Author, Seen> agents_;
   std::map<AgentId, Header> processes_;                   // the newest message of each
   std::map<AgentId, std::pair<Tick, Vehicle>> vehicles_;  // each one's newest state
-  std::map<std::int32_t, int> reports_;                   // by cell
   std::string coordinator_host_;
   std::optional<double> detection_probability_;  // from the newest RECORD_ACK
   int wrong_confirmations_ = 0;
+  std::vector<Contact> contacts_;           // as it lists them
   std::vector<Find> finds_;                 // from the one with most
   std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;

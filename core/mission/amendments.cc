@@ -63,7 +63,8 @@ bool are_ends(std::span<const EndChange> ends) {
 }  // namespace
 
 const char* to_string(AmendmentKind kind) {
-  constexpr const char* kNames[] = {"pause", "resume", "target", "end", "zone", "law", "reopen"};
+  constexpr const char* kNames[] = {"pause", "resume", "target", "end",
+                                    "zone",  "law",    "reopen", "dismiss"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -112,6 +113,7 @@ bool are_amendments(const Amendments& list, const Mission& mission) {
                              }) &&
          ascend(list.zones, list.named) && are_zones(list.zones, mission.domain) &&
          ascend(list.laws, list.named) && are_laws(list.laws, mission) &&
+         ascend(list.notes, list.named) && are_search_notes(list.notes, mission) &&
          std::ranges::all_of(list.recent, is_operator_name, &Amendment::by);
 }
 
@@ -165,6 +167,9 @@ void name_target(Amendments& list, Tick tick, TargetChange change) {
 
 void replace_target(Amendments& list, TargetChange change) {
   ERGOCAST_REQUIRE(!list.targets.empty());
+  std::erase_if(list.notes, [number = list.targets.back().number](const SearchNote& note) {
+    return note.number == number;
+  });
   change.from = list.targets.back().from;
   change.number = list.named;
   name(list, {.kind = AmendmentKind::kTarget, .from = change.from, .hash = target_hash(change)});
@@ -224,6 +229,21 @@ void replace_law(Amendments& list, LawChange change) {
   change.number = list.named;
   name(list, {.kind = AmendmentKind::kLaw, .from = change.from, .hash = law_hash(change)});
   list.laws.back() = std::move(change);
+}
+
+void note_sighting(Amendments& list, SearchNote sighting) {
+  ERGOCAST_REQUIRE(list.notes.size() < kMaxSearchNotes && !list.targets.empty());
+  sighting.number = list.targets.back().number;
+  sighting.from = list.targets.back().from;
+  list.notes.push_back(sighting);
+}
+
+void name_dismissal(Amendments& list, Tick tick, SearchNote dismissal) {
+  ERGOCAST_REQUIRE(list.notes.size() < kMaxSearchNotes);
+  dismissal.number = list.named;
+  dismissal.from = tick;
+  name(list, {.kind = AmendmentKind::kDismiss, .from = tick, .hash = search_note_hash(dismissal)});
+  list.notes.push_back(dismissal);
 }
 
 std::size_t zones_at(const Amendments& list, Tick tick) {

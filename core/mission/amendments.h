@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What has changed in a mission since its plan: pauses, new targets, other ends, zones and their
-// cancellation, and other speeds and noise of the law.
+// cancellation, other speeds and noise of the law, sightings, and contacts that are dismissed.
 //
 // The coordinator names each amendment: it gives it the next number, and the world's tick from
 // which it holds. All processes learn of an amendment before its tick, so all change at the same
@@ -19,18 +19,20 @@
 #include "core/mission/hold.h"
 #include "core/mission/law_change.h"
 #include "core/mission/mission.h"
+#include "core/mission/search_note.h"
 #include "core/mission/zones.h"
 
 namespace ergocast {
 
 enum class AmendmentKind {
-  kPause,   ///< the mission is paused: a Hold begins
-  kResume,  ///< the mission goes on: the last Hold ends
-  kTarget,  ///< the team covers another target
-  kEnd,     ///< the mission has another number of ticks
-  kZone,    ///< the team leaves a part of the domain, core/mission/zones.h
-  kLaw,     ///< the law has another speed or other noise, core/mission/law_change.h
-  kReopen,  ///< a zone is cancelled: it ends
+  kPause,    ///< the mission is paused: a Hold begins
+  kResume,   ///< the mission goes on: the last Hold ends
+  kTarget,   ///< the team covers another target, perhaps one that follows from a sighting
+  kEnd,      ///< the mission has another number of ticks
+  kZone,     ///< the team leaves a part of the domain, core/mission/zones.h
+  kLaw,      ///< the law has another speed or other noise, core/mission/law_change.h
+  kReopen,   ///< a zone is cancelled: it ends
+  kDismiss,  ///< a contact is dismissed, core/mission/search_note.h
 };
 const char* to_string(AmendmentKind kind);
 
@@ -40,7 +42,7 @@ struct Amendment {
   AmendmentKind kind = AmendmentKind::kPause;
   Tick from = 0;  ///< the world's tick from which it holds
   /// kTarget: target_hash(); kEnd: the number of ticks; kZone: zone_hash(); kLaw: law_hash();
-  /// kReopen: the number of the zone's amendment; else 0
+  /// kReopen: the number of the zone's amendment; kDismiss: search_note_hash(); else 0
   std::uint64_t hash = 0;
   std::string by{};  ///< its operator, as is_operator_name() allows; empty: not known
   /// The incarnation that sent its AMEND; 0: not known. One operator may send two alike.
@@ -98,10 +100,13 @@ struct Amendments {
   std::vector<Zone> zones{};
   /// The newest laws, ascending by number; at most kMaxLaws, as of targets.
   std::vector<LawChange> laws{};
+  /// All sightings and dismissals, ascending by number. A sighting has the number and the tick of
+  /// its target. It leaves the list if another target takes its target's place.
+  std::vector<SearchNote> notes{};
 
   bool empty() const {
     return named == 0 && holds.empty() && targets.empty() && ends.empty() && zones.empty() &&
-           laws.empty();
+           laws.empty() && notes.empty();
   }
   bool operator==(const Amendments&) const = default;
 };
@@ -121,7 +126,8 @@ inline constexpr std::size_t kMaxLaws = 2;
 
 /// Whether a coordinator can have named this list for `mission`: are_holds(), numbers and ticks
 /// ascend, each target is one of the mission's basis within limits (is_target()), ends have at
-/// least one tick, zones are_zones(), laws are bounded_by_plan(), and operators have names.
+/// least one tick, zones are_zones(), laws are bounded_by_plan(), notes are_search_notes(), and
+/// operators have names.
 bool are_amendments(const Amendments& list, const Mission& mission);
 
 /// Whether the numbers are a target of `mission`: as many as its basis has modes, finite, |μ| ≤ 1
@@ -169,6 +175,12 @@ void name_law(Amendments& list, Tick tick, LawChange change);
 /// Names the next amendment, a law that holds in the place of the newest one, from its tick on.
 /// @pre the newest law does not hold yet
 void replace_law(Amendments& list, LawChange change);
+/// The newest target follows from a sighting. Number and tick of the note are set here.
+/// @pre the list has room: notes.size() < kMaxSearchNotes, and targets is not empty
+void note_sighting(Amendments& list, SearchNote sighting);
+/// Names the next amendment, a dismissal. Its number and tick are set here.
+/// @pre the list has room: notes.size() < kMaxSearchNotes
+void name_dismissal(Amendments& list, Tick tick, SearchNote dismissal);
 /// Whether a zone of this number can be cancelled from a tick on: it has not been, and has not
 /// ended by then.
 bool can_reopen(const Amendments& list, std::int32_t number, Tick tick);

@@ -7,10 +7,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/measure/finds.h"
 #include "core/mission/mission.h"
+#include "core/search/contact.h"
 #include "core/search/contacts.h"
 #include "core/search/efforts.h"
 
@@ -24,6 +26,9 @@ class Confirmations {
 
   /// From now on `target` says how likely objects are where: μ in the basis (2).
   void begin_target(const Coefficients& target);
+  /// Takes in all notes of the mission. What a team forgets confirms nothing any more, and a
+  /// contact that is confirmed there later is another one.
+  void note(std::span<const SearchNote> notes, std::span<const Hold> holds);
   /// An agent that covers is at `x_m` in tick `counted`; ticks ascend.
   /// @param detected  what its sensor detects
   /// @param cell      what it reports; one that does not exist, such as kNoCell: nothing
@@ -32,6 +37,9 @@ class Confirmations {
                 std::int32_t cell);
   /// How many contacts that were confirmed are wrong.
   int wrong() const { return wrong_; }
+  /// The contacts by what is known now, the likeliest first, confirmed ones before others. Costs a
+  /// renewal of Contacts.
+  std::vector<Contact> contacts() const;
 
  private:
   /// What is known in a mission with false alarms.
@@ -42,9 +50,12 @@ class Confirmations {
     Contacts contacts;
     Basis basis;  // (2)
     IndexedRings walls;
-    std::vector<ObjectSet> reported;  // in each cell
-    std::vector<char> known;          // cells of contacts that were confirmed
+    // Of each cell, by reports of which some still count:
+    std::vector<ObjectSet> reported;
+    std::vector<char> known;   // whether it is of a contact that was confirmed
+    std::vector<Tick> newest;  // the tick of the newest report
   };
+  void forget();
   void take_in(std::size_t contact);
 
   std::optional<Knowledge> known_;

@@ -57,6 +57,7 @@ Contacts::Contacts(const Mission& mission)
   contacts_.reserve(prior_.size());
   likely_.reserve(prior_.size());
   confirmed_contacts_.reserve(prior_.size());
+  confirmed_odds_.reserve(prior_.size());
 }
 
 void Contacts::set_prior(const std::vector<double>& mass) {
@@ -69,6 +70,7 @@ void Contacts::renew(const Efforts& efforts) {
   read(efforts);
   std::ranges::fill(confirmed_, 0);
   confirmed_contacts_.clear();
+  confirmed_odds_.clear();
   std::ranges::fill(gain_at_, 0.0);
   for (const std::size_t contact : contacts_)
     for_neighbours(contact, [&](std::size_t cell) {
@@ -108,7 +110,7 @@ void Contacts::confirm_likely() {
     if (odds < first.odds)
       consider(first.contact, odds);
     else
-      confirm(first.contact);
+      confirm({odds, first.contact});
   }
 }
 
@@ -124,8 +126,10 @@ bool Contacts::less_likely(const Likely& one, const Likely& other) {
   return one.odds != other.odds ? one.odds < other.odds : one.contact > other.contact;
 }
 
-void Contacts::confirm(std::size_t contact) {
+void Contacts::confirm(const Likely& likely) {
+  const std::size_t contact = likely.contact;
   confirmed_contacts_.push_back(contact);
+  confirmed_odds_.push_back(likely.odds);
   for_neighbours(contact, [&](std::size_t cell) {
     confirmed_[cell] = 1;
     reports_[cell] = 0;
@@ -133,6 +137,24 @@ void Contacts::confirm(std::size_t contact) {
   for_near(contact, 2, [&](std::size_t cell, std::size_t, std::size_t) {
     gain_at_[cell] = std::exp(log_gain(cell));
   });
+}
+
+std::vector<Contacts::Judged> Contacts::judged() const {
+  const auto likely = [](double odds) { return 1 / (1 + std::exp(-odds)); };
+  std::vector<Judged> all;
+  for (std::size_t i = 0; i < confirmed_contacts_.size(); ++i)
+    all.push_back({confirmed_contacts_[i], likely(confirmed_odds_[i]), true});
+  std::vector<Likely> others;
+  for (const std::size_t contact : contacts_)
+    if (reports_[contact] > 0) others.push_back({log_odds(contact), contact});
+  std::ranges::sort(others, [](const Likely& a, const Likely& b) { return less_likely(b, a); });
+  std::vector<char> taken(prior_.size(), 0);
+  for (const auto& [odds, contact] : others) {
+    if (taken[contact] != 0) continue;
+    for_neighbours(contact, [&](std::size_t cell) { taken[cell] = 1; });
+    all.push_back({contact, likely(odds), false});
+  }
+  return all;
 }
 
 void Contacts::weigh() {

@@ -48,6 +48,15 @@ class Contacts {
   bool confirmed(std::size_t cell) const { return confirmed_[cell] != 0; }
   /// The cells of contacts that are confirmed, the likeliest first.
   const std::vector<std::size_t>& confirmed_contacts() const { return confirmed_contacts_; }
+  /// A contact and how likely it is.
+  struct Judged {
+    std::size_t contact;
+    double probability;
+    bool confirmed;
+  };
+  /// The contacts, the likeliest first: those that are confirmed, then others. One that is in the
+  /// set B of a likelier one is part of that.
+  std::vector<Judged> judged() const;
   /// Calls each(cell) for a cell and its neighbours.
   void for_neighbours(std::size_t cell, auto&& each) const {
     for_near(cell, 1, [&](std::size_t near, std::size_t, std::size_t) { each(near); });
@@ -74,7 +83,7 @@ class Contacts {
   void confirm_likely();
   void consider(std::size_t contact, double odds);
   static bool less_likely(const Likely& one, const Likely& other);
-  void confirm(std::size_t contact);
+  void confirm(const Likely& likely);
   void weigh();
   double log_gain(std::size_t cell) const;
   double log_odds(std::size_t contact) const;
@@ -90,7 +99,8 @@ class Contacts {
   std::vector<std::uint32_t> reports_;  // that are not explained
   std::vector<char> confirmed_;
   std::vector<std::size_t> contacts_, confirmed_contacts_;
-  std::vector<Likely> likely_;  // a heap
+  std::vector<Likely> likely_;          // a heap
+  std::vector<double> confirmed_odds_;  // of confirmed_contacts_: their ln, when it was confirmed
   std::size_t considered_ = 0;
 };
 

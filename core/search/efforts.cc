@@ -8,6 +8,23 @@
 
 namespace ergocast {
 
+std::vector<std::int32_t> forgotten_cells(const SearchNote& note, const SearchCells& search) {
+  const Cells& cells = search.cells;
+  const int columns = cells.count.x(), rows = cells.count.y();
+  const auto own = static_cast<std::int32_t>(cells.cell_of(on_ground(note.x_m)));
+  std::vector<std::int32_t> forgotten;
+  if (note.is_sighting()) {
+    cells.for_near(on_ground(note.x_m), kForgottenSigmas * note.sigma_m,
+                   [&](int i, int j, int) { forgotten.push_back(i * rows + j); });
+    if (std::ranges::find(forgotten, own) == forgotten.end()) forgotten.push_back(own);
+    return forgotten;
+  }
+  for (int i = std::max(0, own / rows - 1); i <= std::min(columns - 1, own / rows + 1); ++i)
+    for (int j = std::max(0, own % rows - 1); j <= std::min(rows - 1, own % rows + 1); ++j)
+      forgotten.push_back(i * rows + j);
+  return forgotten;
+}
+
 Efforts::Efforts(const Mission& mission)
     : cells_(mission), half_life_(mission), sums_(cells_.tile_count()) {}
 
@@ -30,9 +47,47 @@ void Efforts::halve(EffortTile& tile, std::int64_t times) const {
     count = cells_.count_of(cells_.looks_in(count) >> shift, cells_.reports_in(count) >> shift);
 }
 
-void Efforts::set_now(Tick counted) {
+void Efforts::note(std::span<const SearchNote> notes, std::span<const Hold> holds) {
+  std::vector<Forgetting> all;
+  for (const SearchNote& note : notes) {
+    const auto known = std::ranges::find(forgettings_, note, &Forgetting::note);
+    Forgetting& one = all.emplace_back(known != forgettings_.end() ? *known : Forgetting{note});
+    one.counted = counted_ticks(holds, note.from);
+    if (!one.cells.empty()) continue;
+    for (const std::int32_t cell : forgotten_cells(note, cells_))
+      one.cells.push_back(cells_.tile_cell(cell));
+  }
+  forgettings_ = std::move(all);
+}
+
+/// A tile of our own row has then changed, so that it is sent again. Authors of other rows have
+/// forgotten by themselves what they sent later.
+void Efforts::forget(const Forgetting& one, Tick counted) {
+  for (Row& row : rows_) {
+    const bool is_own = row.newest_look >= 0;
+    for (const TileCell& cell : one.cells) {
+      EffortTile& tile = row.tiles[cell.tile];
+      if (!is_own && tile.newest_look >= one.counted) continue;
+      const std::uint16_t before = tile.looks[cell.slot], left = one.left(before, cells_);
+      if (left == before) continue;
+      tile.looks[cell.slot] = left;
+      Sum& sum = sums_[cell.tile][cell.slot];
+      sum.looks -= cells_.looks_in(before) - cells_.looks_in(left);
+      sum.reports -= cells_.reports_in(before) - cells_.reports_in(left);
+      if (is_own) tile.newest_look = counted;
+    }
+  }
+}
+
+bool Efforts::set_now(Tick counted) {
+  bool changed = false;
+  for (Forgetting& one : forgettings_) {
+    if (one.done || one.counted > counted) continue;
+    one.done = changed = true;
+    forget(one, counted);
+  }
   const std::int64_t halvings = half_life_.halvings(counted);
-  if (halvings <= halvings_) return;
+  if (halvings <= halvings_) return changed;
   std::ranges::fill(sums_, std::array<Sum, kTileCells>{});
   for (Row& row : rows_) {
     for (std::size_t tile = 0; tile < row.tiles.size(); ++tile) {
@@ -41,6 +96,7 @@ void Efforts::set_now(Tick counted) {
     }
   }
   halvings_ = halvings;
+  return true;
 }
 
 void Efforts::add(std::size_t tile, const EffortTile& counts) {
@@ -102,6 +158,11 @@ bool Efforts::merge(const Author& author, std::size_t tile, EffortTile theirs, T
   EffortTile& ours = row(author).tiles[tile];
   if (theirs.newest_look <= ours.newest_look || is_early(sent)) return true;
   halve(theirs, halvings_ - half_life_.halvings(sent));
+  for (const Forgetting& one : forgettings_) {
+    if (!one.done || theirs.newest_look >= one.counted) continue;
+    for (const TileCell& cell : one.cells)
+      if (cell.tile == tile) theirs.looks[cell.slot] = one.left(theirs.looks[cell.slot], cells_);
+  }
   subtract(tile, ours);
   add(tile, theirs);
   ours = theirs;

@@ -10,15 +10,24 @@
 //
 // If the mission forgets (law.memory_half_life_s), all counts are halved and rounded down at
 // counted ticks H, 2H, 3H …, as core/mission/half_life.h says.
+//
+// Sightings and dismissals (core/mission/search_note.h) make a team forget counts of some cells. At
+// the note's counted tick, before the look of that tick, an author's row loses them, and its tile
+// has changed. In other rows, tiles whose newest look was before that tick lose them, also when
+// they are merged later. So forgetting commutes with merging. In real time an author may learn of a
+// note late: its tile then replaces those that it sent in between.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/ids.h"
 #include "core/mission/half_life.h"
+#include "core/mission/hold.h"
 #include "core/mission/mission.h"
+#include "core/mission/search_note.h"
 #include "core/search/search_cells.h"
 
 namespace ergocast {
@@ -27,6 +36,10 @@ struct EffortTile {
   Tick newest_look = -1;  ///< counted; −1: this agent has never looked here
   std::array<std::uint16_t, kTileCells> looks{};  ///< and reports: SearchCells::looks_in()
 };
+
+/// The cells whose counts a note makes a team forget, by number: those whose middles are at most
+/// 2 σ from a sighting, and its own cell; or a contact's cell and its neighbours.
+std::vector<std::int32_t> forgotten_cells(const SearchNote& note, const SearchCells& cells);
 
 class Efforts {
  public:
@@ -37,9 +50,13 @@ class Efforts {
 
   /// Adds an empty row, if `author` has none.
   void add_row(const Author& author);
+  /// Takes in all notes of the mission. The next set_now() forgets what those of its tick and
+  /// before say; it forgets for each note once.
+  void note(std::span<const SearchNote> notes, std::span<const Hold> holds);
   /// The counted tick has come: all counts are as they are remembered at it. An earlier tick has no
   /// effect.
-  void set_now(Tick counted);
+  /// @return whether counts were halved or forgotten
+  bool set_now(Tick counted);
   /// The agent's sensor is at `x_m` at tick `counted`, and looks if it is time to look, once at
   /// each tick, also if ticks are counted again. Does not allocate. @pre `author` has a row
   void look(const Author& author, Tick counted, const Eigen::Vector3d& x_m);
@@ -74,18 +91,31 @@ class Efforts {
     std::vector<EffortTile> tiles;
     Tick newest_look = -1, newest_report = -1;  // that look() and report() have done
   };
+  /// What a note makes us forget.
+  struct Forgetting {
+    SearchNote note;
+    Tick counted = 0;
+    std::vector<TileCell> cells{};
+    bool done = false;
+
+    std::uint16_t left(std::uint16_t count, const SearchCells& cells) const {
+      return note.is_sighting() ? 0 : cells.count_of(cells.looks_in(count), 0);
+    }
+  };
   struct Sum {
     std::uint32_t looks = 0, reports = 0;
   };
   Row& row(const Author& author);
   bool possible(const EffortTile& tile, Tick sent) const;
   void halve(EffortTile& tile, std::int64_t times) const;
+  void forget(const Forgetting& one, Tick counted);
   void add(std::size_t tile, const EffortTile& counts);
   void subtract(std::size_t tile, const EffortTile& counts);
 
   SearchCells cells_;
   HalfLife half_life_;
   std::int64_t halvings_ = 0;
+  std::vector<Forgetting> forgettings_;
   std::vector<Row> rows_;  // ascending by author
   std::vector<std::array<Sum, kTileCells>> sums_;
 };

@@ -62,6 +62,10 @@ struct SearchCells {
   std::size_t tile_count() const {
     return static_cast<std::size_t>(tile_rows) * static_cast<std::size_t>(tile_columns);
   }
+  /// The middle of a cell, by its number in `cells`.
+  Eigen::Vector2d middle_m(std::int32_t cell) const {
+    return {cells.center_m(0, cell / cells.count.y()), cells.center_m(1, cell % cells.count.y())};
+  }
   /// A cell by its number in `cells`.
   TileCell tile_cell(std::int32_t cell) const {
     return tile_cell(cell / cells.count.y(), cell % cells.count.y());

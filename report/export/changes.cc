@@ -28,6 +28,7 @@ std::string zone_text(const Zone& zone, double dt_s) {
 
 std::string change_text(const ReceivedAmendment& one, const Mission& mission) {
   const double dt_s = mission.timing.dt_s;
+  if (one.note) return to_text(*one.note);
   switch (one.amendment.kind) {
     case AmendmentKind::kPause:
       return "the mission is paused";
@@ -42,6 +43,8 @@ std::string change_text(const ReceivedAmendment& one, const Mission& mission) {
       return one.zone ? zone_text(*one.zone, dt_s) : "zone " + to_hex(one.amendment.hash);
     case AmendmentKind::kLaw:
       return "law " + (one.law ? law_text(*one.law, mission) : to_hex(one.amendment.hash));
+    case AmendmentKind::kDismiss:
+      return "a contact is dismissed";
     case AmendmentKind::kReopen:
       return "the zone of amendment " + std::to_string(one.amendment.hash) + " is cancelled";
   }

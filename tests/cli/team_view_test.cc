@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "cli/team/team_json.h"
+#include "cli/team/team_text.h"
+#include "core/search/search_cells.h"
 #include "tests/support/team.h"
 
 namespace ergocast {
@@ -81,29 +86,36 @@ struct TeamViewWithFalseAlarms : TeamViewTest {
     return mission;
   }
   TeamViewWithFalseAlarms() : TeamViewTest(mission()) {}
-  void report(Tick tick, std::int32_t cell) {
-    WorldState state = world_state(tick, {{1, 1, 0}});
-    state.vehicles[0].reported_cell = cell;
-    give(view_, state, at(1s));
-  }
 };
 
-TEST_F(TeamViewWithFalseAlarms, CountsReportsOnceInTheCellsWhereTheyAre) {
+TEST_F(TeamViewWithFalseAlarms, HasTheContactsOfTheNewestRecordAck) {
   hear_mission(at(0s));
   const SearchCells cells(mission());
   const auto cell = static_cast<std::int32_t>(cells.cells.cell_of({900, 300, 0}));
-  report(5, cell);
-  report(5, cell);  // the world repeats a tick
-  report(6, kNoCell);
-  report(7, cell);
-  report(8, kMaxSearchCells - 1);  // beyond this domain's cells
+  RecordAck ack{{kRun, kLogger, kLoggerLife, next_sequence(), 7}};
+  ack.contact_count = 2;
+  ack.contacts[0] = {
+      .cell = cell, .reports = 2, .newest = 5, .probability = 0.875, .confirmed = true};
+  ack.contacts[1].cell = kMaxSearchCells - 1;  // beyond this domain's cells
+  give(view_, ack, at(1s));
   const TeamPicture picture = view_.picture(at(1s));
   ASSERT_EQ(picture.contacts.size(), 1U);
-  EXPECT_EQ(picture.contacts[0].cell, cell);
-  EXPECT_EQ(picture.contacts[0].reports, 2);
-  EXPECT_LE((picture.contacts[0].x_m - Eigen::Vector2d(900, 300)).cwiseAbs().maxCoeff(),
+  const Contact& contact = picture.contacts[0];
+  EXPECT_LE((contact.x_m - Eigen::Vector2d(900, 300)).cwiseAbs().maxCoeff(),
             cells.cells.size_m.x() / 2);
-  EXPECT_EQ(row(0, at(1s)).position_tick, 8);
+  EXPECT_EQ(contact.t_s, 5 * mission().timing.dt_s);
+  const auto told = nlohmann::json::parse(team_json(picture))["contacts"];
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0]["x_m"], contact.x_m.x());
+  EXPECT_EQ(told[0]["probability"], 0.875);
+  EXPECT_EQ(told[0]["reports"], 2);
+  EXPECT_EQ(told[0]["t_s"], contact.t_s);
+  EXPECT_EQ(told[0]["confirmed"], true);
+  EXPECT_NE(team_table(picture, false).find("contact  " + to_text(contact)), std::string::npos);
+  ack.header.sequence = next_sequence();
+  ack.contact_count = 0;  // dismissed
+  give(view_, ack, at(2s));
+  EXPECT_TRUE(view_.picture(at(2s)).contacts.empty());
 }
 
 TEST_F(TeamViewTest, NamesWhoseCoverageIsForgottenAndCallsThatTrouble) {

@@ -36,14 +36,18 @@ struct Outcome {
   bool in_time;
 };
 
-Outcome simulated(const Drop& drop, const std::string& text = kThreeAgents) {
+Outcome simulated(const Drop& drop, const std::string& text = kThreeAgents,
+                  const Amendments& amendments = {}) {
   const auto scenario = Scenario::parse(text, "loss").value();
   std::int64_t dropped = 0;
-  SimulatedTeam team(scenario.mission(), [&](const Message& message, lab::NodeId to) {
-    const bool drops = drop && drop(message, to);
-    dropped += drops;
-    return drops;
-  });
+  SimulatedTeam team(
+      scenario.mission(),
+      [&](const Message& message, lab::NodeId to) {
+        const bool drops = drop && drop(message, to);
+        dropped += drops;
+        return drops;
+      },
+      amendments);
   const bool in_time = team.run(std::chrono::minutes(30));
   return {team.trajectory.str(), team.state(), team.reason(), dropped, in_time};
 }
@@ -253,6 +257,25 @@ INSTANTIATE_TEST_SUITE_P(
         // Halved at the ticks at which one of them sends.
         Knowing{"SearchingForgettingAsItSends", "kind: SEARCH memory_half_life_s: 2", true, 7}),
     [](const auto& knowing) { return std::string(knowing.param.name); });
+
+/// What is forgotten does not depend on when tiles arrive.
+TEST(MessageLoss, SightingsAndDismissedContactsChangeNoTrajectoryEither) {
+  const std::string text = each(7, with(kThreeAgents, "law { u_max_mps: 5",
+                                        "sensor { radius_m: 10 false_alarms_per_s: 0.2 }\n"
+                                        "law { kind: SEARCH u_max_mps: 5"));
+  const Mission mission = Scenario::parse(text, "loss").value().mission();
+  Amendments list;
+  add_target(list, 60, {.target = mission.target_coefficients});
+  note_sighting(list, {.x_m = {40, 40}, .sigma_m = 15, .share = 0.5});
+  Tick tick = 100;
+  for (double x_m = 15; x_m < 100; x_m += 30)
+    for (double y_m = 15; y_m < 80; y_m += 30) name_dismissal(list, tick++, {.x_m = {x_m, y_m}});
+  const Outcome clean = simulated({}, text, list);
+  EXPECT_EQ(clean.state, MissionState::kEnded) << clean.reason;
+  EXPECT_FALSE(clean.trajectory == simulated({}, text).trajectory);
+  for (const std::size_t kind : {kWorldState, kEffort})
+    EXPECT_TRUE(simulated(dropping(kind, 33), text, list).trajectory == clean.trajectory) << kind;
+}
 
 bool is_command_of(const Message& message, AgentId agent) {
   const auto* command = std::get_if<Command>(&message);

@@ -271,6 +271,12 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(ack.finds[0].find_agent, 127);
   EXPECT_EQ(ack.finds[0].find_tick, 4711);
   EXPECT_EQ(ack.finds[0].find_position_m[1], -2);
+  ASSERT_EQ(ack.contact_count, 1);
+  EXPECT_EQ(ack.contacts[0].contact_cell, 4095);
+  EXPECT_EQ(ack.contacts[0].contact_reports, 3);
+  EXPECT_EQ(ack.contacts[0].contact_newest, 4711);
+  EXPECT_EQ(ack.contacts[0].contact_probability, 0.75);
+  EXPECT_TRUE(ack.contacts[0].contact_confirmed);
 }
 
 TEST(Codec, EveryMessageComesBackAsTheSameMessage) {
@@ -325,6 +331,14 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
        {Message(part), Message(world), Message(status), Message(team), Message(amendment)}) {
     EXPECT_LE(encoded(message).size(), kMaxDatagramBytes);
     EXPECT_EQ(verdict(message), "accepted");
+  }
+  for (const int finds : {0, 16, 20, kMaxObjects}) {
+    RecordAck ack = record_ack();
+    ack.find_count = finds;
+    ack.contact_count = ack.contact_room();
+    EXPECT_GE(ack.contact_count, 4) << finds;
+    EXPECT_LE(encoded(ack).size(), kMaxDatagramBytes) << finds;
+    EXPECT_EQ(verdict(Message(ack)), "accepted") << finds;
   }
   EXPECT_LE(encoded(contribution()).size(), kMaxDatagramBytes);
   EXPECT_LE(encoded(averages()).size(), kMaxDatagramBytes);

@@ -182,6 +182,9 @@ inline RecordAck record_ack() {
   RecordAck m{header_of_sender(kLogger), true, 0.25, 3, 2};
   m.finds[0] = {.object = 31, .agent = 127, .tick = 4711, .x_m = {1.0 / 3, -2, 0}};
   m.finds[1] = {.object = 0, .agent = 0, .tick = 4712};
+  m.contact_count = 1;
+  m.contacts[0] = {
+      .cell = 4095, .reports = 3, .newest = 4711, .probability = 0.75, .confirmed = true};
   return m;
 }
 

@@ -93,7 +93,7 @@ TEST_F(AmendCommand, NamesTheProblemsOfATarget) {
     EXPECT_EQ(amend(std::move(arguments)), 2) << output();
     EXPECT_TRUE(answered(why)) << output();
   };
-  refuses({}, "--target, --set, --zone, --law, --end, --cancel or --list");
+  refuses({}, "--target, --set, --zone, --law, --sighting, --dismiss, --end, --cancel or --list");
   refuses({"--target", "none.csv"}, "there is no such file");
   refuses({"--target", "lake_search"}, "domain: has ");
   refuses({"--target", file("far.textproto", gaussian_at(90000))}, "far.textproto:1:1: target: ");

@@ -45,8 +45,11 @@ using Drop = std::function<bool(const Message&, lab::NodeId to)>;
 
 /// A simulation without faults, and what its recorder has written.
 struct SimulatedTeam {
-  explicit SimulatedTeam(const Mission& mission, Drop drop = {})
-      : simulation({.plan = encode_plan(mission), .drop = std::move(drop)}, trajectory, metrics) {}
+  explicit SimulatedTeam(const Mission& mission, Drop drop = {}, Amendments amendments = {})
+      : simulation({.plan = encode_plan(mission),
+                    .amendments = std::move(amendments),
+                    .drop = std::move(drop)},
+                   trajectory, metrics) {}
 
   /// Runs until all is over, or `limit` of virtual time has passed. Returns whether all was over
   /// before.

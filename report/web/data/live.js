@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes rows, statuses, incidents and log lines of the frames that the server sends about a running team.
 import { withMore } from './incidents.js';
-import { findsIn, recordHistory, recordedRun, wrongIn } from './record.js';
+import { contactsIn, findsIn, recordHistory, recordedRun, wrongIn } from './record.js';
 import { Run, indexAt } from './run.js';
 import { $, element } from '../text.js';
 
@@ -202,6 +202,7 @@ export function watchLive(page) {
       run.setHolds(team.holds);
       run.finds = findsIn(team);
       run.wrong = wrongIn(team);
+      run.contacts = contactsIn(team);
       const standing = team.state === 'running' ? [] : agents.filter(agent => agent.moves === false);
       run.standing = new Set(standing.map(agent => agent.id));
       if (run.times.length && run.times[run.times.length - 1] >= t) {

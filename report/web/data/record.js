@@ -10,6 +10,8 @@ function listOf(value) {
 
 // The finds of a summary, or of a status of a running team.
 export const findsIn = told => listOf(told?.objects?.finds);
+// The contacts of a summary or status, the likeliest first.
+export const contactsIn = told => listOf(told?.contacts);
 // How many contacts were confirmed and are no objects.
 export const wrongIn = told => Number(told?.wrong_confirmations) || 0;
 
@@ -25,6 +27,7 @@ export function recordedRun(record) {
       : null;
   run.finds = findsIn(run.summary);
   run.wrong = wrongIn(run.summary);
+  run.contacts = contactsIn(run.summary);
   run.setHolds(run.summary?.holds);
   run.recalledFrom = new Map(listOf(run.summary?.recalls).map(recall => [recall.agent, recall.from_tick]));
   run.homeFrom = new Map(Object.entries(record.home_from ?? {}).map(([id, tick]) => [Number(id), tick]));

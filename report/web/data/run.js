@@ -47,6 +47,7 @@ export class Run {
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
     this.wrong = 0;
+    this.contacts = []; // {x_m, y_m, probability, reports, t_s, confirmed}, as finds
     this.finds = []; // {object, agent, tick, t_s, x_m, y_m}, as a record or the newest status has them
     // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them
     this.amendments = [];
@@ -128,7 +129,15 @@ export class Run {
       laws = this.amendments.filter(one => one.kind === 'law'),
       dt = this.mission.dt_s;
     const marks = [
-      ...this.targets.slice(1).map(({ from }) => ({ from, kind: 'target', sign: '◎', text: 'new target' })),
+      ...this.targets.slice(1).map(({ from, number }) => ({
+        from,
+        kind: 'target',
+        sign: '◎',
+        text: this.amendments.find(one => one.number === number)?.text ?? 'new target',
+      })),
+      ...this.amendments
+        .filter(one => one.kind === 'dismiss')
+        .map(({ from, text }) => ({ from, kind: 'dismiss', sign: '✕', text: text ?? 'contact dismissed' })),
       ...ends.map(({ from }) => ({ from, kind: 'end', sign: '⏱', text: 'another end' })),
       ...this.finds.map(({ object, agent, tick }) => ({
         from: tick,

@@ -149,13 +149,14 @@ const AMENDMENT_COLUMNS = [
   [
     'kind',
     'kind',
-    'What it changes: a pause, the target, the end, a zone that is kept free or is cancelled, or the law',
+    'What it changes: a pause, the target, the end, a zone that is kept free or is cancelled, the law, or a contact that is dismissed',
   ],
   ['from tick', 'from', 'The first tick of the world at which it holds'],
   ['t [s]', 't', 'Mission time at that tick'],
   ['ticks', 'tick_count', 'Another end: how many ticks the mission has by it'],
   ['zone', 'zone', 'A cancelled zone: the number of its amendment'],
   ['law', 'law', 'Another law: which of its numbers differ from the plan'],
+  ['note', 'text', 'A sighting, or the contact that is dismissed'],
   ['operator', 'by', 'The operator that asked for it'],
 ];
 const amendmentsOf = run =>

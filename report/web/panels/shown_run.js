@@ -3,6 +3,7 @@
 import { S, ask, startTail } from './state.js';
 import { buildStrip, seek, showFollowing } from './timeline.js';
 import { buildTeam } from './team.js';
+import { showContacts } from './contacts.js';
 import { showFacts } from './details.js';
 import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
@@ -56,6 +57,7 @@ export function showRecord(run, at) {
   show(run);
   showFollowing();
   showFacts(null);
+  showContacts(run.contacts);
   seek(Math.min(at ?? run.end, run.end));
   buildCheckpoints(run);
 }
@@ -86,6 +88,7 @@ export const livePage = {
       run.stripAt = performance.now();
       buildStrip();
       showFacts(facts);
+      showContacts(run.contacts);
     }
     if (run.tracks.length > 12 && !run.tailChosen) {
       run.tailChosen = true;

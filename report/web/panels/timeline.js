@@ -15,6 +15,7 @@ const COLOUR = {
   zone: 'var(--bad)',
   law: 'var(--muted)',
   reopen: 'var(--muted)',
+  dismiss: 'var(--muted)',
 };
 let last = 0;
 

@@ -119,7 +119,8 @@ TEST_F(Cot, HasZonesContactsAndFinds) {
   zone.corners_m = {{0, 0}, {300, 0}, {0, 300}};
   picture_.zones = {zone};
   picture_.finds = {{.object = 1, .agent = 3, .t_s = 12.5, .x_m = {10, 20, 0}}};
-  picture_.contacts = {{.cell = 7, .x_m = {50, 60}, .reports = 2}};
+  picture_.contacts = {
+      {.cell = 7, .reports = 2, .probability = 0.875, .x_m = {50, 60}, .t_s = 12.5}};
   const auto events = due();
   ASSERT_EQ(events.size(), 3U);
   EXPECT_EQ(events[0].uid, "ergocast-0000000000000abc-zone-4");
@@ -131,17 +132,10 @@ TEST_F(Cot, HasZonesContactsAndFinds) {
   EXPECT_EQ(events[1].callsign, "small object 1");
   EXPECT_EQ(events[1].remarks, "object 1 found by agent 3 at (10.0, 20.0) m after 12.5 s");
   EXPECT_EQ(events[2].uid, "ergocast-0000000000000abc-contact-7");
+  EXPECT_EQ(events[2].remarks,
+            "87.5 % likely at (50.0, 60.0) m, 2 reports, the newest after 12.5 s");
   EXPECT_TRUE(due(at(4999ms)).empty());
   EXPECT_EQ(due(at(5s)).size(), 3U);
-}
-
-TEST_F(Cot, LeavesOutTheContactsWithFewestReports) {
-  picture_.agents.clear();
-  for (int cell = 0; cell < 100; ++cell)
-    picture_.contacts.push_back({.cell = cell, .reports = cell});
-  const auto events = due();
-  ASSERT_EQ(events.size(), kMostCotContacts);
-  EXPECT_NE(events.back().uid.find("contact-36"), std::string::npos) << events.back().uid;
 }
 
 TEST_F(Cot, MarksAReplay) {

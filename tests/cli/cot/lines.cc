@@ -36,7 +36,7 @@ TeamPicture picture() {
   zone.corners_m = {{0, 0}, {300, 0}, {300, 200}, {0, 200}};
   picture.zones = {zone};
   picture.finds = {{.object = 5, .agent = 1, .t_s = 12, .x_m = {40, 50, 0}}};
-  picture.contacts = {{.cell = 77, .x_m = {60, 70}, .reports = 3}};
+  picture.contacts = {{.cell = 77, .reports = 3, .x_m = {60, 70}}};
   return picture;
 }
 
