@@ -33,7 +33,7 @@ std::optional<RobotFix> Driver::fix_of(AgentId, Instant now) const {
   const auto fix = vehicle_.fix(now);
   if (!fix) return std::nullopt;
   return RobotFix{fix->position_m, fix->velocity_mps, fix->not_before, vehicle_.stands(now),
-                  vehicle_.charge_ppm()};
+                  vehicle_.charge_ppm(now)};
 }
 
 void Driver::advance(Instant now, Outbox& out, std::vector<Packet>& to_vehicle) {

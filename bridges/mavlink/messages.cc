@@ -42,13 +42,13 @@ struct Measure {
     add(name);
     base_bytes += sizeof(T);
   }
-  template <std::size_t N>
-  void field(const char* name, const std::array<char, N>&) {
-    add(name_of_type<char>());
+  template <class T, std::size_t N>
+  void field(const char* name, const std::array<T, N>& all) {
+    add(name_of_type<T>());
     add(name);
     const char length = static_cast<char>(N);
     sum.add({&length, 1});
-    base_bytes += N;
+    base_bytes += sizeof all;
   }
   template <class T>
   void extension(const char*, const T&) {
@@ -86,9 +86,9 @@ struct Write {
     for (std::size_t i = 0; i < sizeof(T); ++i, bits = static_cast<Bits<T>>(bits >> 4 >> 4))
       out.push_back(static_cast<std::byte>(bits & 0xFF));
   }
-  template <std::size_t N>
-  void field(const char*, const std::array<char, N>& text) {
-    for (const char letter : text) out.push_back(static_cast<std::byte>(letter));
+  template <class T, std::size_t N>
+  void field(const char* name, const std::array<T, N>& all) {
+    for (const T& value : all) field(name, value);
   }
   void extension(const char* name, const auto& value) { field(name, value); }
 };
@@ -109,9 +109,9 @@ struct Read {
       bits |= std::to_integer<std::uint64_t>(next()) << (8 * i);
     value = std::bit_cast<T>(static_cast<Bits<T>>(bits));
   }
-  template <std::size_t N>
-  void field(const char*, std::array<char, N>& text) {
-    for (char& letter : text) letter = static_cast<char>(next());
+  template <class T, std::size_t N>
+  void field(const char* name, std::array<T, N>& all) {
+    for (T& value : all) field(name, value);
   }
   void extension(const char* name, auto& value) { field(name, value); }
 };

@@ -22,6 +22,9 @@ namespace ergocast::mavlink {
 inline constexpr std::size_t kMaxPayload = 255;
 
 using Text50 = std::array<char, 50>;
+/// Voltages of a battery's cells [mV].
+template <std::size_t N>
+using Cells = std::array<std::uint16_t, N>;
 
 struct Heartbeat {
   static constexpr std::uint32_t kId = 0;
@@ -200,6 +203,41 @@ struct Timesync {
   }
 };
 
+/// One battery, of which a vehicle may have several.
+struct BatteryStatus {
+  static constexpr std::uint32_t kId = 147;
+  static constexpr const char* kName = "BATTERY_STATUS";
+  std::int32_t current_consumed = -1;  ///< mAh; −1: not known
+  std::int32_t energy_consumed = -1;   ///< hJ; −1: not known
+  std::int16_t temperature = 32767;    ///< 0.01 °C; 32767: not known
+  Cells<10> voltages = {65535, 65535, 65535, 65535, 65535,
+                        65535, 65535, 65535, 65535, 65535};  ///< 65535: not known, or no cell
+  std::int16_t current_battery = -1;                         ///< cA; −1: not known
+  std::uint8_t id = 0, battery_function = 0, type = 0;
+  std::int8_t battery_remaining = -1;  ///< %; −1: not known
+  std::int32_t time_remaining = 0;     ///< s; 0: not known
+  std::uint8_t charge_state = 0;
+  Cells<4> voltages_ext{};  ///< cells 11 to 14; 0: no cell
+  std::uint8_t mode = 0;
+  std::uint32_t fault_bitmask = 0;
+  static void list(auto& io, auto& m) {
+    io.field("current_consumed", m.current_consumed);
+    io.field("energy_consumed", m.energy_consumed);
+    io.field("temperature", m.temperature);
+    io.field("voltages", m.voltages);
+    io.field("current_battery", m.current_battery);
+    io.field("id", m.id);
+    io.field("battery_function", m.battery_function);
+    io.field("type", m.type);
+    io.field("battery_remaining", m.battery_remaining);
+    io.extension("time_remaining", m.time_remaining);
+    io.extension("charge_state", m.charge_state);
+    io.extension("voltages_ext", m.voltages_ext);
+    io.extension("mode", m.mode);
+    io.extension("fault_bitmask", m.fault_bitmask);
+  }
+};
+
 struct ExtendedSysState {
   static constexpr std::uint32_t kId = 245;
   static constexpr const char* kName = "EXTENDED_SYS_STATE";
@@ -326,7 +364,7 @@ using Packet =
     std::variant<Heartbeat, SysStatus, LocalPositionNed, GlobalPositionInt, MissionRequest,
                  MissionRequestList, MissionCount, MissionAck, GpsGlobalOrigin, MissionRequestInt,
                  MissionItemInt, CommandLong, CommandAck, SetPositionTargetLocalNed, Timesync,
-                 ExtendedSysState, Statustext>;
+                 BatteryStatus, ExtendedSysState, Statustext>;
 
 /// What a receiver must know of a type of message to check and read it.
 struct Type {

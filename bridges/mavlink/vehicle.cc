@@ -138,16 +138,28 @@ void Vehicle::forget_landed_state(Instant now) {
   if (restarted || now - landed_at_ > kOldestLandedState) landed_state_.reset();
 }
 
+void Vehicle::on(const SysStatus& status, Instant now) {
+  batteries_.take(status);
+  tell_of_batteries(now);
+}
+
+void Vehicle::on(const BatteryStatus& status, Instant now) {
+  batteries_.take(status, now);
+  tell_of_batteries(now);
+}
+
 /// Each tenth is told once, from 50 % on.
-void Vehicle::on(const SysStatus& status, Instant) {
+void Vehicle::tell_of_batteries(Instant now) {
   constexpr int kFirstTold_percent = 50, kLow_percent = 20;
-  charge_ppm_ = -1;
-  if (status.battery_remaining < 0) return;  // not known
-  const int left = std::min(100, static_cast<int>(status.battery_remaining));
-  charge_ppm_ = left * (kWhole_ppm / 100);
-  if (left > kFirstTold_percent || left > battery_told_percent_ - 10) return;
+  const int left = batteries_.percent(now);
+  if (left < 0 || left > kFirstTold_percent || left > battery_told_percent_ - 10) return;
   battery_told_percent_ = left - left % 10 + (left % 10 > 0 ? 10 : 0);
   note(left <= kLow_percent, "the battery has " + std::to_string(left) + " %");
+}
+
+std::int32_t Vehicle::charge_ppm(Instant now) const {
+  const int percent = batteries_.percent(now);
+  return percent < 0 ? kNoCharge : percent * (kWhole_ppm / 100);
 }
 
 void Vehicle::on(const Statustext& text, Instant) {

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "bridges/mavlink/autopilots.h"
+#include "bridges/mavlink/batteries.h"
 #include "bridges/mavlink/fence.h"
 #include "bridges/mavlink/fixes.h"
 #include "bridges/mavlink/frame_reader.h"
@@ -76,8 +77,8 @@ class Vehicle {
 
   /// The newest position, if it can be trusted.
   std::optional<Fix> fix(Instant now) const;
-  /// What the autopilot says of its battery, in millionths; −1: not known.
-  std::int32_t charge_ppm() const { return charge_ppm_; }
+  /// What the autopilot says of its batteries, in millionths; −1: not known.
+  std::int32_t charge_ppm(Instant now) const;
   /// Whether the newest position says that it stands, but for the noise of a vehicle that does.
   bool stands(Instant now) const;
   /// Why the vehicle does not follow its agent; empty if it does.
@@ -95,6 +96,7 @@ class Vehicle {
   void on(const Timesync& answer, Instant) { fixes_.clock().take(answer); }
   void on(const ExtendedSysState& state, Instant now);
   void on(const SysStatus& status, Instant now);
+  void on(const BatteryStatus& status, Instant now);
   void on(const Statustext& text, Instant now);
   void on(const CommandAck& ack, Instant now);
   void on(const MissionRequest& m, Instant now) { take_for_fence(m, now); }
@@ -115,6 +117,7 @@ class Vehicle {
   void adopt(const Source& from, const Heartbeat& heartbeat);
   void meet_driver(const Heartbeat& other);
   void forget_landed_state(Instant now);
+  void tell_of_batteries(Instant now);
   void note(bool warning, std::string text) { notes_.push_back({warning, std::move(text)}); }
 
   bool known() const { return autopilot_.component != 0; }
@@ -155,8 +158,8 @@ class Vehicle {
   bool last_in_air_ = false;  // by the newest message that knows, however old
   std::set<std::uint8_t> strangers_;
   bool warned_of_driver_ = false;
+  Batteries batteries_;
   int battery_told_percent_ = 100;
-  std::int32_t charge_ppm_ = -1;
   std::string last_text_;
 
   Box domain_;

@@ -110,18 +110,60 @@ TEST(MavlinkDriver, SendsItsPlaceEachTickAndObeysItsAgent) {
   EXPECT_EQ(flight.east_mps, 5) << "the mission's speed limit";
 }
 
+BatteryStatus battery(int percent, std::uint8_t id = 0, std::uint8_t function = 0) {
+  BatteryStatus status;
+  status.battery_remaining = static_cast<std::int8_t>(percent);
+  status.id = id;
+  status.battery_function = function;
+  return status;
+}
+
+SysStatus whole(int percent) {
+  SysStatus status;
+  status.battery_remaining = static_cast<std::int8_t>(percent);
+  return status;
+}
+
 TEST(MavlinkDriver, SendsTheChargeThatItsAutopilotReports) {
   DrivenFlight flight(mission_of());
   flight.pass(2s);
   const auto charge_ppm = [&] { return flight.states.back().vehicles[0].charge_ppm; };
   EXPECT_EQ(charge_ppm(), kNoCharge);
   for (const auto& [percent, ppm] : {std::pair(55, 550'000), {0, 0}, {127, kWhole_ppm}, {-1, -1}}) {
-    SysStatus status;
-    status.battery_remaining = static_cast<std::int8_t>(percent);
-    flight.hear(status);
+    flight.hear(whole(percent));
     flight.pass(100ms);
     EXPECT_EQ(charge_ppm(), ppm) << percent;
   }
+}
+
+TEST(MavlinkDriver, SendsTheLeastChargeOfTheBatteriesByWhichItsVehicleMoves) {
+  DrivenFlight flight(mission_of());
+  flight.pass(2s);
+  const auto percent_after = [&](const Packet& packet) {
+    flight.hear(packet);
+    flight.pass(100ms);
+    return flight.states.back().vehicles[0].charge_ppm / 10'000;
+  };
+  BatteryStatus used = battery(-1);
+  used.energy_consumed = 900;
+  used.voltages = {4000, 4000, 4000, 65535, 65535, 65535, 65535, 65535, 65535, 65535};
+  EXPECT_EQ(percent_after(whole(80)), 80);
+  EXPECT_EQ(percent_after(used), 80) << "its charge is not known, whatever it has consumed";
+  EXPECT_EQ(percent_after(battery(70)), 70) << "the message of one battery wins";
+  EXPECT_EQ(percent_after(whole(60)), 70);
+  EXPECT_EQ(percent_after(battery(50, 1, 2)), 50) << "the least of two";
+  EXPECT_EQ(percent_after(battery(10, 2, 3)), 50) << "that of the avionics";
+  EXPECT_EQ(percent_after(battery(10, 3, 4)), 50) << "that of the payload";
+  EXPECT_EQ(percent_after(battery(127, 1)), 70);
+  EXPECT_EQ(percent_after(battery(-1, 0)), 100) << "the first is not known any longer";
+  EXPECT_EQ(percent_after(battery(-1, 1)), 60) << "SYS_STATUS again";
+  EXPECT_EQ(percent_after(battery(40)), 40);
+  flight.pass(9s);
+  EXPECT_EQ(percent_after(Statustext{}), 40);
+  flight.pass(1s);
+  EXPECT_EQ(percent_after(Statustext{}), 60) << "BATTERY_STATUS comes no longer";
+  EXPECT_EQ(percent_after(whole(-1)), 0) << "not known: −1 millionth";
+  EXPECT_EQ(flight.states.back().vehicles[0].charge_ppm, kNoCharge);
 }
 
 TEST(MavlinkDriver, NamesOnlyCommandsThatHadArrivedWhenThePositionWasMeasured) {

@@ -40,6 +40,10 @@ struct Draw {
     for (std::size_t i = 0; i < 50; ++i)
       text[i] = i < length ? static_cast<char>('a' + dice() % 26) : '\0';
   }
+  template <std::size_t N>
+  void field(const char* name, Cells<N>& all) {
+    for (auto& value : all) field(name, value);
+  }
   void extension(const char* name, auto& value) { field(name, value); }
 };
 
@@ -55,6 +59,10 @@ struct Show {
     }
   }
   void field(const char* name, const Text50& text) { out[name] = text_of(text); }
+  template <std::size_t N>
+  void field(const char* name, const Cells<N>& all) {
+    out[name] = all;
+  }
   void extension(const char* name, const auto& value) { field(name, value); }
 };
 

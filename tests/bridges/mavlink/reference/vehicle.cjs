@@ -4,7 +4,8 @@
 // Motion and time-outs count steps of 20 ms, whatever makes them. Only messages have the time of a clock.
 //
 // options: system, make (px4, ardupilot), body (copter, rover, wing), at ("LAT,LON"), patience (replaces both
-// time-outs [s]; "never": there is none).
+// time-outs [s]; "never": there is none). A body of another program may move: step(body) has its place and
+// velocity, and wanted() is what the autopilot wants of it.
 // clock() → ns as a BigInt; send(frame) passes a frame to all who are on the link.
 const HOME_ALTITUDE = 402.5;
 const STEP = 0.02; // s
@@ -98,7 +99,14 @@ class Autopilot {
         mavlinkVersion: 3,
       }),
     );
-    if (this.battery >= 0) this.send(make(this.mavlink.common.SysStatus, { batteryRemaining: this.battery }));
+    if (this.battery >= 0) this.reportBattery();
+  }
+
+  // PX4 and ArduPilot send both messages. SYS_STATUS of this one knows nothing.
+  reportBattery() {
+    const voltages = [3900, 3900, 3900, 3900].concat(Array(6).fill(65535));
+    this.send(make(this.mavlink.common.SysStatus, { batteryRemaining: -1 }));
+    this.send(make(this.mavlink.common.BatteryStatus, { batteryRemaining: this.battery, voltages }));
   }
 
   place(north) {
@@ -148,11 +156,9 @@ class Autopilot {
     return state.mode === this.external ? state.setpoint : [...this.byHand, 0];
   }
 
-  step() {
+  // With the vehicle's own dynamics.
+  move() {
     const { state } = this;
-    state.steps += 1;
-    const since = state.steps - this.lastSetpoint;
-    if (state.mode === this.external && since > this.timeout) this.lose();
     const target = this.wanted();
     const share = 1 - Math.exp(-STEP / RESPONSE);
     state.velocity = state.velocity.map((v, i) => v + share * (target[i] - v));
@@ -161,9 +167,20 @@ class Autopilot {
     if (state.air) {
       state.north += north * STEP;
       state.east += east * STEP;
-      if (state.mode === this.external) state.path += Math.hypot(north, east) * STEP;
     }
     if (this.options.body !== 'rover') state.up = Math.max(0, state.up + up * STEP);
+  }
+
+  // body: north, east and up of its start, and its velocity in these directions
+  step(body) {
+    const { state } = this;
+    state.steps += 1;
+    const since = state.steps - this.lastSetpoint;
+    if (state.mode === this.external && since > this.timeout) this.lose();
+    if (body) [state.north, state.east, state.up, ...state.velocity] = body;
+    else this.move();
+    const [north, east] = state.velocity;
+    if (state.air && state.mode === this.external) state.path += Math.hypot(north, east) * STEP;
     if (state.up > 0.5) state.air = true;
     if (this.takeoff > 0 && state.up >= this.takeoff - 0.5) this.takeoff = 0;
     this.report();
