@@ -269,6 +269,13 @@ ergocast_test(NAME mavlink_fleet_tests LABELS lab OPTIMISED
   LIBS ergocast_mavlink ergocast_lab
   PROPERTIES FIXTURES_REQUIRED node_mavlink COST 60)
 target_compile_definitions(mavlink_fleet_tests PRIVATE ERGOCAST_NODE_MAVLINK="${CMAKE_BINARY_DIR}/node_mavlink")
+if(TARGET ergocast_example_mujoco)
+  ergocast_test(NAME mavlink_quadrotor_tests LABELS lab OPTIMISED
+    SOURCES bridges/mavlink/fleet.cc bridges/mavlink/quadrotors_test.cc
+    LIBS ergocast_mavlink ergocast_example_mujoco ergocast_lab
+    PROPERTIES FIXTURES_REQUIRED node_mavlink COST 60)
+  target_compile_definitions(mavlink_quadrotor_tests PRIVATE ERGOCAST_NODE_MAVLINK="${CMAKE_BINARY_DIR}/node_mavlink")
+endif()
 include(bridges/ros2/tests.cmake)
 add_executable(cot-lines cli/cot/lines.cc)
 target_link_libraries(cot-lines PRIVATE ergocast_tak ergocast::plan nlohmann_json::nlohmann_json ergocast::warnings)

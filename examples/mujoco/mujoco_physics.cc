@@ -164,7 +164,8 @@ RobotState MujocoPhysics::state_of(const Robot& robot) const {
 }
 
 void MujocoPhysics::steer(Robot& robot, const Eigen::Vector3d& wanted_mps) {
-  const RobotState state = state_of(robot);
+  RobotState state = state_of(robot);
+  state.position_m.z() -= robot.held_m - kHoverHeight_m;  // its pilot holds kHoverHeight_m
   double* const control = data_->ctrl + robot.act_at;
   if (rolls()) {
     const auto speeds = robot.disc.wheels_radps(state, wanted_mps);

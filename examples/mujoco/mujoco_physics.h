@@ -36,6 +36,12 @@ class MujocoPhysics : public Physics {
 
   std::string summary() const override;
 
+  /// From now on a quadrotor holds this height of its centre; before it holds kHoverHeight_m.
+  /// @pre the robot was placed
+  void hold_height(AgentId id, double height_m) { robots_.at(id).held_m = height_m; }
+  /// @pre a tick has passed since the robot was placed
+  double height_m(AgentId id) const { return state_of(robots_.at(id)).position_m.z(); }
+
   const Contacts& contacts() const { return contacts_; }
   /// For pictures.
   const mjModel* model() const { return model_.get(); }
@@ -46,6 +52,7 @@ class MujocoPhysics : public Physics {
   struct Robot {
     Robot(const RobotDesign& design) : disc(design), quadrotor(design) {}
     Eigen::Vector3d place_m{0, 0, 0}, velocity_mps{0, 0, 0};
+    double held_m = kHoverHeight_m;
     bool to_place = true;
     std::vector<double> qpos, qvel, act;                // kept while the model is made again
     int body = 0, qpos_at = 0, dof_at = 0, act_at = 0;  // indices in the model

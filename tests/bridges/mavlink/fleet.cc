@@ -59,6 +59,12 @@ double Fleet::now_s() const {
   return std::chrono::duration<double>(now_.time_since_epoch()).count() - 1000;
 }
 
+double Fleet::longest_gap_s() const {
+  int steps = 0;
+  for (const nlohmann::json& state : states_) steps = std::max(steps, state["gap"].get<int>());
+  return std::chrono::duration<double>(steps * MockFleet::kStep).count();
+}
+
 void Fleet::pass(double seconds) {
   end_ = now_ + std::chrono::milliseconds(std::lround(seconds * 1000));
   while (now_ < end_) turn();
@@ -145,8 +151,14 @@ void Fleet::take_frame(const Frame& frame) {
 }
 
 void Fleet::step_vehicles() {
+  std::vector<MockFleet::Body> bodies;
+  if (bodies_) {
+    wanted_mps_.resize(size());
+    bodies = bodies_(wanted_mps_);
+  }
   MockFleet::Step step = mocks_.step(now_.time_since_epoch() - std::chrono::seconds(900), arrived_,
-                                     orders_, now_ + MockFleet::kStep > end_);
+                                     orders_, now_ + MockFleet::kStep > end_, bodies);
+  wanted_mps_ = std::move(step.wanted_mps);
   arrived_.clear();
   orders_.clear();
   for (auto& [vehicle, bytes] : step.frames) down_.send(now_, {vehicle, std::move(bytes)});

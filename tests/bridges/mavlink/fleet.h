@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -63,6 +64,12 @@ class Fleet {
   Fleet(const Mission& mission, const VehicleOptions& options, const std::string& node_mavlink,
         unsigned seed);
 
+  /// Moves all vehicles by 20 ms, by the velocities that their autopilots want.
+  using Bodies = std::function<std::vector<MockFleet::Body>(
+      const std::vector<std::array<double, 3>>& wanted_mps)>;
+  /// From now on the vehicles are bodies of another program.
+  void set_bodies(Bodies bodies) { bodies_ = std::move(bodies); }
+
   void pass(double seconds);
   /// The pilot's order comes before the next step.
   void pilot(std::size_t vehicle, const std::string& order) {
@@ -88,6 +95,8 @@ class Fleet {
 
   /// The least distance of two vehicles so far.
   double least_distance_m() const { return least_distance_m_; }
+  /// The longest time between two setpoints that any vehicle has followed [s].
+  double longest_gap_s() const;
   /// Setpoints that would have moved a vehicle though its driver knew that its pilot does not allow
   /// it.
   int disobeyed() const { return disobeyed_; }
@@ -135,6 +144,8 @@ class Fleet {
   MockFleet mocks_;
   std::vector<std::pair<std::size_t, MockFleet::Bytes>> arrived_;
   std::vector<std::pair<std::size_t, std::string>> orders_;
+  Bodies bodies_;
+  std::vector<std::array<double, 3>> wanted_mps_;
   nlohmann::json states_;
   std::vector<Eigen::Vector3d> places_m_;
   double least_distance_m_ = 1e9;

@@ -4,6 +4,7 @@
 // the environment there are five such flights.
 #include "tests/bridges/mavlink/fleet.h"
 
+#include <cstdio>
 #include <cstdlib>
 
 namespace ergocast::mavlink {
@@ -120,6 +121,8 @@ void Flight16::restart_drivers() {
 
 void Flight16::end() {
   fleet_.pass(600 - fleet_.now_s());
+  std::printf("least distance %.2f m, longest gap between setpoints %.2f s\n",
+              fleet_.least_distance_m(), fleet_.longest_gap_s());
   EXPECT_GE(fleet_.least_distance_m(), kDistance_m);
   EXPECT_LE(fleet_.least_distance_m(), 3 * kDistance_m)
       << "they have not met: what agents keep for old positions and responses is within this";

@@ -26,7 +26,10 @@ class MockFleet {
     std::vector<std::pair<std::size_t, Bytes>> frames;
     std::vector<std::array<double, 3>> at;  ///< latitude, longitude, height of each vehicle
     nlohmann::json states;
+    std::vector<std::array<double, 3>> wanted_mps;  ///< north, east and up, of each autopilot
   };
+  /// Place and velocity to the north, to the east and upwards, from where the vehicle began.
+  using Body = std::array<double, 6>;
 
   /// @param options  those of vehicle.cjs, for each vehicle
   MockFleet(const std::string& program, const std::string& folder, const nlohmann::json& options) {
@@ -56,14 +59,17 @@ class MockFleet {
   }
 
   /// Passes on what the vehicles and pilots get, and then 20 ms.
+  /// @param bodies  where the vehicles are then; none: they move by dynamics of their own
   Step step(std::chrono::nanoseconds time, const std::vector<std::pair<std::size_t, Bytes>>& frames,
-            const std::vector<std::pair<std::size_t, std::string>>& pilot, bool states) {
+            const std::vector<std::pair<std::size_t, std::string>>& pilot, bool states,
+            const std::vector<Body>& bodies) {
     auto hex = nlohmann::json::array();
     for (const auto& [vehicle, bytes] : frames) hex.push_back({vehicle, hex_of(bytes)});
     write({{"ns", std::to_string(time.count())},
            {"frames", std::move(hex)},
            {"pilot", pilot},
-           {"states", states}});
+           {"states", states},
+           {"bodies", bodies}});
     if (getline(&line_, &size_, out_) < 0) throw std::runtime_error("the mock fleet has ended");
     const auto read = nlohmann::json::parse(line_);
     Step step;
@@ -71,6 +77,7 @@ class MockFleet {
       step.frames.emplace_back(one[0], bytes_of(one[1].get_ref<const std::string&>()));
     step.at = read["at"];
     step.states = read["states"];
+    step.wanted_mps = read["wanted"];
     return step;
   }
 

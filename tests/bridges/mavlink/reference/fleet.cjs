@@ -3,10 +3,12 @@
 // node_modules. The first line of the input has the options of all vehicles as a JSON list. Each further
 // line is a step of 20 ms, and is answered by a line:
 //
-//   { "ns": TIME, "frames": [[VEHICLE, HEX], …], "pilot": [[VEHICLE, ORDER], …], "states": true|false }
-//   { "frames": [[VEHICLE, HEX], …], "at": [[LAT, LON, UP], …], "states": [STATE, …] }
+//   { "ns": TIME, "frames": [[VEHICLE, HEX], …], "pilot": [[VEHICLE, ORDER], …], "states": true|false,
+//     "bodies": [[NORTH, EAST, UP, and the velocity], …] }
+//   { "frames": [[VEHICLE, HEX], …], "at": [[LAT, LON, UP], …], "states": [STATE, …],
+//     "wanted": [[NORTH, EAST, UP], …] }
 //
-// Frames and orders of a line count before its step.
+// Frames and orders of a line count before its step. Without bodies the vehicles move by their own dynamics.
 const { createRequire } = require('node:module');
 const readline = require('node:readline');
 const { Autopilot } = require('./vehicle.cjs');
@@ -39,10 +41,11 @@ async function main() {
     await turn();
     await turn();
     for (const [i, order] of read.pilot) vehicles[i].obey(order);
-    for (const vehicle of vehicles) vehicle.step();
+    for (const [i, vehicle] of vehicles.entries()) vehicle.step(read.bodies[i]);
     const at = vehicles.map(vehicle => [...vehicle.place(vehicle.state.north), vehicle.state.up]);
     const states = read.states ? vehicles.map(vehicle => vehicle.state) : [];
-    process.stdout.write(JSON.stringify({ frames: sent, at, states }) + '\n');
+    const wanted = vehicles.map(vehicle => vehicle.wanted());
+    process.stdout.write(JSON.stringify({ frames: sent, at, states, wanted }) + '\n');
     sent = [];
   }
 }
