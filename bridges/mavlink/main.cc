@@ -34,13 +34,10 @@ Instant now() {
       std::chrono::steady_clock::now().time_since_epoch()));
 }
 
-/// In the unit of signatures; nothing if the clock is before their epoch.
-std::optional<std::uint64_t> signing_time() {
+std::optional<std::uint64_t> signing_time_now() {
   timespec time{};
   clock_gettime(CLOCK_REALTIME, &time);
-  if (time.tv_sec <= kSigningEpoch_s) return std::nullopt;
-  return static_cast<std::uint64_t>(time.tv_sec - kSigningEpoch_s) * 100'000 +
-         static_cast<std::uint64_t>(time.tv_nsec / 10'000);
+  return signing_time(time.tv_sec, time.tv_nsec);
 }
 
 /// A line of the log. Characters that could control a terminal are shown as dots. It is left out
@@ -118,7 +115,7 @@ class Process {
     packets_.clear();
     driver_.advance(now(), out_, packets_);
     buses_.send(out_);
-    if (const auto time = signing_time()) writer_.note_time(*time);
+    if (const auto time = signing_time_now()) writer_.note_time(*time);
     for (const Packet& packet : packets_) link_->write(writer_.frame_of(packet, driver_.source()));
     for (const Note& note : driver_.take_notes())
       say(options_.id, note.warning ? "warning" : "info", note.text);
@@ -166,7 +163,7 @@ int run(const Options& options) {
     say(options.id, "error", problem);
     return kUnavailable;
   };
-  const auto time = signing_time();
+  const auto time = signing_time_now();
   if (options.signing_key && !time)
     return failed("the clock of this machine is before 2015, so messages cannot be signed: set it");
   auto buses = Buses::open(options.url, subscriptions_of(Driver::kRole), options.authenticator);

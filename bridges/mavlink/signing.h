@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace ergocast::mavlink {
@@ -16,6 +17,14 @@ using SigningKey = std::array<std::byte, 32>;
 
 /// 1 January 2015 by the clock of Unix [s].
 inline constexpr std::int64_t kSigningEpoch_s = 1420070400;
+/// A time of the clock of Unix as signatures have it [10 µs]; nothing before their epoch. A
+/// computer without a battery for its clock begins in 1970.
+constexpr std::optional<std::uint64_t> signing_time(std::int64_t unix_s, std::int64_t ns) {
+  if (unix_s <= kSigningEpoch_s) return std::nullopt;
+  return static_cast<std::uint64_t>(unix_s - kSigningEpoch_s) * 100'000 +
+         static_cast<std::uint64_t>(ns / 10'000);
+}
+
 /// A sender that is new here may be this much behind the newest frame of any other [10 µs].
 inline constexpr std::uint64_t kSigningSlack = 6'000'000;
 

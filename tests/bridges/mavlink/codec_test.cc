@@ -127,6 +127,15 @@ TEST(MavlinkSignatures, LetOnlyNewFramesWithTheSameKeyPass) {
   EXPECT_EQ(read_all(reader, ours.frame_of(place(), {7, 1})).size(), 1U);
 }
 
+TEST(MavlinkSignatures, HaveNoTimeBeforeTheirEpoch) {
+  EXPECT_FALSE(signing_time(0, 0)) << "1970";
+  EXPECT_FALSE(signing_time(kSigningEpoch_s, 0));
+  EXPECT_EQ(signing_time(kSigningEpoch_s + 1, 20'000), 100'002U);
+  FrameReader reader(key_of(1), 1'000'000'000);
+  FrameWriter since_1970(key_of(1), 7);
+  EXPECT_EQ(read_all(reader, since_1970.frame_of(place(), {7, 1})).size(), 0U);
+}
+
 TEST(MavlinkSignatures, OfALongTimeAgoAreRefusedFromANewSender) {
   FrameReader reader(key_of(1), 1'000'000'000);
   FrameWriter old(key_of(1), 1'000'000'000 - kSigningSlack - 1);

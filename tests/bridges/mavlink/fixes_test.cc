@@ -135,6 +135,53 @@ TEST(MavlinkVehicle, HasNoPositionByAnImpossibleClock) {
   EXPECT_FALSE(flight.vehicle.fix(flight.now)) << "no number is as large as its age";
 }
 
+/// Such autopilots answer TIMESYNC by the calendar, which may be that of 1970, and time positions
+/// from their start.
+TEST(MavlinkVehicle, HasNoPositionIfTheAutopilotAnswersByAnotherClock) {
+  constexpr double kCalendar_s = 1.79e9;
+  for (const double ahead_s : {kCalendar_s, 1.0, -1.0}) {
+    Flight flight;
+    flight.answers = false;
+    flight.pass(4);
+    flight.begin();
+    for (int i = 0; i < 10; ++i) {
+      flight.pass(1);
+      Timesync answer = flight.sent_of<Timesync>().back();
+      answer.tc1 = (flight.now - flight.kPowerOn).count() + std::llround(ahead_s * 1e9);
+      flight.hear(answer);
+    }
+    flight.pass(0.1);
+    EXPECT_FALSE(flight.vehicle.fix(flight.now)) << ahead_s;
+    EXPECT_TRUE(flight.stands());
+    EXPECT_TRUE(flight.said(ahead_s > 0 ? "is older than" : "in the future")) << flight.log;
+  }
+}
+
+TEST(MavlinkVehicle, HasNoPositionWithAPartThatIsNoNumber) {
+  VehicleOptions indoors;
+  indoors.altitude_m = 20;
+  indoors.local_origin_m = Eigen::Vector3d(100, 210, 0);
+  using Part = float LocalPositionNed::*;
+  for (const Part part : {&LocalPositionNed::x, &LocalPositionNed::y, &LocalPositionNed::z,
+                          &LocalPositionNed::vx, &LocalPositionNed::vy, &LocalPositionNed::vz}) {
+    for (const float value :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+      Flight flight(indoors);
+      flight.positions = false;
+      flight.local = true;
+      flight.near.z = -20;
+      flight.pass(5);
+      ASSERT_TRUE(flight.vehicle.fix(flight.now)) << flight.log;
+      flight.begin();
+      flight.near.*part = value;
+      flight.pass(1);
+      EXPECT_FALSE(flight.vehicle.fix(flight.now)) << value;
+      EXPECT_TRUE(flight.stands());
+      EXPECT_TRUE(flight.said("is no number")) << flight.log;
+    }
+  }
+}
+
 TEST(MavlinkVehicle, HasNoPositionWhoseAgeIsNotKnownAnyLonger) {
   Flight flight;
   flight.pass(5);

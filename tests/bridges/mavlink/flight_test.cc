@@ -317,6 +317,13 @@ TEST_F(MavlinkVehicles, AreReachedByEveryLinkAndRefusedIfTheyCannotStopOrHaveADr
   EXPECT_EQ(wait_for(wing.child), 4) << wing.printed();
   EXPECT_TRUE(wing.prints("system 2 is a fixed wing, which cannot be stopped in the air"));
 
+  const json before = Pilot(14551).state();
+  Program& other = driver(0, "udp:127.0.0.1:14551", {"--system", "9"});
+  EXPECT_TRUE(other.prints("waits for --system 9")) << other.printed();
+  other.child.send(SIGTERM);
+  EXPECT_EQ(wait_for(other.child), 0) << other.printed();
+  EXPECT_EQ(Pilot(14551).state()["setpoints"], before["setpoints"]) << "another vehicle's driver";
+
   {
     const Radio radio(14551, device);
     Program& serial = driver(0, std::string("serial:") + name.data() + ":57600");
@@ -332,6 +339,27 @@ TEST_F(MavlinkVehicles, AreReachedByEveryLinkAndRefusedIfTheyCannotStopOrHaveADr
   tcp.child.send(SIGTERM);
   EXPECT_EQ(wait_for(tcp.child), 0) << tcp.printed();
   close(listener);
+}
+
+TEST_F(MavlinkVehicles, AreLeftToTheirPilotsIfTheyRefuseOffboard) {
+  std::filesystem::create_directory(out());
+  mock(14551, {"--make", "px4", "--stubborn", "yes", "--at", "47.65368,9.17527"});
+  const Pilot pilot(14551);
+  pilot.state();
+  hand("ergocast-logger", {"--out", out()});
+  Program& one = driver(0, "udp:127.0.0.1:14551", {"--take-command"});
+  hand("ergocast-agent", {"--id", "0"});
+  hand("ergocast-coordinator", {scenario_of_one()});
+  EXPECT_TRUE(one.prints("the autopilot refuses OFFBOARD: DENIED")) << one.printed();
+  EXPECT_TRUE(one.prints("leaves it to the pilot")) << one.printed();
+  const json state = pilot.state();
+  for (const json& order : state["orders"])
+    EXPECT_EQ(order, "mode") << "it neither arms nor climbs";
+  EXPECT_EQ(state["north"], 0) << state;
+  EXPECT_EQ(state["up"], 0) << state;
+  take_off(pilot, "OFFBOARD");
+  EXPECT_TRUE(one.prints("follows its agent")) << one.printed();
+  EXPECT_TRUE(pilot.sees([](const json& now) { return now["path"] > 2; })) << one.printed();
 }
 
 TEST_F(MavlinkVehicles, AreSentSetpointsWhileNobodyReadsTheLog) {

@@ -2,7 +2,7 @@
 // The mock autopilot of vehicle.cjs at a UDP port, by this machine's clock:
 //
 //   autopilot.cjs FOLDER PORT [--system N] [--make px4|ardupilot] [--body copter|rover|wing]
-//                 [--at LAT,LON] [--to PORT] [--patience SECONDS|never]
+//                 [--at LAT,LON] [--to PORT] [--patience SECONDS|never] [--stubborn yes]
 //
 // FOLDER has node_modules. It speaks MAVLink with all who send to UDP port PORT of this host, and with --to.
 // It passes frames between them, as routers do. A datagram that begins with "pilot " is a pilot's order; the
