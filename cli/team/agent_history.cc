@@ -49,6 +49,8 @@ void add_row(Json& lists, const AgentRow& row, std::size_t samples) {
   if (row.charge_ppm != kNoCharge) {
     pad(lists["charge"], samples);
     lists["charge"].push_back(page_number(share_of(row.charge_ppm), 3));
+    pad(lists["charges"], samples);
+    lists["charges"].push_back(row.charges);
   }
   if (!row.status) return;
   const AgentStatus& status = *row.status;

@@ -60,7 +60,10 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
   json["position_m"] = or_null(!row.position_m.empty(), row.position_m);
   json["velocity_mps"] = or_null(!row.velocity_mps.empty(), row.velocity_mps);
   json["moves"] = or_null(row.moves.has_value(), row.moves.value_or(false));
-  if (row.charge_ppm != kNoCharge) json["charge"] = share_of(row.charge_ppm);
+  if (row.charge_ppm != kNoCharge) {
+    json["charge"] = share_of(row.charge_ppm);
+    json["charges"] = row.charges;
+  }
   if (!row.status) return json;
   const AgentStatus& status = *row.status;
   json["host"] = status.host;

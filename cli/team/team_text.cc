@@ -262,7 +262,7 @@ std::string condition_text(const AgentRow& row) {
     case AgentPhase::kWaiting:
       return "ready";
     case AgentPhase::kReturning:
-      return "goes home";
+      return row.charges ? "charging" : "goes home";
     case AgentPhase::kResting:
       return "rests";
     default:

@@ -8,6 +8,9 @@
 #include <utility>
 
 #include "core/mission/kinds.h"
+#include "core/mission/station.h"
+#include "core/motion/charge.h"
+#include "core/motion/home.h"
 #include "core/motion/vehicle.h"
 #include "core/search/search_cells.h"
 #include "team/median_metric.h"
@@ -153,6 +156,15 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
   return row;
 }
 
+/// An agent that goes home for its battery stays there until the battery is full.
+bool TeamView::charges(const AgentRow& row, const Mission& mission, const Vehicle& vehicle) {
+  const AgentId id = row.author.agent;
+  const bool returns = row.status && row.status->phase == AgentPhase::kReturning;
+  if (!returns || battery_of(mission, id) == nullptr) return false;
+  if (vehicle.charge_ppm == kNoCharge || vehicle.charge_ppm >= kFull_ppm) return false;
+  return length_of(*station_of(mission, id) - vehicle.position_m) <= home_m(mission, id);
+}
+
 void TeamView::add_vehicle(AgentRow& row) const {
   const auto found = vehicles_.find(row.author.agent);
   const auto& mission = follower().mission();
@@ -163,6 +175,7 @@ void TeamView::add_vehicle(AgentRow& row) const {
   row.position_m.assign(vehicle.position_m.data(), vehicle.position_m.data() + axes);
   row.velocity_mps.assign(vehicle.velocity_mps.data(), vehicle.velocity_mps.data() + axes);
   row.charge_ppm = vehicle.charge_ppm;
+  row.charges = charges(row, *mission, vehicle);
   row.moves = !stands(motion_of(*mission, row.author.agent), vehicle.velocity_mps);
 }
 

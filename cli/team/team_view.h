@@ -46,6 +46,7 @@ struct AgentRow {
   std::int32_t charge_ppm = kNoCharge;  ///< of its battery, core/motion/charge.h
   /// Whether it moves in that state; nothing: not known.
   std::optional<bool> moves{};
+  bool charges = false;  ///< its agent has gone home, and waits there for a full battery
 };
 
 /// Coordinator, world or logger.
@@ -136,6 +137,7 @@ class TeamView {
   Instant last_sign(const Author& author) const;
   AgentRow row_of(const Author& author, bool member, Instant now) const;
   void add_vehicle(AgentRow& row) const;
+  static bool charges(const AgentRow& row, const Mission& mission, const Vehicle& vehicle);
   Condition condition_of(const Author& author, const Seen& seen, Instant now) const;
   std::map<AgentId, std::pair<Author, bool>> newest_incarnations() const;
   void add_agents(TeamPicture& picture, Instant now) const;

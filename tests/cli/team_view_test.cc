@@ -8,6 +8,7 @@
 
 #include "cli/team/team_json.h"
 #include "cli/team/team_text.h"
+#include "core/motion/charge.h"
 #include "core/search/search_cells.h"
 #include "tests/support/team.h"
 
@@ -87,6 +88,46 @@ struct TeamViewWithFalseAlarms : TeamViewTest {
   }
   TeamViewWithFalseAlarms() : TeamViewTest(mission()) {}
 };
+
+struct TeamViewWithBatteries : TeamViewTest {
+  static Mission mission() {
+    Mission mission = small_mission(4);
+    AgentKind kind;
+    kind.name = "robots";
+    kind.count = 4;
+    kind.u_max_mps = 1;
+    kind.stations_m = {{100, 100, 0}, {200, 100, 0}, {300, 100, 0}, {400, 100, 0}};
+    kind.battery.capacity_wh = 5;
+    kind.battery.power_w = kind.battery.charge_w = 100;
+    mission.kinds = {kind};
+    return mission;
+  }
+  TeamViewWithBatteries() : TeamViewTest(mission()) {}
+};
+
+TEST_F(TeamViewWithBatteries, KnowsWhichAgentIsChargedAtItsStation) {
+  hear_mission(at(0s));
+  hear_all(at(100ms), 40);
+  Tick tick = 40;
+  const auto charges = [&](AgentPhase phase, double x_m, std::int32_t charge_ppm) {
+    ++tick;
+    AgentStatus told = status(0, 1000 + tick, tick);
+    told.phase = phase;
+    give(view_, told, at(200ms));
+    WorldState state = world_state(tick, {{x_m, 100, 0}});
+    state.vehicles[0].charge_ppm = charge_ppm;
+    give(view_, state, at(200ms));
+    return row(0, at(200ms)).charges;
+  };
+  EXPECT_TRUE(charges(AgentPhase::kReturning, 100.1, 400'000));
+  EXPECT_EQ(condition_text(row(0, at(200ms))), "charging");
+  EXPECT_FALSE(charges(AgentPhase::kReturning, 180, 400'000)) << "on its way";
+  EXPECT_EQ(condition_text(row(0, at(200ms))), "goes home");
+  EXPECT_FALSE(charges(AgentPhase::kReturning, 100.1, kFull_ppm)) << "full";
+  EXPECT_FALSE(charges(AgentPhase::kReturning, 100.1, kNoCharge)) << "not known";
+  EXPECT_FALSE(charges(AgentPhase::kRunning, 100.1, 400'000)) << "it passes by";
+  EXPECT_FALSE(charges(AgentPhase::kResting, 100.1, 400'000)) << "it rests";
+}
 
 TEST_F(TeamViewWithFalseAlarms, HasTheContactsOfTheNewestRecordAck) {
   hear_mission(at(0s));

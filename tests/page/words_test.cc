@@ -64,6 +64,22 @@ TEST_F(WordsInABrowser, AgentsGoHomeAndRest) {
   expect_no_errors();
 }
 
+TEST_F(WordsInABrowser, AgentsGoHomeAndAreCharged) {
+  const std::string run = (folder_ / "run").string();
+  ASSERT_EQ(ergocast({"simulate", scenario_file("recharge"), "--duration", "250", "--event-log",
+                      "--out", run}),
+            0)
+      << output();
+  browser_->open("file://" + run + "/report.html");
+  ASSERT_TRUE(browser_->becomes("return Boolean(window.ergocast && ergocast.S.run.ready)"));
+  std::set<std::string> all;
+  for (int t_s = 2; t_s < 236; t_s += 2) {
+    for (const auto& state : states(t_s)) all.insert(state.get<std::string>());
+  }
+  EXPECT_EQ(all, (std::set<std::string>{"charging", "goes home", "ok"}));
+  expect_no_errors();
+}
+
 TEST_F(WordsInABrowser, ALiveTeamPausesAndRests) {
   // They rest from tick 2000 of 10^8 on.
   const auto file = scenario(

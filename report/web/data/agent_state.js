@@ -42,7 +42,7 @@ function dutyOf(run, track, row, status) {
     status?.phase ??
     (run.rests(track.id, row) ? 'resting' : run.goesHome(track.id, row) ? 'returning' : 'running');
   if (phase === 'resting') return { kind: 'idle', text: 'rests' };
-  if (phase === 'returning') return { kind: 'ok', text: 'goes home' };
+  if (phase === 'returning') return { kind: 'ok', text: status?.charges ? 'charging' : 'goes home' };
   if (status?.blocked_s >= LONG_BLOCK_S) {
     const by = typeof status.blocked_by === 'number' ? status.blocked_by : null;
     return { kind: 'ok', text: `blocked by ${by ?? 'an edge'}`, blocked: { by } };

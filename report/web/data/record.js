@@ -66,6 +66,7 @@ export function recordHistory(run, { t, metric, agents, words, phases }) {
         blocked_s: own.blocked_s?.[i],
         blocked_by: own.blocked_by?.[i],
         charge: own.charge?.[i],
+        charges: own.charges?.[i],
       }));
     return {
       t: at,

@@ -77,7 +77,7 @@ const CHART = {
 };
 const AGENTS = {
   '#': 'The number of an agent. A click on its row chooses the agent.',
-  State: 'Whether it runs, rests, goes home, waits for another process, is late, silent or gone.',
+  State: 'Whether it runs, rests, goes home, charges, waits for another process, is late, silent or gone.',
   Battery: 'What is left in the battery of its vehicle. The agent goes to its station to charge it.',
   Speed: 'Over the last second.',
   Distance: 'The length of its path since the start.',

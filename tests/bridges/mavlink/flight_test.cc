@@ -237,8 +237,11 @@ TEST_F(MavlinkVehicles, GoHomeByTheirBatteriesAndComeBackOnceTheseAreFull) {
   ASSERT_TRUE(eventually([&] { return apart_m() > 8; }, one.child.pid())) << one.printed();
   pilot.orders("battery 15");
   EXPECT_TRUE(eventually([&] { return apart_m() < 3; }, one.child.pid())) << one.printed();
-  ASSERT_EQ(ergocast({"status", "--lcm-url", kUrl}), 0) << output();
-  EXPECT_NE(output().find("goes home"), std::string::npos) << output();
+  const auto charges = [&] {
+    return ergocast({"status", "--lcm-url", kUrl}) == 0 &&
+           output().find("charging") != std::string::npos;
+  };
+  EXPECT_TRUE(eventually(charges, one.child.pid())) << output();
   EXPECT_NE(output().find("15 %"), std::string::npos) << output();
   pilot.orders("battery 97");
   EXPECT_TRUE(eventually([&] { return apart_m() > 8; }, one.child.pid())) << one.printed();
