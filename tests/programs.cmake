@@ -252,7 +252,9 @@ set_tests_properties(reference_is_current PROPERTIES LABELS process)
 add_dependencies(all_process reference-facts)
 add_test(NAME mcap_reference_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/report/export/mcap_test.sh
   $<TARGET_FILE:ergocast> ${CMAKE_BINARY_DIR}/mcap_reader)
-set_tests_properties(mcap_reference_reader PROPERTIES LABELS process TIMEOUT 300)
+add_test(NAME ros2_mcap_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/report/export/ros2_mcap_test.sh
+  $<TARGET_FILE:ergocast> ${CMAKE_BINARY_DIR}/mcap_reader ${CMAKE_BINARY_DIR}/node_ros2)
+set_tests_properties(mcap_reference_reader ros2_mcap_reader PROPERTIES LABELS process TIMEOUT 300)
 add_executable(mavlink-lines bridges/mavlink/lines.cc)
 target_link_libraries(mavlink-lines PRIVATE ergocast_mavlink nlohmann_json::nlohmann_json ergocast::warnings)
 ergocast_script_test(mavlink_reference process bridges/mavlink/reference_test.sh

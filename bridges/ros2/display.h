@@ -10,6 +10,8 @@
 
 #include "cli/team/team_view.h"
 #include "core/measure/detection.h"
+#include "core/measure/occupancy.h"
+#include "core/measure/thinned_path.h"
 #include "core/mission/kinds.h"
 #include "core/mission/mission.h"
 #include "team/messages.h"
@@ -17,22 +19,9 @@
 
 namespace ergocast::ros2 {
 
-/// Square cells from a corner of the domain, as nav_msgs/OccupancyGrid has them.
-struct Grid {
-  double resolution_m = 1;
-  std::uint32_t width = 0, height = 0;  ///< along x and y
-  /// The cell (i along x, j along y) is at j · width + i: 100 for the target's greatest density,
-  /// −1 outside of the domain.
-  std::vector<std::int8_t> data;
-};
-
 class Display {
  public:
   static constexpr Role kRole = Role::kMonitor;
-  /// Limit (ROS 2): positions of one agent's path. Beyond it: every second one is left out.
-  static constexpr std::size_t kMostPositions = 500;
-  /// Cells along the domain's longer side.
-  static constexpr int kCells = 64;
 
   /// @param run  0: the first one received
   Display(RunId run, Instant since, bool authenticated);
@@ -46,16 +35,14 @@ class Display {
 
   /// Where the team has been: the density of time since this display began, in the mission's
   /// cosines. Empty before the first position. @pre begun()
-  Grid coverage() const;
+  OccupancyGrid coverage() const;
   /// The target that holds now. @pre begun()
-  Grid target() const;
-  /// How much of the target an object may still be in: the target times the probability that no
-  /// sensor of the team has detected an object there since this display and the target began.
-  /// @pre begun()
-  Grid left() const;
+  OccupancyGrid target() const;
+  /// occupancy_left() since this display and the target began. @pre begun()
+  OccupancyGrid left() const;
   /// Changes whenever target() does.
   std::int32_t target_number() const;
-  const std::map<AgentId, std::vector<Eigen::Vector3d>>& paths_m() const { return paths_m_; }
+  const std::map<AgentId, ThinnedPath>& paths() const { return paths_; }
   /// Median of the agents' values, and one line about the team. @pre begun()
   struct Status {
     std::optional<double> ergodic_metric;
@@ -69,10 +56,7 @@ class Display {
   static constexpr std::int32_t kNoTarget = -2;
 
   void on(const WorldState& world);
-  void detect(const WorldState& world);
   const Coefficients& present_target() const;
-  Grid grid_of(const Coefficients& coefficients) const;
-  void add_position(AgentId id, const Eigen::Vector3d& at_m);
 
   RunId run_;
   Instant since_;
@@ -87,8 +71,7 @@ class Display {
   double samples_ = 0;  // each weighted by its quality
   Tick tick_ = 0;
   std::map<AgentId, Tick> newest_;  // the tick of each agent's last sample
-  std::map<AgentId, std::vector<Eigen::Vector3d>> paths_m_;
-  std::map<AgentId, std::pair<std::size_t, std::size_t>> strides_;  // every how many, how many
+  std::map<AgentId, ThinnedPath> paths_;
 };
 
 }  // namespace ergocast::ros2

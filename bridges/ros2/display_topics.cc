@@ -61,13 +61,13 @@ void DisplayConnection::show(const Display& display, const Moment& at) {
     target_number_ = display.target_number();
     show_grid(*target_, display.target(), display.domain(), at);
   }
-  if (const Grid coverage = display.coverage(); coverage.width > 0)
+  if (const OccupancyGrid coverage = display.coverage(); coverage.width > 0)
     show_grid(*coverage_, coverage, display.domain(), at);
   show_grid(*left_, display.left(), display.domain(), at);
-  for (const auto& [id, path_m] : display.paths_m()) show_path(id, path_m, at);
+  for (const auto& [id, path] : display.paths()) show_path(id, path.path_m(), at);
 }
 
-void DisplayConnection::show_grid(Writer& writer, const Grid& grid, const Box& domain,
+void DisplayConnection::show_grid(Writer& writer, const OccupancyGrid& grid, const Box& domain,
                                   const Moment& at) {
   nav_msgs_msg_dds__OccupancyGrid_ message{};
   message.header = header_of(topics_.frame.name, at);

@@ -23,7 +23,7 @@ class DisplayConnection {
  private:
   DisplayConnection(DdsNode& node, DisplayTopics topics)
       : node_(&node), topics_(std::move(topics)) {}
-  void show_grid(Writer& writer, const Grid& grid, const Box& domain, const Moment& at);
+  void show_grid(Writer& writer, const OccupancyGrid& grid, const Box& domain, const Moment& at);
   void show_places(Writer& writer, const std::vector<Eigen::Vector3d>& places_m, const Moment& at);
   void show_path(AgentId id, const std::vector<Eigen::Vector3d>& path_m, const Moment& at);
 

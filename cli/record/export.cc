@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 struct ExportOptions {
   fs::path run_dir, out;
-  std::string to;
+  std::string to, schema;
   std::optional<GeoPlace> origin;
 };
 
@@ -37,13 +37,24 @@ std::optional<std::string> write_whole(const ExportRecord& record, const fs::pat
   return std::nullopt;
 }
 
-std::optional<std::string> write(const ExportRecord& record, const std::string& to,
+bool for_ros2(const ExportOptions& options) { return options.schema == "ros2"; }
+
+std::optional<std::string> write(const ExportRecord& record, const ExportOptions& options,
                                  const fs::path& out) {
-  if (to == "csv") return write_tables(record, out);
-  return write_whole(record, out, to == "mcap" ? write_mcap : write_geojson);
+  if (options.to == "csv") return write_tables(record, out);
+  if (options.to == "geojson") return write_whole(record, out, write_geojson);
+  return write_whole(record, out, for_ros2(options) ? write_ros2_mcap : write_mcap);
+}
+
+fs::path default_out(const ExportOptions& options) {
+  if (options.to == "csv") return options.run_dir / "export";
+  return options.run_dir / ((for_ros2(options) ? "export_ros2." : "export.") + options.to);
 }
 
 int export_run(const ExportOptions& options) {
+  if (!options.schema.empty() && options.to != "mcap")
+    return report_error(kExitBadInput, "--schema is for --to mcap, and this is --to " + options.to +
+                                           ": leave it out");
   const auto mission = recorded_mission_or_complain(options.run_dir);
   if (!mission) return kExitBadInput;
   std::optional<GeoPlace> origin = options.origin;
@@ -60,11 +71,8 @@ int export_run(const ExportOptions& options) {
   }
   auto record = read_export_record(options.run_dir, *mission, origin);
   if (!record) return report_error(kExitBadInput, record.error());
-  fs::path out = options.out;
-  if (out.empty())
-    out = options.run_dir / (options.to == "csv" ? "export" : "export." + options.to);
-  if (const auto problem = write(*record, options.to, out))
-    return report_error(kExitFailed, *problem);
+  const fs::path out = options.out.empty() ? default_out(options) : options.out;
+  if (const auto problem = write(*record, options, out)) return report_error(kExitFailed, *problem);
   std::printf("%s\n", printable(fs::absolute(out).string()).c_str());
   return kExitDone;
 }
@@ -84,9 +92,15 @@ void add_export(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"mcap", "csv", "geojson"}).description(""))
       ->type_name("mcap|csv|geojson");
   command
+      ->add_option("--schema", options->schema,
+                   "Messages of an MCAP file. foxglove: JSON, the default; ros2: CDR, as "
+                   "ergocast-ros2 publishes them")
+      ->check(CLI::IsMember({"foxglove", "ros2"}).description(""))
+      ->type_name("foxglove|ros2");
+  command
       ->add_option("--out", options->out,
-                   "File, or folder of the tables (default: export.mcap, export/ or "
-                   "export.geojson in RUN_DIR)")
+                   "File, or folder of the tables (default: export.mcap, export_ros2.mcap, "
+                   "export/ or export.geojson in RUN_DIR)")
       ->type_name("PATH");
   add_origin_option(*command, options->origin);
   command->footer("Exit codes: 0 done; 2 no record, or it is damaged; 4 it cannot be written.");

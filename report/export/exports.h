@@ -15,6 +15,10 @@ namespace ergocast {
 std::optional<std::string> write_mcap(const ExportRecord& record,
                                       const std::filesystem::path& file);
 
+/// The same with messages of ROS 2, on the topics of `ergocast-ros2`.
+std::optional<std::string> write_ros2_mcap(const ExportRecord& record,
+                                           const std::filesystem::path& file);
+
 /// A folder with trajectory.csv, metrics.csv, density.csv, log.csv and, if the mission changed,
 /// amendments.csv.
 std::optional<std::string> write_tables(const ExportRecord& record,

@@ -16,30 +16,23 @@ namespace {
 /// The number of pictures of the coverage: evenly spaced in time, the last at the mission's end.
 constexpr int kCoveragePictures = 20;
 
-struct Waiting {
-  std::uint64_t time_ns = 0;
-  McapWriter::Channel channel = 0;
-  std::string json;
-};
-
 class McapExport {
  public:
   McapExport(const ExportRecord& record, const std::filesystem::path& file)
-      : record_(record), mission_(record.mission), writer_(file) {
+      : record_(record), mission_(record.mission), writer_(file, kMcapJson) {
     if (record.origin) plane_.emplace(*record.origin);
   }
 
   std::optional<std::string> write() {
-    metadata();
+    writer_.add_metadata("ergocast", single_values(record_));
     logs();
     amendments();
     metrics();
     targets();
     coverage();
-    std::stable_sort(waiting_.begin(), waiting_.end(),
-                     [](const Waiting& a, const Waiting& b) { return a.time_ns < b.time_ns; });
+    queue_.sort();
     poses();
-    send_until(UINT64_MAX);
+    queue_.write_until(UINT64_MAX, writer_);
     return writer_.finish();
   }
 
@@ -48,27 +41,11 @@ class McapExport {
     return writer_.add_channel(topic, schema.name, schema.text);
   }
 
-  /// The top-level values of the summary.
-  void metadata() {
-    std::map<std::string, std::string> entries;
-    if (record_.summary.is_object()) {
-      for (const auto& [key, value] : record_.summary.items()) {
-        if (value.is_primitive())
-          entries[key] = value.is_string() ? value.get<std::string>() : value.dump();
-      }
-    }
-    if (record_.origin) {
-      entries["origin.latitude_deg"] = std::to_string(record_.origin->latitude_deg);
-      entries["origin.longitude_deg"] = std::to_string(record_.origin->longitude_deg);
-    }
-    writer_.add_metadata("ergocast", entries);
-  }
-
   void logs() {
     if (record_.log.empty()) return;
     const auto topic = channel("/log", foxglove::log_schema());
     for (const ExportedLine& line : record_.log)
-      waiting_.push_back({line.time_ns, topic, foxglove::log(line)});
+      queue_.add(line.time_ns, topic, foxglove::log(line));
   }
 
   /// What has changed, as lines of its operators.
@@ -79,7 +56,7 @@ class McapExport {
     for (const auto& [amendment, t_s, text] : changes) {
       const std::uint64_t time_ns = record_.time_ns(t_s);
       const std::string line = "amendment " + std::to_string(amendment.number) + ": " + text;
-      waiting_.push_back({time_ns, topic, foxglove::log({time_ns, "info", amendment.by, line})});
+      queue_.add(time_ns, topic, foxglove::log({time_ns, "info", amendment.by, line}));
     }
   }
 
@@ -87,7 +64,7 @@ class McapExport {
     const auto topic = channel("/metrics", foxglove::metrics_schema());
     for (const MetricsRow& row : record_.run.metrics) {
       const std::uint64_t time_ns = record_.time_ns(row.t_s);
-      waiting_.push_back({time_ns, topic, foxglove::metrics(time_ns, row, record_.metric_basis)});
+      queue_.add(time_ns, topic, foxglove::metrics(time_ns, row, record_.metric_basis));
     }
   }
 
@@ -96,7 +73,7 @@ class McapExport {
     const auto target = channel("/target", foxglove::grid_schema());
     const auto show = [&](double t_s, const DensityCells& cells) {
       const std::uint64_t time_ns = record_.time_ns(t_s);
-      waiting_.push_back({time_ns, target, foxglove::grid(time_ns, cells, mission_)});
+      queue_.add(time_ns, target, foxglove::grid(time_ns, cells, mission_));
     };
     show(0, record_.target);
     const auto [columns, rows] = coverage_cells(mission_);
@@ -121,7 +98,7 @@ class McapExport {
       const std::uint64_t time_ns = record_.time_ns(t_s);
       const DensityCells cells =
           density_of(sums / samples, mission_, cells_along.first, cells_along.second);
-      waiting_.push_back({time_ns, coverage, foxglove::grid(time_ns, cells, mission_)});
+      queue_.add(time_ns, coverage, foxglove::grid(time_ns, cells, mission_));
     };
     double last_s = 0;
     for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
@@ -149,7 +126,7 @@ class McapExport {
     }
     for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
       const std::uint64_t time_ns = record_.time_ns(point.t_s);
-      send_until(time_ns);
+      queue_.write_until(time_ns, writer_);
       writer_.add_message(poses.at(agent), time_ns, foxglove::pose(time_ns, point));
       if (!plane_) return;
       writer_.add_message(
@@ -158,20 +135,11 @@ class McapExport {
     });
   }
 
-  /// Writes the messages that are due before the next pose.
-  void send_until(std::uint64_t time_ns) {
-    for (; next_ < waiting_.size() && waiting_[next_].time_ns <= time_ns; ++next_) {
-      const Waiting& one = waiting_[next_];
-      writer_.add_message(one.channel, one.time_ns, one.json);
-    }
-  }
-
   const ExportRecord& record_;
   const Mission& mission_;
   McapWriter writer_;
   std::optional<LocalPlane> plane_;
-  std::vector<Waiting> waiting_;
-  std::size_t next_ = 0;
+  McapQueue queue_;
 };
 
 }  // namespace

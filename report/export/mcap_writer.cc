@@ -89,10 +89,12 @@ std::uint32_t crc32(std::string_view bytes, std::uint32_t before) {
   return ~crc;
 }
 
-McapWriter::McapWriter(const std::filesystem::path& file)
-    : path_(file), file_(std::fopen(file.c_str(), "wb"), &std::fclose) {
+McapWriter::McapWriter(const std::filesystem::path& file, McapEncoding encoding)
+    : path_(file),
+      encoding_(std::move(encoding)),
+      file_(std::fopen(file.c_str(), "wb"), &std::fclose) {
   write(std::string(kMagic));
-  write(record(Op::kHeader, Fields().text("").text("ergocast")));
+  write(record(Op::kHeader, Fields().text(encoding_.profile).text("ergocast")));
 }
 
 void McapWriter::write(const std::string& bytes) {
@@ -107,29 +109,29 @@ McapWriter::Channel McapWriter::add_channel(const std::string& topic, const std:
   const auto [known, is_new] = schemas_.try_emplace(schema, next);
   if (is_new) {
     const std::string text = record(
-        Op::kSchema, Fields().number(next).text(schema).text("jsonschema").text(schema_text));
+        Op::kSchema, Fields().number(next).text(schema).text(encoding_.schema).text(schema_text));
     schema_records_ += text;
     chunk_ += text;
   }
   const auto channel = static_cast<Channel>(counts_.size());
   counts_.push_back(0);
-  const std::string text =
-      record(Op::kChannel,
-             Fields().number(channel).number(known->second).text(topic).text("json").texts({}));
+  const std::string text = record(
+      Op::kChannel,
+      Fields().number(channel).number(known->second).text(topic).text(encoding_.message).texts({}));
   channel_records_ += text;
   chunk_ += text;
   return channel;
 }
 
-void McapWriter::add_message(Channel channel, std::uint64_t time_ns, std::string_view json) {
+void McapWriter::add_message(Channel channel, std::uint64_t time_ns, std::string_view message) {
   if (index_.empty()) open_.start_ns = open_.end_ns = time_ns;
   open_.start_ns = std::min(open_.start_ns, time_ns);
   open_.end_ns = std::max(open_.end_ns, time_ns);
   index_[channel].emplace_back(time_ns, chunk_.size());
   const auto sequence = static_cast<std::uint32_t>(counts_[channel]++);
-  chunk_ +=
-      record(Op::kMessage,
-             Fields().number(channel).number(sequence).number(time_ns).number(time_ns).raw(json));
+  chunk_ += record(
+      Op::kMessage,
+      Fields().number(channel).number(sequence).number(time_ns).number(time_ns).raw(message));
   if (chunk_.size() >= kChunkBytes) end_chunk();
 }
 
@@ -231,6 +233,19 @@ std::optional<std::string> McapWriter::finish() {
   failed_ = failed_ || std::fflush(file_.get()) != 0;
   if (failed_) return path_.string() + ": " + std::strerror(errno);
   return std::nullopt;
+}
+
+void McapQueue::add(std::uint64_t time_ns, McapWriter::Channel channel, std::string message) {
+  waiting_.push_back({time_ns, channel, std::move(message)});
+}
+
+void McapQueue::sort() { std::ranges::stable_sort(waiting_, {}, &Waiting::time_ns); }
+
+void McapQueue::write_until(std::uint64_t time_ns, McapWriter& writer) {
+  for (; next_ < waiting_.size() && waiting_[next_].time_ns <= time_ns; ++next_) {
+    const Waiting& one = waiting_[next_];
+    writer.add_message(one.channel, one.time_ns, one.message);
+  }
 }
 
 }  // namespace ergocast

@@ -126,6 +126,21 @@ Result<ExportRecord> read_export_record(const fs::path& run_dir, const Mission& 
   return record;
 }
 
+std::map<std::string, std::string> single_values(const ExportRecord& record) {
+  std::map<std::string, std::string> entries;
+  if (record.summary.is_object()) {
+    for (const auto& [key, value] : record.summary.items()) {
+      if (value.is_primitive())
+        entries[key] = value.is_string() ? value.get<std::string>() : value.dump();
+    }
+  }
+  if (record.origin) {
+    entries["origin.latitude_deg"] = std::to_string(record.origin->latitude_deg);
+    entries["origin.longitude_deg"] = std::to_string(record.origin->longitude_deg);
+  }
+  return entries;
+}
+
 std::pair<Eigen::Index, Eigen::Index> coverage_cells(const Mission& mission) {
   const Eigen::Vector2d size_m = mission.domain.size_m.head<2>();
   const Eigen::Vector2d cells = (size_m / size_m.maxCoeff() * kCoverageCells).cwiseMax(1);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -51,6 +52,9 @@ struct ExportRecord {
 Result<ExportRecord> read_export_record(const std::filesystem::path& run_dir,
                                         const Mission& mission,
                                         const std::optional<GeoPlace>& origin);
+
+/// The top-level values of the summary, and the origin.
+std::map<std::string, std::string> single_values(const ExportRecord& record);
 
 /// Σ a_k f_k / mean(f_k²), at the centres of the cells; for a box, averaged along z.
 DensityCells density_of(const Coefficients& coefficients, const Mission& mission,

@@ -29,7 +29,7 @@ class RosDisplay : public ::testing::Test {
   void move(Tick tick, const std::vector<Eigen::Vector3d>& x_m) {
     display_.receive(world_state(tick, x_m), Bus::kWorld, kWorld, Instant{1s});
   }
-  std::size_t cell_at(const Grid& grid, double x_m, double y_m) const {
+  std::size_t cell_at(const OccupancyGrid& grid, double x_m, double y_m) const {
     const auto at = [&](double where_m) {
       return static_cast<std::size_t>(where_m / grid.resolution_m);
     };
@@ -44,9 +44,9 @@ TEST_F(RosDisplay, ShowsWhatIsLeft) {
   ASSERT_TRUE(display_.begun());
   const Eigen::Vector3d here_m{500, 600, 0}, there_m{1500, 1400, 0};
   move(0, {there_m, there_m});
-  const Grid before = display_.left();
+  const OccupancyGrid before = display_.left();
   for (Tick tick = 1; tick < 300; ++tick) move(tick, {here_m, here_m});
-  const Grid target = display_.target(), left = display_.left();
+  const OccupancyGrid target = display_.target(), left = display_.left();
   ASSERT_EQ(left.data.size(), target.data.size());
   EXPECT_EQ(before.data[cell_at(before, 500, 600)], target.data[cell_at(target, 500, 600)]);
   ASSERT_GT(target.data[cell_at(target, 500, 600)], 0);

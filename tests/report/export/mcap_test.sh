@@ -8,13 +8,7 @@ ergocast=$1 reader=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-mkdir -p "$reader"
-# The lock file has the SHA-512 of each package, so no other file is accepted.
-if ! cmp -s "$here/reader/package-lock.json" "$reader/fetched"; then
-  cp "$here"/reader/package*.json "$reader"
-  npm ci --ignore-scripts --no-audit --no-fund --prefix "$reader"
-  cp "$here/reader/package-lock.json" "$reader/fetched"
-fi
+"$here/reader/fetch" "$reader"
 { echo 'origin { latitude_deg: 47.5 longitude_deg: 9.2 }'
   cat "$here/../../../scenarios/harbour_patrol.textproto"; } >"$work/there.textproto"
 "$ergocast" simulate "$work/there.textproto" --duration 60 --out "$work/run" >/dev/null
