@@ -76,13 +76,8 @@ CLI::Option* add_foxglove_option(CLI::App& app, int& port) {
       ->check(CLI::Range(1, 65535));
 }
 
-Result<std::unique_ptr<FoxgloveOutput>> FoxgloveOutput::open(Setup setup) {
-  PageOptions options = setup.page;
-  options.port = setup.port;
-  options.port_option = "--foxglove";
-  auto socket = PageSocket::open(options);
-  if (!socket) return failure(socket.error());
-  return std::unique_ptr<FoxgloveOutput>(new FoxgloveOutput(std::move(setup), *std::move(socket)));
+std::string foxglove_url(const PageSocket& socket) {
+  return "ws" + socket.url().substr(4);  // that begins with http or https
 }
 
 FoxgloveOutput::FoxgloveOutput(Setup setup, PageSocket socket)
@@ -94,11 +89,6 @@ FoxgloveOutput::FoxgloveOutput(Setup setup, PageSocket socket)
           socket_.fd(), [this](const std::string& head) { return answer(head); },
           [this](Socket accepted) { return socket_.stream(std::move(accepted)); }) {
   set_up(socket_.fd());
-}
-
-std::string FoxgloveOutput::url() const {
-  const std::string url = socket_.url();  // http… or https…
-  return "ws" + url.substr(4);
 }
 
 Connections::Answer FoxgloveOutput::answer(const std::string& head) {

@@ -25,23 +25,21 @@ namespace ergocast::cli {
 /// --foxglove; `port` stays 0 without it.
 CLI::Option* add_foxglove_option(CLI::App& app, int& port);
 
+/// The address that a person gives Foxglove, with the token if there is one.
+std::string foxglove_url(const PageSocket& socket);
+
 /// Serves only in serve(), and never waits for a client.
 class FoxgloveOutput final : public TeamDisplay {
  public:
   struct Setup {
-    int port = 0;
-    PageOptions page;                ///< the page's address and certificate, also for this server
     std::optional<GeoPlace> origin;  ///< nothing: there are no locations
     DensityCells target;             ///< the plan's; empty: not known here
     /// Gets a sentence when a client is too slow.
     std::function<void(const std::string&)> note;
   };
 
-  /// An error if the port cannot be used.
-  static Result<std::unique_ptr<FoxgloveOutput>> open(Setup setup);
+  FoxgloveOutput(Setup setup, PageSocket socket);
 
-  /// The address that a person gives Foxglove, with the token if there is one.
-  std::string url() const;
   /// Call it at least ten times a second.
   void serve(Instant now);
   /// A name for each client that is connected now.
@@ -52,7 +50,6 @@ class FoxgloveOutput final : public TeamDisplay {
   void show(const TeamPicture& picture, const MissionFollower& team) override;
 
  private:
-  FoxgloveOutput(Setup setup, PageSocket socket);
   Connections::Answer answer(const std::string& head);
   void note(const std::string& sentence);
 

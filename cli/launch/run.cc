@@ -16,6 +16,7 @@
 #include "cli/launch/mission_watch.h"
 #include "cli/mission_options.h"
 #include "cli/operate/controlled_page.h"
+#include "cli/operate/live_displays.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
 #include "cli/watch/progress.h"
@@ -51,6 +52,7 @@ struct RunOptions : MissionOptions {
   bool watch = false;                        ///< serves a page
   bool control = false;                      ///< on which operators give orders
   PageOptions page;
+  DisplayOptions displays;  ///< of other programs, which the page's process serves
 };
 
 constexpr auto kNoteAfter = 500ms;
@@ -169,19 +171,24 @@ LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
           .pid = getpid()};
 }
 
-/// The page of the mission, if it is wanted; an error if it cannot be served.
-Result<std::unique_ptr<ControlledPage>> begin_page(const RunOptions& options,
-                                                   const Launcher::Setup& setup,
-                                                   ProgressDisplay& display) {
+/// The page of the mission, if it is wanted. If it cannot be served, prints why and returns the
+/// exit code.
+Result<std::unique_ptr<ControlledPage>, int> begin_page(const RunOptions& options,
+                                                        const Launcher::Setup& setup,
+                                                        ProgressDisplay& display) {
   if (!options.watch) return std::unique_ptr<ControlledPage>();
   const BusOptions team{setup.url, setup.run, options.authenticator, options.key_file};
-  auto started = ControlledPage::start(team, setup.run_dir, options.page, options.control, display);
-  if (started) {
-    PageProcess& page = (*started)->page();
-    display.print("  page     " + page.url());
-    display.also_to([&page](const std::string& line) { page.print(line); });
-  }
-  return started;
+  auto displays = LiveDisplays::open(options.displays, options.page, setup.run_dir);
+  if (!displays) return failure(displays.error());
+  auto started = ControlledPage::start(team, setup.run_dir, options.page, options.control,
+                                       (*displays)->handed(), display);
+  if (!started) return failure(report_error(kExitUnavailable, started.error()));
+  PageProcess& page = (*started)->page();
+  display.print("  page     " + page.url());
+  if (const std::string url = (*displays)->foxglove_url(); !url.empty())
+    display.print("  foxglove " + url);
+  display.also_to([&page](const std::string& line) { page.print(line); });
+  return *std::move(started);
 }
 
 /// Shows the record on the page until Ctrl-C.
@@ -240,7 +247,7 @@ int run_mission(const RunOptions& options, const Scenario& scenario, const Launc
   if (!transport) return report_error(kExitUnavailable, transport.error());
   announce(setup, scenario, display);
   const auto watching = begin_page(options, setup, display);
-  if (!watching) return report_error(kExitUnavailable, watching.error());
+  if (!watching) return watching.error();
   ControlledPage* const page = watching->get();
   if (page != nullptr) page->page().wait_until_it_listens(signals.fd());
   entry.reset();
@@ -369,11 +376,15 @@ void add_run(CLI::App& app, Action& action) {
                     "Show the mission in a browser, and afterwards its record, until Ctrl-C");
   add_page_options(*command, options->page);
   add_control_option(*command, options->control);
-  for (const char* option : {"--port", "--listen", "--tls-cert", "--tls-key", "--control"})
+  add_display_options(*command, options->displays);
+  for (const char* option : {"--port", "--listen", "--tls-cert", "--tls-key", "--control",
+                             "--foxglove", "--cot", "--origin"})
     command->get_option(option)->needs("--watch");
   command->callback([&action, options] {
     action = [options]() -> int {
       if (const auto problem = read_certificate(options->page, options->control))
+        return report_error(kExitBadInput, *problem);
+      if (const auto problem = why_refused(options->displays, options->page))
         return report_error(kExitBadInput, *problem);
       return run(*options);
     };

@@ -22,11 +22,9 @@ Result<SealedFile> key_of_page(const MissionKey& key) {
 
 }  // namespace
 
-Result<std::unique_ptr<ControlledPage>> ControlledPage::start(const BusOptions& team,
-                                                              const std::filesystem::path& run_dir,
-                                                              const PageOptions& page,
-                                                              bool with_control,
-                                                              ProgressDisplay& display) {
+Result<std::unique_ptr<ControlledPage>> ControlledPage::start(
+    const BusOptions& team, const std::filesystem::path& run_dir, const PageOptions& page,
+    bool with_control, PageProcess::Displays displays, ProgressDisplay& display) {
   auto controlled = std::make_unique<ControlledPage>();
   PageProcess::Setup setup;
   setup.program = std::filesystem::read_symlink("/proc/self/exe");
@@ -34,6 +32,7 @@ Result<std::unique_ptr<ControlledPage>> ControlledPage::start(const BusOptions& 
   setup.url = team.url;
   setup.run = team.run;
   setup.page = page;
+  setup.displays = std::move(displays);
   if (const MissionKey* key = team.authenticator.key()) {
     auto kept = key_of_page(*key);
     if (!kept) return failure(std::move(kept).error());

@@ -19,10 +19,12 @@ class ControlledPage {
  public:
   /// Starts the page's process. The page shows `team`, and with control gives orders to it.
   /// An error if the page's address or LCM cannot be used.
+  /// @param displays  what the page's process also serves
   /// @param display  gets the lines about the page and about control; it outlives the page
   static Result<std::unique_ptr<ControlledPage>> start(const BusOptions& team,
                                                        const std::filesystem::path& run_dir,
                                                        const PageOptions& page, bool with_control,
+                                                       PageProcess::Displays displays,
                                                        ProgressDisplay& display);
 
   PageProcess& page() { return *page_; }

@@ -13,13 +13,11 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/foxglove/foxglove_output.h"
 #include "cli/operate/controlled_page.h"
+#include "cli/operate/live_displays.h"
 #include "cli/operate/team_command.h"
-#include "cli/record/origin_option.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
-#include "cli/tak/cot_output.h"
 #include "cli/watch/client_list.h"
 #include "cli/watch/find_run.h"
 #include "cli/watch/live_watch.h"
@@ -53,13 +51,18 @@ struct WatchOptions : BusOptions {
   fs::path run_dir;
   PageOptions page;
   bool control = false;
-  CotOptions cot;
-  int foxglove_port = 0;  ///< 0: Foxglove is not served
+  DisplayOptions displays;
 };
 
 void announce(const std::string& url) {
   std::printf("open %s in a browser; Ctrl-C ends it\n", url.c_str());
   std::fflush(stdout);
+}
+
+/// Prints the address for Foxglove, if it is served.
+void announce_foxglove(const LiveDisplays& displays) {
+  const std::string url = displays.foxglove_url();
+  if (!url.empty()) std::printf("connect Foxglove to %s\n", url.c_str());
 }
 
 int watch_record(const WatchOptions& options, StopSignals& signals) {
@@ -79,70 +82,12 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
   return kExitDone;
 }
 
-/// The output to TAK; or prints an error, and returns the exit code.
-Result<CotOutput, int> open_cot(const CotOptions& options, const fs::path& run_dir) {
-  std::optional<GeoPlace> origin = options.origin;
-  if (!origin) {
-    auto recorded = recorded_origin(run_dir);
-    if (!recorded) return failure(report_error(kExitBadInput, recorded.error()));
-    origin = *recorded;
-  }
-  if (!origin)
-    return failure(report_error(
-        kExitBadInput,
-        run_dir.empty() ? "--cot: the scenario of this team is not on this host; say where its (0, "
-                          "0) is, with --origin LATITUDE,LONGITUDE"
-                        : "--cot: the scenario has no origin; add origin { latitude_deg: … "
-                          "longitude_deg: … } to it, or say --origin LATITUDE,LONGITUDE"));
-  auto output = CotOutput::open(*options.to, *origin);
-  if (!output) return failure(report_error(kExitUnavailable, output.error()));
-  return *std::move(output);
-}
-
-/// The server for Foxglove; or prints an error, and returns the exit code.
-/// @param clients  gets sentences about clients; outlives the server
-Result<std::unique_ptr<FoxgloveOutput>, int> open_foxglove(const WatchOptions& options,
-                                                           const fs::path& run_dir,
-                                                           ClientList& clients) {
-  if (options.foxglove_port == options.page.port)
-    return failure(report_error(kExitBadInput, "--foxglove and --port name the same port, " +
-                                                   std::to_string(options.foxglove_port) +
-                                                   "; the page needs its own"));
-  FoxgloveOutput::Setup setup{
-      .port = options.foxglove_port,
-      .page = options.page,
-      .origin = options.cot.origin,
-      .target = {},
-      .note = [&clients](const std::string& sentence) { clients.note(sentence); }};
-  if (!run_dir.empty()) {
-    setup.target = read_target_density(run_dir / kTargetDensityFile).value_or(Field());
-    if (!setup.origin) setup.origin = recorded_origin(run_dir).value_or(std::nullopt);
-  }
-  auto output = FoxgloveOutput::open(std::move(setup));
-  if (!output) return failure(report_error(kExitUnavailable, output.error()));
-  std::printf("connect Foxglove to %s\n", (*output)->url().c_str());
-  return *std::move(output);
-}
-
-std::vector<std::string> names_of_clients(const PageServer& page, const FoxgloveOutput* foxglove,
-                                          const std::optional<CotOutput>& cot) {
-  std::vector<std::string> names = page.clients();
-  if (foxglove != nullptr)
-    for (std::string& name : foxglove->clients()) names.push_back(std::move(name));
-  if (cot) names.push_back(cot->name());
-  return names;
-}
-
 /// @param run_dir  the team's run directory; empty: not known here
 int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals& signals) {
-  LiveWatch::Source source{options, run_dir, {}, {}};
-  std::optional<CotOutput> cot;
-  if (options.cot.to) {
-    auto output = open_cot(options.cot, run_dir);
-    if (!output) return output.error();
-    cot = *std::move(output);
-    source.displays.push_back(&*cot);
-  }
+  const auto opened_displays = LiveDisplays::open(options.displays, options.page, run_dir);
+  if (!opened_displays) return opened_displays.error();
+  LiveDisplays& displays = **opened_displays;
+  announce_foxglove(displays);
   std::unique_ptr<LiveWatch> live;
   const bool has_log = !run_dir.empty();
   ClientList clients(has_log ? run_dir / "log/watch.log" : "", "watch",
@@ -150,14 +95,8 @@ int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals
                        if (!sentence.starts_with("browser ")) print_message(sentence);
                        if (live && !has_log) live->log(sentence);
                      });
-  std::unique_ptr<FoxgloveOutput> foxglove;
-  if (options.foxglove_port > 0) {
-    auto output = open_foxglove(options, run_dir, clients);
-    if (!output) return output.error();
-    foxglove = *std::move(output);
-    source.displays.push_back(foxglove.get());
-  }
-  auto opened = LiveWatch::open(std::move(source));
+  displays.begin([&clients](const std::string& sentence) { clients.note(sentence); });
+  auto opened = LiveWatch::open({options, run_dir, {}, {}, displays.displays()});
   if (!opened) return report_error(kExitUnavailable, opened.error());
   live = *std::move(opened);
   LiveWatch& watch = *live;
@@ -167,11 +106,11 @@ int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals
   const auto server = PageServer::make(*std::move(socket), watch.content());
   serve_until_stop(*server, signals, [&] {
     watch.listen(server->fd());
-    if (foxglove) foxglove->serve(now());
-    clients.update(watch.run(), names_of_clients(*server, foxglove.get(), cot), now());
+    displays.serve(now());
+    clients.update(watch.run(), together(server->clients(), displays.clients()), now());
     if (watch.over()) watch.finish();
   });
-  if (cot && !cot->losses().empty()) print_message(cot->losses());
+  if (const std::string losses = displays.losses(); !losses.empty()) print_message(losses);
   return kExitDone;
 }
 
@@ -192,9 +131,13 @@ int control_team(WatchOptions options, const fs::path& run_dir, StopSignals& sig
   options.run = finder.run();
   ProgressDisplay display;
   display.stamp();
-  auto started = ControlledPage::start(options, run_dir, options.page, true, display);
+  auto displays = LiveDisplays::open(options.displays, options.page, run_dir);
+  if (!displays) return displays.error();
+  auto started =
+      ControlledPage::start(options, run_dir, options.page, true, (*displays)->handed(), display);
   if (!started) return report_error(kExitUnavailable, started.error());
   ControlledPage& watched = **started;
+  announce_foxglove(**displays);
   announce(watched.page().url());
   display.also_to([&watched](const std::string& line) { watched.page().print(line); });
   std::optional<Instant> over_since;
@@ -228,10 +171,9 @@ void add_watch(CLI::App& app, Action& action) {
   add_page_options(*command, options->page);
   add_control_option(*command, options->control);
   command->get_option("--control")->excludes("RUN_DIR");
-  CLI::Option* const cot = add_cot_option(*command, options->cot);
-  cot->excludes("RUN_DIR")->excludes("--control");
-  add_foxglove_option(*command, options->foxglove_port)->excludes("RUN_DIR")->excludes("--control");
-  add_origin_option(*command, options->cot.origin)->excludes("RUN_DIR");
+  add_display_options(*command, options->displays);
+  for (const char* option : {"--cot", "--foxglove", "--origin"})
+    command->get_option(option)->excludes("RUN_DIR");
   command->footer(
       "Serves the page until Ctrl-C. Sends the team nothing, unless --control is given. Exit "
       "codes:\n"
@@ -242,9 +184,8 @@ void add_watch(CLI::App& app, Action& action) {
       StopSignals signals;
       if (const auto problem = read_certificate(options->page, options->control))
         return report_error(kExitBadInput, *problem);
-      if (options->cot.origin && !options->cot.to && options->foxglove_port == 0)
-        return report_error(kExitBadInput,
-                            "--origin is for --cot and --foxglove; give one of them");
+      if (const auto problem = why_refused(options->displays, options->page))
+        return report_error(kExitBadInput, *problem);
       if (command->count("RUN_DIR") > 0) return watch_record(*options, signals);
       fs::path run_dir;
       if (const auto code = find_run(*command, *options, &run_dir)) return *code;

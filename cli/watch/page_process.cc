@@ -47,7 +47,8 @@ PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay&
       listens_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       key_(setup.key),
       certificate_(setup.certificate),
-      tls_key_(setup.tls_key) {
+      tls_key_(setup.tls_key),
+      foxglove_(setup.displays.foxglove) {
   if (!setup.run_dir.empty()) log_ = open_log_file(setup.run_dir / "log/run.log", "run");
   int ends[2] = {-1, -1};
   if (listens_.fd() >= 0 && pipe2(ends, O_CLOEXEC) == 0) {
@@ -69,6 +70,7 @@ PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay&
   hand("--key-file", key_);
   hand("--tls-cert", certificate_);
   hand("--tls-key", tls_key_);
+  hand_displays(setup.displays);
   if (!setup.page.listen.empty()) {
     command.insert(command.end(), {"--listen", setup.page.listen});
   }
@@ -77,6 +79,17 @@ PageProcess::PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay&
   }
   program_.log = setup.run_dir.empty() ? "/dev/null" : setup.run_dir / "log/page.log";
   program_.signal_if_orphaned = SIGKILL;
+}
+
+void PageProcess::hand_displays(const Displays& displays) {
+  auto& command = program_.command;
+  command.insert(command.end(), displays.arguments.begin(), displays.arguments.end());
+  auto& environment = program_.environment;
+  environment.insert(environment.end(), displays.environment.begin(), displays.environment.end());
+  if (!foxglove_) return;
+  program_.descriptors.push_back(foxglove_->fd());
+  const auto number = kPageSocket - 1 + std::ssize(program_.descriptors);
+  command.insert(command.end(), {"--foxglove-socket", std::to_string(number)});
 }
 
 std::string PageProcess::url() const {

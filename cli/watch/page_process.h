@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/watch/control_link.h"
 #include "cli/watch/page_socket.h"
@@ -26,7 +27,7 @@ class logger;
 
 namespace ergocast::cli {
 
-/// The process inherits these descriptors, its options (cli/watch/run_page.cc), and environment
+/// The process inherits these descriptors, its options (cli/operate/run_page.cc), and environment
 /// variables that only this user can read.
 inline constexpr int kPageSocket = 3;
 inline constexpr int kPageUntil = 4;    ///< a pipe that ends when the mission has ended
@@ -37,6 +38,11 @@ inline constexpr const char* kControlToken = "ERGOCAST_CONTROL_TOKEN";
 
 class PageProcess {
  public:
+  /// What else the process serves: cli/operate/live_displays.h.
+  struct Displays {
+    std::vector<std::string> arguments = {}, environment = {};
+    std::shared_ptr<const PageSocket> foxglove = {};  ///< null: Foxglove is not served
+  };
   struct Setup {
     std::filesystem::path program;  ///< `ergocast`
     std::filesystem::path run_dir;  ///< empty: there is none on this host
@@ -47,6 +53,7 @@ class PageProcess {
     std::optional<SealedFile> certificate, tls_key;  ///< of page.tls, if there is one
     const ControlLink* control = nullptr;            ///< the page's end; null: the page only shows
     std::string control_token = {};
+    Displays displays = {};
   };
 
   /// Returns an error if the page's address cannot be used.
@@ -74,6 +81,7 @@ class PageProcess {
 
  private:
   PageProcess(const Setup& setup, PageSocket socket, ProgressDisplay& display);
+  void hand_displays(const Displays& displays);
   void launch(Instant now);
 
   PageSocket socket_;
@@ -84,6 +92,7 @@ class PageProcess {
   std::optional<Socket> running_;        // ours, as long as the mission runs
   Socket listens_;
   std::optional<SealedFile> key_, certificate_, tls_key_;  // each new process inherits them
+  std::shared_ptr<const PageSocket> foxglove_;             // as this
   Child::Program program_;
   std::optional<Child> child_;
   int ends_ = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast watch --cot`: the events of a real team come as datagrams, at one place and in a group.
+// --cot of `ergocast watch` and `run`: the events of a real team come as datagrams, at one place
+// and in a group.
 #include <arpa/inet.h>
 
 #include <map>
@@ -158,6 +159,37 @@ TEST_F(SentToTak, LosesEventsThatNobodyReceivesAndSaysSoOnce) {
   end(shown);
   EXPECT_EQ(output().find(lost), output().rfind(lost)) << output();
   EXPECT_TRUE(answered(" events to " + to + " were lost")) << output();
+  end(mission);
+}
+
+/// The page's process sends, and its successor if it is killed.
+TEST_F(SentToTak, ComesFromThePageOfARun) {
+  Receiver receiver;
+  EXPECT_EQ(ergocast({"run", scenario(), "--watch", "--cot", receiver.url(), "--out", out()}), 2);
+  EXPECT_TRUE(answered("add origin { latitude_deg: … longitude_deg: … }")) << output();
+  std::filesystem::remove_all(out());
+  Child mission = launch_endless(there(), {"--realtime=10", "--watch", "--cot", receiver.url()});
+  ASSERT_TRUE(eventually([&] { return all_agents(receiver); }, mission.pid())) << printed();
+  EXPECT_TRUE(logs("page", "TAK at " + receiver.url() + " is connected")) << log_of("page");
+  ASSERT_EQ(ergocast({"status"}), 0) << output();
+  EXPECT_TRUE(answered("shown to  TAK at " + receiver.url())) << output();
+  kill_next({"ergocast run-page"});
+  receiver.forget();
+  ASSERT_TRUE(eventually([&] { return all_agents(receiver); }, mission.pid())) << printed();
+  mission.send(SIGINT);
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); }, mission.pid())) << printed();
+  end(mission);
+}
+
+TEST_F(SentToTak, ComesFromAPageWithControl) {
+  Child mission = launch_endless(scenario(), {"--realtime=10"});
+  Receiver receiver;
+  EXPECT_EQ(ergocast({"watch", "--control", "--cot", receiver.url()}), 2);
+  EXPECT_TRUE(answered("add origin { latitude_deg: … longitude_deg: … }")) << output();
+  Child shown = watch(receiver.url(), {"--control", "--origin", "-33.9,18.4"});
+  ASSERT_TRUE(eventually([&] { return all_agents(receiver); }, shown.pid())) << output();
+  EXPECT_NE(receiver.of("-agent-0").find(" lat=\"-33."), std::string::npos);
+  end(shown);
   end(mission);
 }
 

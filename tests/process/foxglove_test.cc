@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast watch --foxglove`: a real team read by Foxglove's own client, slow clients, and clients
-// that try to harm it.
+// --foxglove of `ergocast watch` and `run`: a real team read by Foxglove's own client, slow
+// clients, and clients that try to harm it.
 #include <arpa/inet.h>
 
 #include <map>
@@ -325,6 +325,53 @@ TEST_F(ShownInFoxglove, NeedsATokenOnOtherAddressesAndHasTls) {
   end(mission);
 }
 
+/// The page's process serves Foxglove, too. If it is killed, its successor does, at the same
+/// address.
+TEST_F(ShownInFoxglove, BesideThePageOfARun) {
+  Child mission =
+      launch_endless(there(), {"--realtime=10", "--watch", "--foxglove", std::to_string(kPort)});
+  EXPECT_TRUE(printed("  foxglove " + kAddress + '\n')) << printed();
+  EXPECT_EQ(read().size(), 5U + 2 * 8);
+  {
+    RawClient client;
+    ASSERT_TRUE(client.reads("/agents/7/location"));
+    const json names{client.name()};
+    EXPECT_TRUE(eventually([&] {
+      return ergocast({"status", "--json"}) == 0 && json::parse(output())["clients"] == names;
+    })) << output();
+    EXPECT_TRUE(logs("page", client.name() + " is connected")) << log_of("page");
+  }
+  kill_next({"ergocast run-page"});
+  EXPECT_EQ(read().size(), 5U + 2 * 8);
+  EXPECT_TRUE(moves_on(60000)) << printed();
+  mission.send(SIGINT);
+  ASSERT_TRUE(eventually([&] { return printed("until Ctrl-C"); }, mission.pid())) << printed();
+  end(mission);
+  EXPECT_TRUE(logs("page", "Foxglove client 127.0.0.1:")) << log_of("page");
+}
+
+TEST_F(ShownInFoxglove, BesideAPageWithControlAndItsToken) {
+  Child mission = launch_endless(there(), {"--realtime=10"});
+  const auto [certificate, key] = make_certificate(folder_, "page");
+  Child server =
+      watch({"--control", "--listen", "127.0.0.1", "--tls-cert", certificate, "--tls-key", key});
+  const std::string begin = "connect Foxglove to ";
+  const auto at = shown().find(begin + "wss://127.0.0.1:8901/?token=");
+  ASSERT_NE(at, std::string::npos) << shown();
+  const std::string url =
+      shown().substr(at + begin.size(), shown().find('\n', at) - at - begin.size());
+  EXPECT_EQ(read(url).size(), 5U + 2 * 8);
+  kill_next({"ergocast run-page"});
+  EXPECT_EQ(read(url).size(), 5U + 2 * 8);
+  HttpsConnection connection(kPort);
+  connection.send(handshake());
+  EXPECT_TRUE(
+      connection.read_until([](const std::string& got) { return got.find("\r\n\r\n") != got.npos; })
+          .starts_with("HTTP/1.1 403"));
+  end(server);
+  end(mission);
+}
+
 TEST_F(ShownInFoxglove, NamesWhatIsWrongWithAPort) {
   for (const char* wrong : {"0", "70000", "-1", "x"}) {
     EXPECT_EQ(ergocast({"watch", "--foxglove", wrong}), 2) << wrong;
@@ -332,8 +379,12 @@ TEST_F(ShownInFoxglove, NamesWhatIsWrongWithAPort) {
   }
   EXPECT_EQ(ergocast({"watch", "--foxglove", "8901", "--port", "8901"}), 2);
   EXPECT_TRUE(answered("--foxglove and --port name the same port, 8901")) << output();
-  EXPECT_EQ(ergocast({"watch", "--foxglove", "8901", "--control"}), 2);
+  EXPECT_EQ(ergocast({"run", there(), "--foxglove", "8901"}), 2);
+  EXPECT_TRUE(answered("--foxglove requires --watch")) << output();
   Child server = watch();
+  EXPECT_EQ(ergocast({"run", there(), "--watch", "--foxglove", "8901", "--out", out()}), 3);
+  EXPECT_TRUE(answered("port 8901 of 127.0.0.1 is not free; choose another with --foxglove"))
+      << output();
   EXPECT_EQ(ergocast({"watch", "--foxglove", "8901"}), 3);
   EXPECT_TRUE(answered("port 8901 of 127.0.0.1 is not free; choose another with --foxglove"))
       << output();

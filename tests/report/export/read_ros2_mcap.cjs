@@ -24,12 +24,14 @@ const toNs = ({ sec, nsec }) => BigInt(sec) * 1000000000n + BigInt(nsec);
 /** Fields with their types, in order, as ROS 2 itself defines them in both distributions. */
 function checkDefinitions(definitions, name) {
   const fields = definition =>
-    definition.definitions.filter(one => !one.isConstant).map(({ name, type, isArray, arrayLength }) => [
-      name,
-      type.replace('/msg/', '/'),
-      !!isArray,
-      arrayLength,
-    ]);
+    definition.definitions
+      .filter(one => !one.isConstant)
+      .map(({ name, type, isArray, arrayLength }) => [
+        name,
+        type.replace('/msg/', '/'),
+        !!isArray,
+        arrayLength,
+      ]);
   for (const definition of definitions) {
     const short = (definition.name ?? name).replace('/msg/', '/');
     if (short === 'builtin_interfaces/Time') continue; // a time of the reader
@@ -166,20 +168,37 @@ function checkGrids(topics, found) {
   const start = BigInt(Date.parse(summary.started)) * 1000000n;
   const rows = csv('trajectory.csv');
   for (const agent of new Set(rows.map(row => row.agent)))
-    checkAgent(topics, agent, rows.filter(row => row.agent === agent), start);
+    checkAgent(
+      topics,
+      agent,
+      rows.filter(row => row.agent === agent),
+      start,
+    );
 
   const metrics = csv('metrics.csv'),
     numbers = name => topics.get(`/ergocast/${name}`).messages.map(({ value }) => value.data);
-  assert.deepEqual(numbers('phi2'), metrics.map(row => row.ergodic_metric));
-  assert.deepEqual(numbers('found'), metrics.map(row => row.detection_probability));
+  assert.deepEqual(
+    numbers('phi2'),
+    metrics.map(row => row.ergodic_metric),
+  );
+  assert.deepEqual(
+    numbers('found'),
+    metrics.map(row => row.detection_probability),
+  );
   const status = numbers('status').at(-1);
-  assert.match(status, new RegExp(`^${summary.scenario}: running, tick ${metrics.at(-1).tick} of \\d+, φ² = `));
+  assert.match(
+    status,
+    new RegExp(`^${summary.scenario}: running, tick ${metrics.at(-1).tick} of \\d+, φ² = `),
+  );
   checkGrids(topics, metrics.at(-1).detection_probability);
 
   const finds = summary.objects.finds.map(({ x_m, y_m }) => ({ x: x_m, y: y_m, z: 0 }));
   assert.ok(finds.length > 0, 'this record tests finds');
   assert.deepEqual(
-    topics.get('/ergocast/finds').messages.at(-1).value.poses.map(pose => pose.position),
+    topics
+      .get('/ergocast/finds')
+      .messages.at(-1)
+      .value.poses.map(pose => pose.position),
     finds,
   );
   summary.objects.finds.forEach(({ t_s }, i) => {

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/operate/live_displays.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
 #include "cli/watch/client_list.h"
@@ -31,6 +32,7 @@ namespace {
 struct RunPageOptions : BusOptions {
   std::filesystem::path run_dir;
   PageOptions page;
+  DisplayOptions displays;
 };
 
 /// The memory limit of this process while the mission runs. Above it the process ends, and a new
@@ -72,18 +74,23 @@ std::optional<PageControl> page_control() {
   return PageControl(std::move(*link), token);
 }
 
+/// Reads the certificate, also if it has expired since the mission began.
+std::optional<std::string> read_tls(PageOptions& page) {
+  if (page.tls_files.certificate.empty()) return std::nullopt;
+  auto tls = TlsServer::read(page.tls_files);
+  if (!tls) return tls.error();
+  page.tls = *std::move(tls);
+  return std::nullopt;
+}
+
 /// The socket that this process was handed.
-Result<PageSocket> page_socket(PageOptions page) {
-  if (!page.tls_files.certificate.empty()) {
-    auto tls = TlsServer::read(page.tls_files);
-    if (!tls) return failure(std::move(tls).error());
-    page.tls = *std::move(tls);  // also if it has expired since the mission began
-  }
+Result<PageSocket> page_socket(PageOptions& page) {
+  if (auto problem = read_tls(page)) return failure(*problem);
   const char* token = std::getenv(kPageToken);
   return PageSocket::inherited(kPageSocket, page, token != nullptr ? token : "");
 }
 
-int run_page(const RunPageOptions& options) {
+int run_page(RunPageOptions& options) {
   StopSignals signals;
   auto socket = page_socket(options.page);
   if (!socket) {
@@ -96,22 +103,31 @@ int run_page(const RunPageOptions& options) {
     if (!source.mission) return kExitBadInput;
     source.density = read_target_density(options.run_dir / kTargetDensityFile).value_or(Field());
   }
+  auto displays = LiveDisplays::open(options.displays, options.page, options.run_dir);
+  if (!displays) displays = LiveDisplays::open({}, options.page, options.run_dir);
+  if (!displays) return displays.error();
+  LiveDisplays& others = **displays;
+  const bool has_log = !options.run_dir.empty();
+  std::unique_ptr<LiveWatch> live;
+  ClientList clients(has_log ? options.run_dir / "log/page.log" : "", "page",
+                     [&live, has_log](const std::string& sentence) {
+                       if (live && !has_log) live->log(sentence);
+                     });
+  others.begin([&clients](const std::string& sentence) { clients.note(sentence); });
+  source.displays = others.displays();
   auto opened = LiveWatch::open(std::move(source));
   if (!opened) return report_error(kExitUnavailable, opened.error());
   eventfd_write(kPageListens, 1);
-  LiveWatch& watch = **opened;
+  live = *std::move(opened);
+  LiveWatch& watch = *live;
   const rlimit former = limit_memory();
   auto control = page_control();
   const auto server = PageServer::make(
       *std::move(socket), control ? control->joined(watch.content()) : watch.content());
-  const bool has_log = !options.run_dir.empty();
-  ClientList clients(has_log ? options.run_dir / "log/page.log" : "", "page",
-                     [&watch, has_log](const std::string& sentence) {
-                       if (!has_log) watch.log(sentence);
-                     });
   serve_until_stop(*server, signals, [&, over = false]() mutable {
     watch.listen(server->fd());
-    clients.update(watch.run(), server->clients(), now());
+    others.serve(now());
+    clients.update(watch.run(), together(server->clients(), others.clients()), now());
     if (control) control->listen(now());
     if (over || !closed(kPageUntil)) return;
     over = true;
@@ -133,6 +149,8 @@ void add_run_page(CLI::App& app, Action& action) {
   command->add_option("--listen", options->page.listen, "Address that the socket is bound to");
   command->add_option("--tls-cert", options->page.tls_files.certificate, "The page's certificate");
   command->add_option("--tls-key", options->page.tls_files.key, "Its key");
+  add_display_options(*command, options->displays);
+  command->add_option("--foxglove-socket", options->displays.foxglove_socket, "Its descriptor");
   command->callback([&action, options] { action = [options] { return run_page(*options); }; });
 }
 
