@@ -59,6 +59,10 @@ void MujocoPhysics::place(AgentId id, const Eigen::Vector3d& position_m,
   at->second.to_place = true;
 }
 
+void MujocoPhysics::roll(AgentId id, double ahead_mps, double turn_radps) {
+  robots_.at(id).wheels_radps = wheels_radps(design_, ahead_mps, turn_radps);
+}
+
 void MujocoPhysics::pass_tick(std::span<PhysicalBody> bodies) {
   if (stale_) build();
   for (auto& [id, robot] : robots_) {
@@ -168,7 +172,8 @@ void MujocoPhysics::steer(Robot& robot, const Eigen::Vector3d& wanted_mps) {
   state.position_m.z() -= robot.held_m - kHoverHeight_m;  // its pilot holds kHoverHeight_m
   double* const control = data_->ctrl + robot.act_at;
   if (rolls()) {
-    const auto speeds = robot.disc.wheels_radps(state, wanted_mps);
+    const auto speeds =
+        robot.wheels_radps ? *robot.wheels_radps : robot.disc.wheels_radps(state, wanted_mps);
     std::copy(speeds.begin(), speeds.end(), control);
   } else {
     const auto thrusts = robot.quadrotor.thrusts_n(state, wanted_mps);

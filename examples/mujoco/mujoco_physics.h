@@ -5,9 +5,11 @@
 
 #include <mujoco/mujoco.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -34,6 +36,13 @@ class MujocoPhysics : public Physics {
              const Eigen::Vector3d& velocity_mps) override;
   void pass_tick(std::span<PhysicalBody> bodies) override;
 
+  /// From now on disc `id` rolls so, whatever pass_tick() wants of it.
+  /// @param turn_radps  counter-clockwise
+  /// @pre it was placed
+  void roll(AgentId id, double ahead_mps, double turn_radps);
+  /// @pre a tick has passed since `id` was placed
+  RobotState state(AgentId id) const { return state_of(robots_.at(id)); }
+
   std::string summary() const override;
 
   /// From now on a quadrotor holds this height of its centre; before it holds kHoverHeight_m.
@@ -54,6 +63,7 @@ class MujocoPhysics : public Physics {
     Eigen::Vector3d place_m{0, 0, 0}, velocity_mps{0, 0, 0};
     double held_m = kHoverHeight_m;
     bool to_place = true;
+    std::optional<std::array<double, 2>> wheels_radps;  // of roll()
     std::vector<double> qpos, qvel, act;                // kept while the model is made again
     int body = 0, qpos_at = 0, dof_at = 0, act_at = 0;  // indices in the model
     DiscPilot disc;

@@ -21,6 +21,11 @@ constexpr double kAttitudeGain = 200, kTurningGain = 25, kHeadingGain = 4, kHead
 
 }  // namespace
 
+std::array<double, 2> wheels_radps(const RobotDesign& design, double ahead_mps, double turn_radps) {
+  const double turn_mps = turn_radps * kTrackShare * design.radius_m;
+  return {(ahead_mps - turn_mps) / kWheelRadius_m, (ahead_mps + turn_mps) / kWheelRadius_m};
+}
+
 std::array<double, 2> DiscPilot::wheels_radps(const RobotState& state,
                                               const Eigen::Vector3d& wanted_mps) {
   const double speed_mps = wanted_mps.head<2>().norm();
@@ -35,9 +40,7 @@ std::array<double, 2> DiscPilot::wheels_radps(const RobotState& state,
   const double turn_radps = std::clamp(std::atan2(aside, ahead) / (4 * design_.lag_s),
                                        -kTurnLimit_radps, kTurnLimit_radps);
   const double share = std::max(0.0, (ahead - kLooksThere) / (1 - kLooksThere));
-  const double roll_mps = direction * speed_mps * share;
-  const double turn_mps = turn_radps * kTrackShare * design_.radius_m;
-  return {(roll_mps - turn_mps) / kWheelRadius_m, (roll_mps + turn_mps) / kWheelRadius_m};
+  return mujoco::wheels_radps(design_, direction * speed_mps * share, turn_radps);
 }
 
 std::array<double, 4> QuadrotorPilot::thrusts_n(const RobotState& state,

@@ -17,6 +17,9 @@ struct RobotState {
   Eigen::Vector3d turning_radps{0, 0, 0};                  ///< in its own axes
 };
 
+/// Speeds of a disc's left and right wheel [rad/s], for its speed ahead and its turn to the left.
+std::array<double, 2> wheels_radps(const RobotDesign& design, double ahead_mps, double turn_radps);
+
 /// A disc turns towards the line of the wanted velocity, at most at kTurnLimit_radps. It rolls
 /// along that line, forwards or backwards, and more slowly the less it is aligned.
 class DiscPilot {

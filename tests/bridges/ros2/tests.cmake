@@ -12,6 +12,13 @@ target_link_libraries(mock-robot-cyclone PRIVATE
 ergocast_test(NAME ros2_mission_tests LABELS process RUNS_PROGRAMS
   SOURCES bridges/ros2/mission_test.cc
   PROPERTIES FIXTURES_REQUIRED node_ros2)
+if(TARGET ergocast_example_mujoco)
+  add_executable(mujoco-robots bridges/ros2/cyclone_port.cc bridges/ros2/mujoco_robots.cc)
+  target_link_libraries(mujoco-robots PRIVATE ergocast_example_mujoco ergocast::scenario
+    ergocast_ros2_types nlohmann_json::nlohmann_json ergocast::warnings)
+  target_sources(ros2_mission_tests PRIVATE bridges/ros2/office_test.cc)
+  add_dependencies(ros2_mission_tests mujoco-robots)
+endif()
 add_test(NAME ros2_type_hashes COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/bridges/ros2/type_hashes_test.py)
 set_tests_properties(ros2_type_hashes PROPERTIES LABELS process)
 # It fetches a reader of ROS 2 messages.
