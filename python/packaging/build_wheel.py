@@ -37,6 +37,12 @@ def run(*command):
     subprocess.run(command, check=True, stdout=sys.stderr)
 
 
+def was_moved(folder):
+    """Whether CMake configured the folder for a checkout at another path, which CMake refuses to take over."""
+    cache = folder / "CMakeCache.txt"
+    return cache.exists() and f"\nCMAKE_HOME_DIRECTORY:INTERNAL={ROOT}\n" not in cache.read_text()
+
+
 def built_package():
     """The folder of the package, with its compiled module for this Python."""
     for tool in ("cmake", "ninja"):
@@ -44,6 +50,8 @@ def built_package():
             raise SystemExit(f"{tool} is missing: install the packages of packaging/packages.txt")
     folder = ROOT / "build" / f"wheel-{TAG}"
     arguments = os.environ.get("ERGOCAST_CMAKE_ARGS", "").split()
+    if was_moved(folder):
+        arguments.append("--fresh")
     run("cmake", "-S", ROOT, "--preset", "release", "-B", folder, "-DBUILD_TESTING=OFF",
         f"-DPython_EXECUTABLE={sys.executable}", *arguments)
     targets = subprocess.run(["ninja", "-C", folder, "-t", "targets", "all"], check=True, capture_output=True, text=True)
@@ -72,6 +80,10 @@ def get_requires_for_build_wheel(config_settings=None):
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     info = f"ergocast-{version()}.dist-info"
     files = {f"ergocast/{path.name}": path.read_bytes() for path in sorted(built_package().iterdir()) if path.is_file()}
+    # pip puts them below the environment's share, where the package finds them by name.
+    shipped = f"ergocast-{version()}.data/data/share/ergocast/scenarios"
+    folder = ROOT / "scenarios"
+    files |= {f"{shipped}/{path.relative_to(folder)}": path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
     files[f"{info}/METADATA"] = metadata().encode()
     files[f"{info}/WHEEL"] = wheel_text().encode()
     files[f"{info}/licenses/LICENSE"] = (ROOT / "LICENSE").read_bytes()

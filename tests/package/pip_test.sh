@@ -14,8 +14,16 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 # numpy and pandas are Debian's, so nothing comes from the network.
-(cd "$source" && "$python" -m venv --system-site-packages "$work/env" &&
-  "$work/env/bin/pip" install --no-index ./python) >"$work/said" 2>&1 || { tail -n 30 "$work/said"; fail 'pip install'; }
+pip_install() {
+  (cd "$source" && "$work/env/bin/pip" install --no-index "$@" ./python) >"$work/said" 2>&1 ||
+    { tail -n 30 "$work/said"; fail 'pip install'; }
+}
+"$python" -m venv --system-site-packages "$work/env"
+pip_install
+# In a checkout that was moved; nothing is compiled again.
+sed -i 's|^CMAKE_HOME_DIRECTORY:INTERNAL=.*|CMAKE_HOME_DIRECTORY:INTERNAL=/elsewhere|' \
+  "$source/build/wheel-$("$python" -c 'import sys; print("cp{0}{1}".format(*sys.version_info))')"-*/CMakeCache.txt
+pip_install --force-reinstall --no-deps
 cd "$work"
 env/bin/python -c '
 import ergocast, sys
