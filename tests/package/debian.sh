@@ -66,6 +66,36 @@ pack() {
   deb=$(ls "$work"/ergocast_*.deb)
 }
 
+# make_old_package DEB FILE: FILE is DEB as version 0.2.0, with another default in its settings.
+make_old_package() {
+  dpkg-deb -R "$1" "$work/old"
+  sed -i 's/^Version: .*/Version: 0.2.0/' "$work/old/DEBIAN/control"
+  echo '# an older default' >>"$work/old/etc/ergocast/ergocast.env"
+  dpkg-deb --root-owner-group -Zgzip -z1 -b "$work/old" "$2" >/dev/null
+  rm -r "$work/old"
+}
+
+# The operator's files; all but the settings are below what a purge removes.
+kept='etc/ergocast/mission.key var/lib/ergocast/20260101-000000/summary.json'
+settings='ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto'
+use_package() {
+  local file
+  for file in $kept; do
+    mkdir -p "$root/$(dirname "$file")"
+    echo kept >"$root/$file"
+  done
+  echo "$settings" >"$root/etc/ergocast/ergocast.env"
+}
+expect_kept() {
+  local file
+  for file in $kept; do [ "$(cat "$root/$file")" = kept ] || fail "$1: $file is gone"; done
+  [ "$(cat "$root/etc/ergocast/ergocast.env")" = "$settings" ] || fail "$1: the settings are others"
+}
+expect_version() {
+  # shellcheck disable=SC2016  # a field of dpkg's
+  [ "$(in_root dpkg-query -W -f '${Version}' ergocast)" = "$1" ] || fail "$1 is not the version"
+}
+
 make_bare_system() {
   bare_debian "$suite" "$root" "$cache" || fail debootstrap
   # dpkg starts no service here, because systemd does not run.

@@ -85,39 +85,13 @@ check_page() {
   wait "$watch" || fail 'ergocast watch does not end in order'
 }
 
-# An older package, with another default in its settings. Its files are the new ones.
-make_old_package() {
-  dpkg-deb -R "$deb" "$work/old"
-  sed -i 's/^Version: .*/Version: 0.2.0/' "$work/old/DEBIAN/control"
-  echo '# an older default' >>"$work/old/etc/ergocast/ergocast.env"
-  dpkg-deb --root-owner-group -b "$work/old" "$root/tmp/old.deb" >/dev/null
-  rm -r "$work/old"
-}
-
-# The operator's files; all but the settings are below what a purge removes.
-kept='etc/ergocast/mission.key var/lib/ergocast/20260101-000000/summary.json'
-use_package() {
-  local file
-  for file in $kept; do
-    mkdir -p "$root/$(dirname "$file")"
-    echo kept >"$root/$file"
-  done
-  echo 'ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto' >"$root/etc/ergocast/ergocast.env"
-}
-expect_kept() {
-  local file
-  for file in $kept; do [ "$(cat "$root/$file")" = kept ] || fail "$1: $file is gone"; done
-  grep -qx 'ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto' "$root/etc/ergocast/ergocast.env" ||
-    fail "$1: the settings are others"
-}
-
 check_upgrade() {
-  make_old_package
+  make_old_package "$deb" "$root/tmp/old.deb"
   apt_install /tmp/old.deb
+  expect_version 0.2.0
   use_package
   apt_install -o Dpkg::Options::=--force-confold "/tmp/$(basename "$deb")"
-  # shellcheck disable=SC2016  # a field of dpkg's
-  [ "$(in_root dpkg-query -W -f '${Version}' ergocast)" = "$(dpkg-deb -f "$deb" Version)" ] || fail 'no upgrade'
+  expect_version "$(dpkg-deb -f "$deb" Version)"
   expect_kept 'upgraded'
 }
 

@@ -39,21 +39,13 @@ serve() {
 }
 publish_old() {
   mkdir "$work/web/$suite"
-  dpkg-deb -R "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*.deb "$work/old"
-  sed -i 's/^Version: .*/Version: 0.2.0/' "$work/old/DEBIAN/control"
-  echo '# an older default' >>"$work/old/etc/ergocast/ergocast.env"
-  dpkg-deb --root-owner-group -Zgzip -z1 -b "$work/old" "$work/web/$suite/ergocast_0.2.0_all.deb" >/dev/null
-  rm -r "$work/old"
+  make_old_package "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*.deb "$work/web/$suite/ergocast_0.2.0_all.deb"
   # Older than the release, because apt ignores lists that are older than those it has.
   SOURCE_DATE_EPOCH=1700000000 "$source/packaging/apt-index" "$work/web/$suite"
 }
 publish_release() {
   rm -r "${work:?}/web/$suite"
   cp -r "$ERGOCAST_RELEASE/apt/$suite" "$work/web/"
-}
-version_is() {
-  # shellcheck disable=SC2016  # a field of dpkg's
-  [ "$(in_root dpkg-query -W -f '${Version}' ergocast)" = "$1" ] || fail "$1 is not the version"
 }
 
 # Runs the commands of a section.
@@ -64,32 +56,15 @@ follow() {
   keep_archives "$suite" "$root" "$cache"
 }
 
-# The operator's files.
-kept='etc/ergocast/mission.key var/lib/ergocast/20260101-000000/summary.json'
-use_package() {
-  local file
-  for file in $kept; do
-    mkdir -p "$root/$(dirname "$file")"
-    echo kept >"$root/$file"
-  done
-  echo 'ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto' >"$root/etc/ergocast/ergocast.env"
-}
-expect_kept() {
-  local file
-  for file in $kept; do [ "$(cat "$root/$file")" = kept ] || fail "$1: $file is gone"; done
-  [ "$(cat "$root/etc/ergocast/ergocast.env")" = ERGOCAST_SCENARIO=/etc/ergocast/mine.textproto ] ||
-    fail "$1: the settings are others"
-}
-
 make_bare_system
 serve
 publish_old
 follow Packages
-version_is 0.2.0
+expect_version 0.2.0
 use_package
 publish_release
 follow 'Upgrade and removal'
-version_is "$(dpkg-deb -f "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*.deb Version)"
+expect_version "$(dpkg-deb -f "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*.deb Version)"
 expect_kept upgraded
 for compiler in cc c++ g++ clang; do
   ! in_root sh -c "command -v $compiler" >/dev/null || fail "$compiler was installed"
