@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/team/team_json.h"
 #include "cli/team/team_text.h"
 #include "core/motion/charge.h"
 #include "core/search/search_cells.h"

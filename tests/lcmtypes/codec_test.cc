@@ -334,6 +334,8 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
   }
   for (const int finds : {0, 16, 20, kMaxObjects}) {
     RecordAck ack = record_ack();
+    ack.finds.fill(ack.finds[0]);
+    ack.contacts.fill(ack.contacts[0]);
     ack.find_count = finds;
     ack.contact_count = ack.contact_room();
     EXPECT_GE(ack.contact_count, 4) << finds;
