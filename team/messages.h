@@ -285,8 +285,8 @@ struct Beacon {
   std::array<std::uint16_t, kMaxEchoesPerMessage> echoes{};
 };
 
-/// Limit (Messages): contacts that RECORD_ACK names. Beyond it, and beyond 20 finds: the least
-/// likely are not listed.
+/// Limit (Messages): contacts that RECORD_ACK names, fewer with more than 22 finds. Beyond it: the
+/// least likely are not listed.
 inline constexpr std::int32_t kMaxContactsPerMessage = 16;
 /// Room for finds of 32 bytes and contacts of 25 in a RECORD_ACK.
 inline constexpr std::int32_t kFindAndContactBytes = 1124;

@@ -270,7 +270,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(ack.finds[0].object, 31);
   EXPECT_EQ(ack.finds[0].find_agent, 127);
   EXPECT_EQ(ack.finds[0].find_tick, 4711);
-  EXPECT_EQ(ack.finds[0].find_position_m[1], -2);
+  EXPECT_EQ(ack.finds[0].find_y_m, -2);
   ASSERT_EQ(ack.contact_count, 1);
   EXPECT_EQ(ack.contacts[0].contact_cell, 4095);
   EXPECT_EQ(ack.contacts[0].contact_reports, 3);
