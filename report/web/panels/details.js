@@ -149,7 +149,7 @@ const AMENDMENT_COLUMNS = [
   [
     'kind',
     'kind',
-    'What it changes: a pause, the target, the end, a zone that is kept free or is cancelled, the law, or a contact that is dismissed',
+    'A pause, the target, the end, a zone that is kept free or is cancelled, the law, or a dismissed contact',
   ],
   ['from tick', 'from', 'The first tick of the world at which it holds'],
   ['t [s]', 't', 'Mission time at that tick'],
