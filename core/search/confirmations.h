@@ -50,7 +50,7 @@ class Confirmations {
     Contacts contacts;
     Basis basis;  // (2)
     IndexedRings walls;
-    // Of each cell, by reports of which some still count:
+    // By cell, from reports of which some still count:
     std::vector<ObjectSet> reported;
     std::vector<char> known;   // whether it is of a contact that was confirmed
     std::vector<Tick> newest;  // the tick of the newest report
