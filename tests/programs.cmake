@@ -288,6 +288,7 @@ ergocast_script_test(foxglove_client process cli/foxglove/client/fetch ${CMAKE_B
 set_tests_properties(foxglove_client PROPERTIES FIXTURES_SETUP foxglove_client)
 ergocast_script_test(example_law process examples/law_test.sh ${CMAKE_BINARY_DIR})
 ergocast_script_test(setup_says_why process package/setup_test.sh)
+ergocast_script_test(manual_pages process package/manual_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 ergocast_script_test(package_repository process package/repository_test.sh ${CMAKE_BINARY_DIR})
 add_dependencies(all_process manual)

@@ -127,8 +127,7 @@ bool is_map_command(int argc, char** argv) {
 }
 
 int map_command(int argc, char** argv) {
-  CLI::App app("Save the newest map of a topic (nav_msgs/OccupancyGrid), as map_saver does.",
-               "ergocast-ros2 map");
+  CLI::App app(kMapSummary, "ergocast-ros2 map");
   MapOptions options;
   app.add_option("--topic", options.topic, "The topic")->capture_default_str()->type_name("TOPIC");
   app.add_option("--frame", options.frame, "The frame_id that the map must have")

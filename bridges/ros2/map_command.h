@@ -4,6 +4,9 @@
 
 namespace ergocast::ros2 {
 
+inline constexpr const char* kMapSummary =
+    "Save the newest map of a topic (nav_msgs/OccupancyGrid), as map_saver does";
+
 /// Whether the command line asks for it.
 bool is_map_command(int argc, char** argv);
 /// Runs it; returns the exit code.

@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "bridges/ros2/map_command.h"
+
 namespace ergocast::ros2 {
 std::optional<int> domain_of_environment() {
   const char* text = std::getenv("ROS_DOMAIN_ID");
@@ -60,9 +62,9 @@ int read_command_line(int argc, char** argv, Options& options) {
   app.add_option("--robot", chosen, "Drive only these robots of the file, without its display")
       ->check(CLI::Range(0, kMaxAgents - 1).description(""))
       ->type_name("N");
+  app.add_subcommand("map", kMapSummary);  // for the help: map_command() reads its own arguments
   app.footer(
-      "ergocast-ros2 map --help: saves the map of a topic. Exit codes: 0 done; 2 bad arguments or "
-      "file; 3 LCM or DDS cannot be used on this machine; "
+      "Exit codes: 0 done; 2 bad arguments or file; 3 LCM or DDS cannot be used on this machine; "
       "4 the\nmission failed, or was refused.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   const std::string problem = read_file(file, chosen, options);

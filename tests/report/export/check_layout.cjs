@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A Foxglove layout fits a file's topics: check_layout.cjs LAYOUT TOPICS. TOPICS has a topic first in each line.
+// A Foxglove layout fits a file's topics: check_layout.cjs LAYOUT TOPICS. Each line of TOPICS begins with one.
 const assert = require('node:assert');
 const { readFileSync } = require('node:fs');
 const [layoutFile, topicsFile] = process.argv.slice(2);
