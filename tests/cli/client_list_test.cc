@@ -86,9 +86,51 @@ TEST_F(NamedClients, StandFilesThatAreNone) {
     EXPECT_EQ(named_clients(1), Names{"browser a"}) << text;
     close(held);
   }
+  // Even if what a link leads to looks like a live file.
+  const auto elsewhere = own_.path() / "elsewhere";
+  std::ofstream(elsewhere) << "[\"browser x\"]";
+  const int held = open(elsewhere.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(flock(held, LOCK_EX), 0);
+  std::filesystem::create_symlink(elsewhere, folder / ".clients-0000000000000001-96");
   std::filesystem::create_directory(folder / ".clients-0000000000000001-98");
   std::filesystem::create_symlink("/dev/zero", folder / ".clients-0000000000000001-97");
   EXPECT_EQ(named_clients(1), Names{"browser a"});
+  close(held);
+}
+
+TEST_F(NamedClients, AreFewAndShortAndPrintable) {
+  ClientFile file;
+  file.write(1, Names(100, std::string("\x1b[2J") + std::string(300, 'a')));
+  const Names named = named_clients(1);
+  EXPECT_EQ(named.size(), kMostNamedClients);
+  for (const std::string& name : named) {
+    EXPECT_EQ(name.find('\x1b'), std::string::npos) << name;
+    EXPECT_LT(name.size(), 220U);
+  }
+  // Nor are there more in the file of a process that has written more.
+  file.write(1, {});
+  const auto other = own_.path() / "ergocast/.clients-0000000000000001-99";
+  std::string many = "[\"x\"";
+  for (int i = 1; i < 100; ++i) many += ",\"x\"";
+  std::ofstream(other) << many << ']';
+  const int held = open(other.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(flock(held, LOCK_EX), 0);
+  EXPECT_EQ(named_clients(1).size(), kMostNamedClients);
+  close(held);
+}
+
+TEST_F(NamedClients, AreThoseOfAllProcesses) {
+  ClientFile own;
+  own.write(1, {"browser a"});
+  // Another process's file: it is live while somebody holds its lock.
+  const auto other = own_.path() / "ergocast/.clients-0000000000000001-99";
+  std::ofstream(other) << "[\"browser b\"]";
+  const int held = open(other.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(flock(held, LOCK_EX), 0);
+  EXPECT_EQ(named_clients(1), (Names{"browser a", "browser b"}));
+  close(held);
+  EXPECT_EQ(named_clients(1), Names{"browser a"});
+  EXPECT_FALSE(std::filesystem::exists(other));
 }
 
 TEST_F(NamedClients, AreLoggedWhenTheyComeAndGo) {

@@ -107,6 +107,16 @@ TEST(TeamTable, SaysWhatHasBeenFoundOnceALoggerHasSaidSo) {
                                       "tick": 80, "t_s": 8.0, "x_m": 100.0, "y_m": 250.5}]})"));
 }
 
+TEST(TeamTable, NamesClientsWhereThereAreSome) {
+  TeamPicture picture = running_team();
+  EXPECT_EQ(team_table(picture, false).find("shown to"), std::string::npos);
+  picture.clients = {"browser 127.0.0.1:5", "TAK at \x1b[2J"};
+  const std::string text = team_table(picture, false);
+  EXPECT_NE(text.find("\nshown to  browser 127.0.0.1:5\nshown to  TAK at "), std::string::npos)
+      << text;
+  EXPECT_EQ(text.find('\x1b'), std::string::npos) << "received text stays printable";
+}
+
 TEST(TeamTable, ShowsEverythingInLinesThatFit) {
   EXPECT_EQ(
       team_table(running_team(), false),

@@ -19,6 +19,11 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
   EXPECT_TRUE(browser_->becomes("return document.querySelectorAll('#rows tr').length === 4"));
   EXPECT_TRUE(browser_->becomes("return document.getElementById('log').childElementCount > 0"));
 
+  // The page names its own browser, and nobody else.
+  EXPECT_TRUE(
+      browser_->becomes("return /shown to\\s*browser 127\\.0\\.0\\.1:\\d+(?![,\\d])/.test("
+                        "document.getElementById('facts').textContent)"));
+
   kill_next(agent(2));
   EXPECT_TRUE(browser_->becomes(
       "return ergocast.S.run.incidents.some(i => i.agent === 2 && /restarted|back/.test(i.text))"));
