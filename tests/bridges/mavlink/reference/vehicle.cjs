@@ -4,8 +4,8 @@
 // Motion and time-outs count steps of 20 ms, whatever makes them. Only messages have the time of a clock.
 //
 // options: system, make (px4, ardupilot), body (copter, rover, wing), at ("LAT,LON"), patience (replaces both
-// time-outs [s]; "never": there is none), stubborn (it denies drivers each mode). A body of another program may
-// move: step(body) has its place and velocity, and wanted() is what the autopilot wants of it.
+// time-outs [s]; "never": there is none), stubborn (it denies drivers each mode). A body of another program
+// may move: step(body) has its place and velocity, and wanted() is what the autopilot wants of it.
 // clock() → ns as a BigInt; send(frame) passes a frame to all who are on the link.
 const HOME_ALTITUDE = 402.5;
 const STEP = 0.02; // s
