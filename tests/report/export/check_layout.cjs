@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A Foxglove layout fits a file's topics: check_layout.cjs LAYOUT TOPICS. Each line of TOPICS begins with one.
+// Compares a Foxglove layout with topics of a file: check_layout.cjs LAYOUT TOPICS, which begin its lines.
 const assert = require('node:assert');
 const { readFileSync } = require('node:fs');
 const [layoutFile, topicsFile] = process.argv.slice(2);
