@@ -40,6 +40,14 @@ Result<std::string, Problem> read_file(const std::filesystem::path& file) {
   return failure(Problem{file.string(), std::move(problem.what), std::move(problem.remedy)});
 }
 
+/// The text of a mission, for which a new target is read.
+Result<proto::Scenario, Problems> running_mission(const std::string& text) {
+  proto::Scenario mission;
+  Findings misread("the running mission");
+  if (!read_text(text, mission, misread)) return failure(misread.take());
+  return mission;
+}
+
 }  // namespace
 
 struct Scenario::State {
@@ -94,12 +102,11 @@ Result<Scenario, Problems> Scenario::parse(std::string_view text, const std::str
 Result<Scenario, Problems> Scenario::load_target(const std::filesystem::path& file,
                                                  const Overrides& overrides,
                                                  const std::string& running) {
-  Written written{{}, file.string(), Findings(file.string()), proto::Scenario()};
-  proto::Scenario& mission = *written.running;
-  Findings misread("the running mission");
-  if (!read_text(running, mission, misread)) return failure(misread.take());
+  auto mission = running_mission(running);
+  if (!mission) return failure(mission.error());
+  Written written{{}, file.string(), Findings(file.string()), *std::move(mission)};
   Findings& findings = written.findings;
-  if (!read_target_file(file.string(), mission.domain(), written.text, findings)) {
+  if (!read_target_file(file.string(), written.running->domain(), written.text, findings)) {
     const auto text = read_file(file);
     if (!text) return failure(Problems{text.error()});
     if (!read_text(*text, written.text, findings)) return failure(findings.take());
@@ -112,9 +119,10 @@ Result<Scenario, Problems> Scenario::load_target(const std::filesystem::path& fi
 
 Result<Scenario, Problems> Scenario::parse_target(std::string_view text,
                                                   const std::string& running) {
-  Written written{{}, "the new target", Findings("the new target"), proto::Scenario()};
-  Findings misread("the running mission");
-  if (!read_text(running, *written.running, misread)) return failure(misread.take());
+  auto mission = running_mission(running);
+  if (!mission) return failure(mission.error());
+  const std::string name = "target";
+  Written written{{}, name, Findings(name), *std::move(mission)};
   if (!read_text(text, written.text, written.findings)) return failure(written.findings.take());
   return compile(written);
 }

@@ -192,6 +192,27 @@ TEST_F(FoundInABrowser, FindsHaveLabelsOfTheirOwn) {
   expect_no_errors();
 }
 
+TEST_F(FoundInABrowser, ContactsAreListedTheLikeliestFirst) {
+  open_report(
+      {"--seed", "4", "--set", "sensor.false_alarms_per_s=0.02", "--set", "sensor.radius_m=60"},
+      "#theme=light", "mine_line");
+  const nlohmann::json contacts = summary()["contacts"];
+  ASSERT_GT(contacts.size(), 1U);
+  const nlohmann::json rows =
+      js("return [...document.getElementById('contacts').rows].map(row =>"
+         "  [...row.cells].map(cell => cell.textContent))");
+  ASSERT_EQ(rows.size(), contacts.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_NEAR(std::stod(rows[i][0].get<std::string>()), contacts[i]["x_m"], 0.06) << rows[i];
+    EXPECT_NEAR(std::stod(rows[i][1].get<std::string>()), contacts[i]["y_m"], 0.06) << rows[i];
+    EXPECT_EQ(rows[i][3], contacts[i]["reports"].dump());
+    EXPECT_EQ(rows[i][5], contacts[i]["confirmed"] ? "confirmed" : "");
+  }
+  EXPECT_FALSE(js("return document.getElementById('contactBox').hidden").get<bool>());
+  screenshot("contacts");
+  expect_no_errors();
+}
+
 TEST_F(FoundInABrowser, ARunningTeamShowsItsFinds) {
   Child mission = launch_endless(scenario("pace: REALTIME realtime_factor: 10"),
                                  {"--set", "world.objects.count=6", "--set", "sensor.radius_m=150",

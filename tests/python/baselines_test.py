@@ -218,9 +218,9 @@ class Kernel(unittest.TestCase):
                 # The derivative of the discrepancy with one more place there, by differences.
                 slope, n = np.zeros(axes), len(visited_m)
                 for i in range(axes):
-                    step = np.eye(axes)[i] * 0.5
+                    step = np.eye(axes)[i] * 0.05
                     ends = [self.discrepancy(law, np.vstack([visited_m, x_m + s * step])) for s in (1, -1)]
-                    slope[i] = ends[0] - ends[1]
+                    slope[i] = (ends[0] - ends[1]) / 0.1
                 gradient = law.gradient(x_m[None])[0]
                 # The new place weighs 1/(n + 1); the mean of the visits then has n of n + 1 shares.
                 mean = law.pull(x_m[None], visited_m, np.full(n, 1 / n))[0]
