@@ -75,7 +75,7 @@ void put_covariance(Cdr& cdr) {
 
 // ---- definitions ----
 
-/// Of each type its fields, "TYPE NAME" a line.
+/// The fields of each type, "TYPE NAME" a line.
 const std::map<std::string, std::string, std::less<>> kDefinitions = {
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
