@@ -176,6 +176,11 @@ TEST_F(DrawnZoneInABrowser, IsRefusedWithTheWordsOfTheCommand) {
 TEST_F(DrawnZoneInABrowser, OverAStationIsRefused) {
   open_page(Control::kTaken, scenario_file("home_by_dusk"));
   browser_->click("#drawZone");
+  // One line more beside the map, such as the first command that came too late, would make the map
+  // smaller between two presses.
+  js("const stage = document.getElementById('stage');"
+     "const { width, height } = stage.getBoundingClientRect();"
+     "Object.assign(stage.style, { flex: 'none', width: `${width}px`, height: `${height}px` })");
   const double scale = js("return ergocast.view.scale");
   const auto pixels = [scale](double metres) {
     return static_cast<int>(std::lround(metres * scale));
