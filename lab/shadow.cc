@@ -139,6 +139,7 @@ bool Shadow::in_range(const Mission& mission, AgentId one, AgentId other) const 
 // ---- where teammates have been ----
 
 void Shadow::answer(const Mission& mission, const TableView& agent) {
+  newest_counted_ = std::max(newest_counted_, agent.counted);
   if (!mission.dead_reckoning) return;
   for (auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
@@ -305,9 +306,9 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
 std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
                                                     const TableView& agent) const {
   std::vector<std::vector<Part>> team(1);
-  // An agent that has learned late of a pause has halved its sums too early, and they stay so.
-  const Tick halvings =
-      halvings_at(mission, std::max(agent.counted, agent.table->block(agent.self, 0).header.tick));
+  // An agent that has learned late of a pause has halved its sums too early, and they stay so. That
+  // also holds for one that rests and samples nothing.
+  const Tick halvings = halvings_at(mission, std::max(agent.counted, newest_counted_));
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const Contribution own = agent.table->block(agent.self, b);
     const int size = block_size(mission);

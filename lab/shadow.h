@@ -103,6 +103,7 @@ class Shadow {
   mutable WireModes modes_;
   mutable std::optional<Eigen::Matrix3d> covariance_m2_;  // of the target
   Tick active_from_;
+  Tick newest_counted_ = 0;  // of the ticks that the agent has answered
   TargetMemory targets_;
   std::int64_t own_steps_ = -1;     // of the own row at the last call of sample_error_s(), …
   std::vector<double> own_sums_s_;  // … the sums of its first block, …
