@@ -42,9 +42,9 @@ OccupancyGrid empty_grid(const Box& domain) {
 }
 
 Eigen::Vector3d middle_m(const OccupancyGrid& grid, std::size_t cell, const Box& domain) {
-  const auto column = static_cast<double>(cell % grid.width);
-  const auto row = static_cast<double>(cell / grid.width);
-  return domain.origin_m + grid.resolution_m * Eigen::Vector3d(column + 0.5, row + 0.5, 0);
+  const std::size_t column = cell % grid.width, row = cell / grid.width;
+  return domain.origin_m + grid.resolution_m * Eigen::Vector3d(static_cast<double>(column) + 0.5,
+                                                               static_cast<double>(row) + 0.5, 0);
 }
 
 }  // namespace

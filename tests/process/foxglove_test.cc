@@ -123,6 +123,13 @@ class ShownInFoxglove : public RunningMission {
     return child;
   }
   std::string shown() const { return text_of(watch_log_); }
+  /// The address that was printed for other hosts; empty if none was.
+  std::string url_with_token() const {
+    const std::string text = shown(), begin = "connect Foxglove to ";
+    const auto at = text.find(begin + "wss://127.0.0.1:8901/?token=");
+    if (at == text.npos) return "";
+    return text.substr(at + begin.size(), text.find('\n', at) - at - begin.size());
+  }
   bool shows(const std::string& part) const {
     return eventually([&] { return shown().find(part) != std::string::npos; });
   }
@@ -305,11 +312,8 @@ TEST_F(ShownInFoxglove, NeedsATokenOnOtherAddressesAndHasTls) {
   Child mission = launch_endless(there(), {"--realtime=10"});
   const auto [certificate, key] = make_certificate(folder_, "page");
   Child server = watch({"--listen", "127.0.0.1", "--tls-cert", certificate, "--tls-key", key});
-  const std::string begin = "connect Foxglove to ";
-  const auto at = shown().find(begin + "wss://127.0.0.1:8901/?token=");
-  ASSERT_NE(at, std::string::npos) << shown();
-  const std::string url =
-      shown().substr(at + begin.size(), shown().find('\n', at) - at - begin.size());
+  const std::string url = url_with_token();
+  ASSERT_NE(url, "") << shown();
   EXPECT_EQ(read(url).size(), 5U + 2 * 8);
   const auto status = [&](const std::string& target) {
     HttpsConnection connection(kPort);
@@ -355,11 +359,8 @@ TEST_F(ShownInFoxglove, BesideAPageWithControlAndItsToken) {
   const auto [certificate, key] = make_certificate(folder_, "page");
   Child server =
       watch({"--control", "--listen", "127.0.0.1", "--tls-cert", certificate, "--tls-key", key});
-  const std::string begin = "connect Foxglove to ";
-  const auto at = shown().find(begin + "wss://127.0.0.1:8901/?token=");
-  ASSERT_NE(at, std::string::npos) << shown();
-  const std::string url =
-      shown().substr(at + begin.size(), shown().find('\n', at) - at - begin.size());
+  const std::string url = url_with_token();
+  ASSERT_NE(url, "") << shown();
   EXPECT_EQ(read(url).size(), 5U + 2 * 8);
   kill_next({"ergocast run-page"});
   EXPECT_EQ(read(url).size(), 5U + 2 * 8);

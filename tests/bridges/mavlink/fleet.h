@@ -13,6 +13,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "agent/agent.h"
@@ -23,6 +24,40 @@
 #include "tests/bridges/mavlink/mock_fleet.h"
 
 namespace ergocast::mavlink {
+
+/// A mission in real time over a square with a uniform target, with a driver for each of
+/// `starts_m`.
+inline Mission fleet_mission(double side_m, double speed_mps, double distance_m,
+                             double position_error_m, std::vector<Eigen::Vector3d> starts_m) {
+  Mission mission;
+  mission.name = "fleet";
+  mission.domain.size_m = {side_m, side_m, 0};
+  mission.basis.modes_x = mission.basis.modes_y = 8;
+  mission.target_coefficients = Coefficients::Zero(mission.basis.mode_count());
+  mission.target_coefficients[0] = 1;
+  mission.law.u_max_mps = mission.speed_limit_mps = speed_mps;
+  mission.timing.dt_s = 0.1;
+  mission.timing.tick_count = 1'000'000;
+  mission.timing.pace = Pace::kRealtime;
+  mission.timing.command_hold_s = 0.2;
+  mission.timing.admission_timeout_s = 600;
+  mission.separation.distance_m = distance_m;
+  mission.separation.lease_s = 3;
+  mission.separation.response_s = 0.5;
+  mission.separation.position_error_m = position_error_m;
+  mission.quorum = static_cast<int>(starts_m.size());
+  mission.starts_m = std::move(starts_m);
+  mission.wait_for_logger = false;
+  return mission;
+}
+
+/// `across` × `across` places, the first at (first_m, first_m).
+inline std::vector<Eigen::Vector3d> square_of_starts(int across, double first_m, double apart_m) {
+  std::vector<Eigen::Vector3d> places_m;
+  for (int i = 0; i < across * across; ++i)
+    places_m.push_back({first_m + apart_m * (i % across), first_m + apart_m * (i / across), 0});
+  return places_m;
+}
 
 /// Parts of a thousand.
 struct Weather {

@@ -14,30 +14,10 @@ constexpr double kDistance_m = 8;
 
 /// 16 vehicles over 130 m × 130 m with a wall in the middle, so they meet all the time.
 Mission mission_of_16() {
-  Mission mission;
-  mission.name = "fleet";
+  Mission mission = fleet_mission(130, 5, kDistance_m, 0.5, square_of_starts(4, 20, 30));
   mission.seed = 7;
-  mission.domain.size_m = {130, 130, 0};
-  mission.basis.modes_x = mission.basis.modes_y = 8;
-  mission.target_coefficients = Coefficients::Zero(64);
-  mission.target_coefficients[0] = 1;
-  mission.law.u_max_mps = 5;
-  mission.speed_limit_mps = 5;
-  mission.timing.dt_s = 0.1;
-  mission.timing.tick_count = 1'000'000;
-  mission.timing.pace = Pace::kRealtime;
-  mission.timing.command_hold_s = 0.2;
-  mission.timing.admission_timeout_s = 600;
-  mission.separation.distance_m = kDistance_m;
-  mission.separation.lease_s = 3;
-  mission.separation.response_s = 0.5;
-  mission.separation.position_error_m = 0.5;
   mission.walls = Rings{Ring{{60, 60}, {70, 60}, {70, 70}, {60, 70}}};
   mission.wall_clearance_m = 5;
-  for (int i = 0; i < 16; ++i)
-    mission.starts_m.push_back({20 + 30.0 * (i % 4), 20 + 30.0 * (i / 4), 0});
-  mission.quorum = 16;
-  mission.wait_for_logger = false;
   return mission;
 }
 

@@ -14,30 +14,10 @@ constexpr double kDistance_m = 1.2, kHeight_m = 5;
 /// Nine quadrotors in a room of 15 m × 15 m. All respond to the same deficit in its middle, so they
 /// crowd.
 Mission mission_of_9() {
-  Mission mission;
-  mission.name = "quadrotors";
+  Mission mission = fleet_mission(15, 1, kDistance_m, 0.05, square_of_starts(3, 2.5, 5));
   mission.seed = 3;
-  mission.domain.size_m = {15, 15, 0};
-  mission.basis.modes_x = mission.basis.modes_y = 8;
-  mission.target_coefficients = Coefficients::Zero(64);
-  mission.target_coefficients[0] = 1;
   for (const int across : {2, 16}) mission.target_coefficients[across] = -0.6;
-  mission.law.u_max_mps = 1;
   mission.law.anticipation = 0;
-  mission.speed_limit_mps = 1;
-  mission.timing.dt_s = 0.1;
-  mission.timing.tick_count = 1'000'000;
-  mission.timing.pace = Pace::kRealtime;
-  mission.timing.command_hold_s = 0.2;
-  mission.timing.admission_timeout_s = 600;
-  mission.separation.distance_m = kDistance_m;
-  mission.separation.lease_s = 3;
-  mission.separation.response_s = 0.5;
-  mission.separation.position_error_m = 0.05;
-  for (int i = 0; i < 9; ++i)
-    mission.starts_m.push_back({2.5 + 5.0 * (i % 3), 2.5 + 5.0 * (i / 3), 0});
-  mission.quorum = 9;
-  mission.wait_for_logger = false;
   return mission;
 }
 
@@ -51,7 +31,7 @@ VehicleOptions options() {
 /// They begin just above the floor. A wanted climb moves the height that a quadrotor holds.
 class Quadrotors {
  public:
-  explicit Quadrotors(Mission mission)
+  explicit Quadrotors(const Mission& mission)
       : starts_m_(mission.starts_m),
         held_m_(mission.starts_m.size(), kAboveFloor_m),
         physics_(in_steps_of_mocks(mission), mujoco::kQuadrotors) {
@@ -87,7 +67,7 @@ class Quadrotors {
 
  private:
   static constexpr double kStep_s = 0.02, kAboveFloor_m = 0.1;
-  static const Mission& in_steps_of_mocks(Mission& mission) {
+  static Mission in_steps_of_mocks(Mission mission) {
     mission.timing.dt_s = kStep_s;
     return mission;
   }

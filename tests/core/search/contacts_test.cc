@@ -13,26 +13,12 @@
 #include "core/measure/objects.h"
 #include "core/search/confirmations.h"
 #include "core/search/reports.h"
+#include "tests/core/search/field.h"
 
 namespace ergocast {
 namespace {
 
 using Eigen::Vector3d;
-
-/// 200 m × 100 m, 20 × 10 cells, with a uniform target.
-Mission field() {
-  Mission mission;
-  mission.domain = {{-20, 5, 0}, {200, 100, 0}};
-  mission.basis.modes_x = mission.basis.modes_y = 8;
-  mission.target_coefficients = Coefficients::Zero(mission.basis.mode_count());
-  mission.target_coefficients[0] = 1;
-  mission.law.kind = LawKind::kSearch;
-  mission.law.u_max_mps = 5;
-  mission.timing.dt_s = 0.1;
-  mission.sensor = {
-      .radius_m = 10, .detections_per_s = 0.5, .false_alarms_per_s = 0.02, .position_error_m = 2};
-  return mission;
-}
 
 std::vector<double> uniform(const Mission& mission) {
   const std::size_t cells = SearchCells(mission).cells.total();
@@ -45,7 +31,7 @@ std::int32_t cell_at(const Mission& mission, const Vector3d& x_m) {
 }
 
 TEST(Reports, AreOfObjectsWithAnErrorAndOfNothingAtTheirRate) {
-  Mission mission = field();
+  Mission mission = searched_field();
   const Vector3d object_m(105, 45, 0);
   mission.objects = {0, {object_m}};
   Objects objects(mission);
@@ -92,7 +78,7 @@ Efforts looked(const Mission& mission, std::int64_t looks, int reports) {
 
 // o = Σ m exp(−n L) g / (1 − Σ m) over the cell of the reports and its neighbours.
 TEST(Contacts, HaveTheOddsOfTheirLooksAndReports) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   const double sides = 10 / 2.0;
   const double own = std::erf(sides / std::numbers::sqrt2) -
                      std::sqrt(2 / std::numbers::pi) / sides * (1 - std::exp(-sides * sides / 2));
@@ -126,7 +112,7 @@ TEST(Contacts, HaveTheOddsOfTheirLooksAndReports) {
 }
 
 TEST(Contacts, OfWhichNothingComesLoseTheirWeight) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   const auto cell = static_cast<std::size_t>(cell_at(mission, {85, 60, 0}));
   double before = 1e9;
   for (const std::int64_t looks : {1, 10, 20}) {
@@ -145,7 +131,7 @@ TEST(Contacts, OfWhichNothingComesLoseTheirWeight) {
 }
 
 TEST(Contacts, DoNotExistWithoutFalseAlarms) {
-  Mission mission = field();
+  Mission mission = searched_field();
   mission.sensor.false_alarms_per_s = 0;
   const Efforts efforts = looked(mission, 4, 3);
   Contacts contacts(mission);
@@ -163,7 +149,7 @@ TEST(Contacts, AreTheSameInWhateverOrderTilesArrive) {
     EffortTile content;
     Tick at;
   };
-  const Mission mission = field();
+  const Mission mission = searched_field();
   Efforts all(mission);
   std::vector<Sent> sent;
   for (AgentId id : {0, 1}) all.add_row({id, 7});
@@ -262,7 +248,7 @@ std::vector<double> uneven(const Mission& mission) {
 }
 
 TEST(Contacts, AreConfirmedOneByOneTheLikeliestFirst) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   std::size_t confirmed = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Efforts efforts(mission);
@@ -286,7 +272,7 @@ TEST(Contacts, AreConfirmedOneByOneTheLikeliestFirst) {
 
 // A sensor that reports something at every tick delays no agent.
 TEST(Contacts, OfTheMostReportsAreConsideredAFewTimesEach) {
-  Mission mission = field();
+  Mission mission = searched_field();
   mission.domain.size_m = {640, 640, 0};
   Efforts efforts(mission);
   efforts.add_row({0, 1});
@@ -304,7 +290,7 @@ TEST(Contacts, OfTheMostReportsAreConsideredAFewTimesEach) {
 }
 
 TEST(Efforts, CountReportsOnceAndOnlyWhileLooksCount) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   Efforts efforts(mission);
   efforts.add_row({0, 1});
   const std::int32_t cell = cell_at(mission, {85, 60, 0});
@@ -338,7 +324,7 @@ Vector3d wanted(const Mission& mission, const Vector3d& x_m, std::int32_t cell, 
 }
 
 TEST(Searcher, LooksAgainWhereSomethingWasReported) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   const std::int32_t west = cell_at(mission, {50, 55, 0}), east = cell_at(mission, {110, 55, 0});
   EXPECT_LT(wanted(mission, {80, 55, 0}, west, 2).x(), -3);
   EXPECT_GT(wanted(mission, {80, 55, 0}, east, 2).x(), 3);
@@ -350,7 +336,7 @@ TEST(Searcher, LooksAgainWhereSomethingWasReported) {
 }
 
 TEST(Searcher, LeavesWhatIsConfirmed) {
-  Mission mission = field();
+  Mission mission = searched_field();
   mission.domain = {{0, 0, 0}, {60, 30, 0}};
   mission.target_coefficients[mission.basis.modes_y] = -0.9;  // most of it in the east
   const std::int32_t east = cell_at(mission, {45, 15, 0});
@@ -363,7 +349,7 @@ TEST(Confirmations, AreOfObjectsAndRarelyWrong) {
   int found = 0, wrong = 0;
   constexpr int kMissions = 60;
   for (std::uint64_t seed = 1; seed <= kMissions; ++seed) {
-    Mission mission = field();
+    Mission mission = searched_field();
     mission.seed = seed;
     mission.objects = {0, {{100, 45, 0}}};
     Objects objects(mission);
@@ -391,7 +377,7 @@ TEST(Confirmations, AreOfObjectsAndRarelyWrong) {
 }
 
 TEST(Confirmations, WithoutFalseAlarmsAreDetections) {
-  Mission mission = field();
+  Mission mission = searched_field();
   mission.sensor.false_alarms_per_s = 0;
   Confirmations confirmations(mission);
   EXPECT_EQ(confirmations.see(0, 3, {85, 60, 0}, 5, kNoCell), 5u);

@@ -10,6 +10,7 @@
 #include "core/search/confirmations.h"
 #include "core/search/contacts.h"
 #include "core/search/efforts.h"
+#include "tests/core/search/field.h"
 
 namespace ergocast::search_notes {
 namespace {
@@ -19,21 +20,6 @@ using Eigen::Vector3d;
 constexpr Tick kFrom = 200;
 const Vector3d kPlace_m(85, 60, 0);
 const Author kAuthor{0, 1};
-
-/// 200 m × 100 m, 20 × 10 cells, with a uniform target.
-Mission field() {
-  Mission mission;
-  mission.domain = {{-20, 5, 0}, {200, 100, 0}};
-  mission.basis.modes_x = mission.basis.modes_y = 8;
-  mission.target_coefficients = Coefficients::Zero(mission.basis.mode_count());
-  mission.target_coefficients[0] = 1;
-  mission.law.kind = LawKind::kSearch;
-  mission.law.u_max_mps = 5;
-  mission.timing.dt_s = 0.1;
-  mission.sensor = {
-      .radius_m = 10, .detections_per_s = 0.5, .false_alarms_per_s = 0.02, .position_error_m = 2};
-  return mission;
-}
 
 SearchNote dismissal() { return {.number = 0, .from = kFrom, .x_m = kPlace_m.head<2>()}; }
 
@@ -64,7 +50,7 @@ void merge_row(Efforts& into, const Efforts& from, Tick sent) {
 }
 
 TEST(SearchNotes, ADismissalForgetsReportsAndASightingAllCounts) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   for (const SearchNote& note : {dismissal(), sighting()}) {
     Efforts efforts = searched(mission, kFrom);
     const TileCell here = at(efforts, kPlace_m), next = at(efforts, kPlace_m + Vector3d(10, 0, 0)),
@@ -90,7 +76,7 @@ TEST(SearchNotes, ADismissalForgetsReportsAndASightingAllCounts) {
 }
 
 TEST(SearchNotes, ADismissedContactSteersNoMore) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   Efforts efforts = searched(mission, kFrom);
   Contacts contacts(mission);
   contacts.set_prior(std::vector<double>(efforts.cells().cells.total(), 1.0 / 200));
@@ -107,7 +93,7 @@ TEST(SearchNotes, ADismissedContactSteersNoMore) {
 }
 
 TEST(SearchNotes, ForgettingCommutesWithMerging) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   for (const SearchNote& note : {dismissal(), sighting()}) {
     const Efforts before = searched(mission, kFrom);
     Efforts author = before, early(mission), late(mission);
@@ -141,7 +127,7 @@ TEST(SearchNotes, ForgettingCommutesWithMerging) {
 
 /// In lockstep an author may be a tick ahead of a holder.
 TEST(SearchNotes, WhatAnAuthorCountedAfterANoteIsNotForgotten) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   const SearchNote note = sighting();
   Efforts author = searched(mission, kFrom), holder(mission);
   author.note({&note, 1}, {});
@@ -157,7 +143,7 @@ TEST(SearchNotes, WhatAnAuthorCountedAfterANoteIsNotForgotten) {
 }
 
 TEST(SearchNotes, HoldFromTicksThatCount) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   const SearchNote note = dismissal();
   Efforts efforts = searched(mission, kFrom);
   const std::vector<Hold> holds{{100, 150}};  // fewer ticks count by then
@@ -167,7 +153,7 @@ TEST(SearchNotes, HoldFromTicksThatCount) {
 }
 
 TEST(SearchNotes, AreCheckedBeforeTheyAreNamed) {
-  Mission mission = field();
+  Mission mission = searched_field();
   EXPECT_TRUE(is_search_note(dismissal(), mission));
   EXPECT_TRUE(is_search_note(sighting(), mission));
   const auto refused = [&](auto change) {
@@ -193,7 +179,7 @@ TEST(SearchNotes, AreCheckedBeforeTheyAreNamed) {
 }
 
 TEST(SearchNotes, ASightingThatIsReplacedBeforeItHoldsLeavesTheList) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   Amendments list;
   name_target(list, kFrom, {.target = mission.target_coefficients});
   note_sighting(list, sighting());
@@ -229,7 +215,7 @@ Judged judged(const Mission& mission, const std::vector<std::pair<Tick, ObjectSe
 }
 
 TEST(SearchNotes, ADismissedContactDoesNotComeBackFromTheSameReports) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   // The fewest reports that confirm.
   std::vector<std::pair<Tick, ObjectSet>> least;
   while (judged(mission, least, {}).wrong == 0) {
@@ -249,7 +235,7 @@ TEST(SearchNotes, ADismissedContactDoesNotComeBackFromTheSameReports) {
 }
 
 TEST(SearchNotes, ContactsAreListedWithWhatIsKnownOfThem) {
-  const Mission mission = field();
+  const Mission mission = searched_field();
   Confirmations confirmations(mission);
   const SearchCells cells(mission);
   const auto cell_at = [&](double x_m, double y_m) {
@@ -283,7 +269,7 @@ TEST(SearchNotes, ContactsAreListedWithWhatIsKnownOfThem) {
 }
 
 TEST(SearchNotes, AnObjectThatHasDriftedAwayExcusesNoContactThere) {
-  Mission mission = field();
+  Mission mission = searched_field();
   mission.law.memory_half_life_s = 20;
   std::vector<std::pair<Tick, ObjectSet>> reports{{50, 1}};  // one detection, which then fades
   for (Tick tick = 450; tick < 466; tick += 2) reports.emplace_back(tick, 0);

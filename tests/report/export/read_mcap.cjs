@@ -2,62 +2,20 @@
 // Reads an exported MCAP file with the reference reader and compares it with the record:
 // read_mcap.cjs READER_FOLDER FILE RUN_DIR. Prints what was found, or what differs.
 const assert = require('node:assert');
-const {
-  readFileSync,
-  promises: { open },
-} = require('node:fs');
+const { readFileSync } = require('node:fs');
+const { countStreamed, readTopics, tableOf } = require('./mcap_file.cjs');
 const [reader, file, runDir] = process.argv.slice(2);
-const { McapIndexedReader, McapStreamReader } = require(`${reader}/node_modules/@mcap/core/dist/cjs`);
 
-const csv = name => {
-  const [head, ...lines] = readFileSync(`${runDir}/${name}`, 'utf8').trimEnd().split('\n');
-  return lines.map(line =>
-    Object.fromEntries(line.split(',').map((value, i) => [head.split(',')[i], Number(value)])),
-  );
-};
-
-async function readMessages() {
-  const handle = await open(file),
-    { size } = await handle.stat();
-  const readable = {
-    size: async () => BigInt(size),
-    read: async (offset, length) => {
-      const bytes = new Uint8Array(Number(length));
-      await handle.read(bytes, 0, Number(length), Number(offset));
-      return bytes;
-    },
-  };
-  const mcap = await McapIndexedReader.Initialize({ readable });
-  const topics = new Map();
-  for await (const message of mcap.readMessages()) {
-    const channel = mcap.channelsById.get(message.channelId),
-      schema = mcap.schemasById.get(channel.schemaId);
-    assert.equal(channel.messageEncoding, 'json');
-    assert.equal(schema.encoding, 'jsonschema');
-    const text = JSON.parse(Buffer.from(schema.data).toString());
-    const value = JSON.parse(Buffer.from(message.data).toString());
-    assert.equal(text.title, schema.name);
-    // The schema has exactly the members that are written.
-    assert.deepEqual(Object.keys(value).sort(), Object.keys(text.properties).sort(), schema.name);
-    assert.equal(BigInt(value.timestamp.sec) * 1000000000n + BigInt(value.timestamp.nsec), message.logTime);
-    const topic = topics.get(channel.topic) ?? { schema: schema.name, messages: [] };
-    topic.messages.push({ time: message.logTime, value });
-    topics.set(channel.topic, topic);
-  }
-  const metadata = [];
-  for await (const one of mcap.readMetadata()) metadata.push(one);
-  await handle.close();
-  return { topics, statistics: mcap.statistics, metadata };
-}
-
-// Every byte, in the order of the file; checks the sums.
-function streamed() {
-  const stream = new McapStreamReader({ validateCrcs: true });
-  stream.append(readFileSync(file));
-  let messages = 0;
-  for (let record; (record = stream.nextRecord()); ) messages += record.type === 'Message';
-  assert.ok(stream.done());
-  return messages;
+function valueOf(message, channel, schema) {
+  assert.equal(channel.messageEncoding, 'json');
+  assert.equal(schema.encoding, 'jsonschema');
+  const text = JSON.parse(Buffer.from(schema.data).toString());
+  const value = JSON.parse(Buffer.from(message.data).toString());
+  assert.equal(text.title, schema.name);
+  // The schema has exactly the members that are written.
+  assert.deepEqual(Object.keys(value).sort(), Object.keys(text.properties).sort(), schema.name);
+  assert.equal(BigInt(value.timestamp.sec) * 1000000000n + BigInt(value.timestamp.nsec), message.logTime);
+  return value;
 }
 
 function grid(value) {
@@ -68,16 +26,16 @@ function grid(value) {
 }
 
 (async () => {
-  const { topics, statistics, metadata } = await readMessages();
+  const { topics, statistics, metadata } = await readTopics(reader, file, () => valueOf);
   let messages = 0;
   for (const { messages: list } of topics.values()) messages += list.length;
   assert.equal(BigInt(messages), statistics.messageCount);
-  assert.equal(streamed(), messages);
+  assert.equal(countStreamed(reader, file), messages);
 
   const summary = JSON.parse(readFileSync(`${runDir}/summary.json`, 'utf8'));
   assert.equal(metadata[0].metadata.get('run_id'), summary.run_id);
   const start = BigInt(Date.parse(summary.started)) * 1000000n;
-  const rows = csv('trajectory.csv'),
+  const rows = tableOf(runDir, 'trajectory.csv'),
     agents = new Set(rows.map(row => row.agent));
   for (const agent of agents) {
     const own = rows.filter(row => row.agent === agent),
@@ -107,7 +65,7 @@ function grid(value) {
   }
   assert.deepEqual(
     topics.get('/metrics').messages.map(({ value }) => value.ergodic_metric),
-    csv('metrics.csv').map(row => row.ergodic_metric),
+    tableOf(runDir, 'metrics.csv').map(row => row.ergodic_metric),
   );
   const free = readFileSync(`${runDir}/scenario.textproto`, 'utf8').includes('free_domain: true');
   const basis = free ? 'modes of the free domain' : 'cosines';

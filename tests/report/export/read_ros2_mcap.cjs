@@ -2,23 +2,14 @@
 // Reads an MCAP file for ROS 2 with Foxglove's readers and compares it with the record:
 // read_ros2_mcap.cjs MCAP_READER ROS2_READER FILE RUN_DIR. Prints what was found, or what differs.
 const assert = require('node:assert');
-const {
-  readFileSync,
-  promises: { open },
-} = require('node:fs');
+const { readFileSync } = require('node:fs');
+const { countStreamed, readTopics, tableOf } = require('./mcap_file.cjs');
 const [mcapReader, ros2Reader, file, runDir] = process.argv.slice(2);
-const { McapIndexedReader, McapStreamReader } = require(`${mcapReader}/node_modules/@mcap/core/dist/cjs`);
 const load = name => require(`${ros2Reader}/node_modules/@foxglove/${name}`);
 const { MessageReader } = load('rosmsg2-serialization');
 const { parse } = load('rosmsg');
 const { ros2humble, ros2jazzy } = load('rosmsg-msgs-common');
 
-const csv = name => {
-  const [head, ...lines] = readFileSync(`${runDir}/${name}`, 'utf8').trimEnd().split('\n');
-  return lines.map(line =>
-    Object.fromEntries(line.split(',').map((value, i) => [head.split(',')[i], Number(value)])),
-  );
-};
 const toNs = ({ sec, nsec }) => BigInt(sec) * 1000000000n + BigInt(nsec);
 
 /** Fields with their types, in order, as ROS 2 itself defines them in both distributions. */
@@ -43,56 +34,25 @@ function checkDefinitions(definitions, name) {
   }
 }
 
-async function readTopics() {
-  const handle = await open(file),
-    { size } = await handle.stat();
-  const readable = {
-    size: async () => BigInt(size),
-    read: async (offset, length) => {
-      const bytes = new Uint8Array(Number(length));
-      await handle.read(bytes, 0, Number(length), Number(offset));
-      return bytes;
-    },
-  };
-  const mcap = await McapIndexedReader.Initialize({ readable });
+/** Checks header and schemas; returns what reads a message. */
+function begin(mcap) {
   assert.equal(mcap.header.profile, 'ros2');
-  const readers = new Map(),
-    topics = new Map();
+  const readers = new Map();
   for (const schema of mcap.schemasById.values()) {
     assert.equal(schema.encoding, 'ros2msg');
     const definitions = parse(Buffer.from(schema.data).toString(), { ros2: true });
     checkDefinitions(definitions, schema.name);
     readers.set(schema.id, new MessageReader(definitions));
   }
-  for await (const message of mcap.readMessages()) {
-    const channel = mcap.channelsById.get(message.channelId);
+  return (message, channel) => {
     assert.equal(channel.messageEncoding, 'cdr');
     const value = readers.get(channel.schemaId).readMessage(message.data);
     if (value.header) {
       assert.equal(toNs(value.header.stamp), message.logTime, channel.topic);
       assert.equal(value.header.frame_id, 'map');
     }
-    const topic = topics.get(channel.topic) ?? {
-      schema: mcap.schemasById.get(channel.schemaId).name,
-      messages: [],
-    };
-    topic.messages.push({ time: message.logTime, value });
-    topics.set(channel.topic, topic);
-  }
-  const metadata = [];
-  for await (const one of mcap.readMetadata()) metadata.push(one);
-  await handle.close();
-  return { topics, statistics: mcap.statistics, metadata };
-}
-
-// Every byte, in the order of the file; checks the sums.
-function streamed() {
-  const stream = new McapStreamReader({ validateCrcs: true });
-  stream.append(readFileSync(file));
-  let messages = 0;
-  for (let record; (record = stream.nextRecord()); ) messages += record.type === 'Message';
-  assert.ok(stream.done());
-  return messages;
+    return value;
+  };
 }
 
 /** Each tick of an agent, and its way in at most 500 positions. */
@@ -157,16 +117,16 @@ function checkGrids(topics, found) {
 }
 
 (async () => {
-  const { topics, statistics, metadata } = await readTopics();
+  const { topics, statistics, metadata } = await readTopics(mcapReader, file, begin);
   let messages = 0;
   for (const { messages: list } of topics.values()) messages += list.length;
   assert.equal(BigInt(messages), statistics.messageCount);
-  assert.equal(streamed(), messages);
+  assert.equal(countStreamed(mcapReader, file), messages);
 
   const summary = JSON.parse(readFileSync(`${runDir}/summary.json`, 'utf8'));
   assert.equal(metadata[0].metadata.get('run_id'), summary.run_id);
   const start = BigInt(Date.parse(summary.started)) * 1000000n;
-  const rows = csv('trajectory.csv');
+  const rows = tableOf(runDir, 'trajectory.csv');
   for (const agent of new Set(rows.map(row => row.agent)))
     checkAgent(
       topics,
@@ -175,7 +135,7 @@ function checkGrids(topics, found) {
       start,
     );
 
-  const metrics = csv('metrics.csv'),
+  const metrics = tableOf(runDir, 'metrics.csv'),
     numbers = name => topics.get(`/ergocast/${name}`).messages.map(({ value }) => value.data);
   assert.deepEqual(
     numbers('phi2'),
