@@ -67,9 +67,9 @@ const Coefficients& CoverageExchange::team_coverage() const {
 
 // ---- the own coverage ----
 
-void CoverageExchange::add_sample(const AgentStep& step, const TargetShift& shift) {
-  table_.add_sample(self_, *step.basis_at, sensors_.of(kind_).footprint());
-  const TargetShift::Change* const change = shift.of_sample(step.counted);
+void CoverageExchange::add_sample(Tick counted, const BasisAt& at, const TargetShift& shift) {
+  table_.add_sample(self_, at, sensors_.of(kind_).footprint());
+  const TargetShift::Change* const change = shift.of_sample(counted);
   if (change != nullptr) table_.shift_sample(self_, change->by_slot.data());
 }
 

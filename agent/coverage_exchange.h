@@ -40,7 +40,7 @@ class CoverageExchange {
 
   // ---- the own coverage ----
   /// @param shift  the changes of the target
-  void add_sample(const AgentStep& step, const TargetShift& shift);
+  void add_sample(Tick counted, const BasisAt& at, const TargetShift& shift);
   /// A target has changed: from now on rows may be shifted.
   void allow_shifts() { table_.allow_shifts(); }
   /// Broadcasts the own blocks that are due at `step`, or all. A recalled agent sends each block

@@ -220,9 +220,10 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   }
   if (auto over = evicted(me, own.tick)) return over;
   if (step_.tick >= 0) missed_ticks_ += own.tick - step_.tick - 1;
+  const Tick tick_before = step_.tick;
+  const PlaceAtTick before{step_.counted, step_.x_m};
   step_.tick = own.tick;
   step_.counted = me.counted(own.tick);
-  exchange_.set_now(step_.counted);
   step_.held = me.is_held(own.tick);
   step_.begun = now;
   step_.roster_revision = own.roster_revision;
@@ -237,12 +238,25 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   if (step_.recalled && entry->leaves) return MissionOver{false, kSentOut, true};
   motion_.bodies().begin(own, step_, me, out);
   // A restarted world may be a tick behind the roster. Our predecessor has covered that tick.
-  if (step_.tick < active_from_ || step_.held) return std::nullopt;
-  const bool covers = !step_.recalled && !ends_.rests(mission, me.id(), step_.counted);
-  if (covers) exchange_.add_sample(step_, shift_);
+  const bool counts = step_.tick >= active_from_ && !step_.held;
+  const bool covers = counts && !step_.recalled && !ends_.rests(mission, me.id(), step_.counted);
+  // A pause that ended meanwhile is not part of the line.
+  const bool goes_on = step_.counted - before.tick == step_.tick - tick_before;
+  if (std::exchange(covered_, covers) && covers && goes_on) add_lost_samples(before, mission);
+  exchange_.set_now(step_.counted);
+  if (!counts) return std::nullopt;
+  if (covers) exchange_.add_sample(step_.counted, *step_.basis_at, shift_);
   exchange_.broadcast(false, step_, ends_, me, out);
   if (search_) search_->begin(step_, covers, me, out);
   return std::nullopt;
+}
+
+/// The vehicle has gone on in ticks whose states did not arrive.
+void MissionRun::add_lost_samples(const PlaceAtTick& before, const Mission& mission) {
+  for_each_lost_place(before, {step_.counted, step_.x_m}, [&](const PlaceAtTick& lost) {
+    exchange_.set_now(lost.tick);
+    exchange_.add_sample(lost.tick, BasisAt(lost.x_m, mission.domain, mission.basis), shift_);
+  });
 }
 
 /// What the tick waits for before it can be answered: a teammate's block, or the world's state.

@@ -24,6 +24,7 @@
 #include "agent/search_exchange.h"
 #include "core/base/ids.h"
 #include "core/law/coverage_table.h"
+#include "core/law/lost_places.h"
 #include "core/law/target_shift.h"
 #include "core/mission/end_schedule.h"
 #include "core/mission/roster.h"
@@ -106,6 +107,7 @@ class MissionRun {
   Tick lead(const Participant& me, Instant now) const;
   std::int64_t max_steps(const RosterEntry& author, const Participant& me, Tick lead) const;
   bool may_begin(const Participant& me) const;
+  void add_lost_samples(const PlaceAtTick& before, const Mission& mission);
   std::optional<MissionOver> begin_tick(Participant& me, Instant now, Outbox& out);
   AgentId awaited(const Participant& me) const;
   void answer(Participant& me, Outbox& out);
@@ -132,6 +134,7 @@ class MissionRun {
   Tick answered_ = -1;  // the newest tick that was answered
   AgentId waiting_for_ = kUnassigned;
   bool repeat_wanted_ = false;
+  bool covered_ = false;  // whether the last tick was sampled
   bool world_is_behind_ = false;
   Instant stall_announced_{};
   std::int64_t missed_ticks_ = 0;

@@ -157,11 +157,28 @@ void Shadow::answer(const Mission& mission, const TableView& agent) {
   }
 }
 
+/// The places, and between two of them that miss at most 8 ticks those on the straight line. A
+/// place from before the author was active begins no line.
+std::vector<Shadow::Place> Shadow::without_gaps(const std::deque<Place>& places, Tick active_from) {
+  std::vector<Place> all;
+  for (const Place& place : places) {
+    const std::optional<Place> before = all.empty() ? std::nullopt : std::optional(all.back());
+    if (before && before->tick >= active_from && place.tick - before->tick <= 9) {
+      const Eigen::Vector3d step_m =
+          (place.x_m - before->x_m) / static_cast<double>(place.tick - before->tick);
+      for (Tick tick = before->tick + 1; tick < place.tick; ++tick)
+        all.push_back({tick, before->x_m + static_cast<double>(tick - before->tick) * step_m});
+    }
+    all.push_back(place);
+  }
+  return all;
+}
+
 /// Each block gets the later places of the same incarnation; the next block replaces them.
 void Shadow::dead_reckon(const RosterEntry& entry, Row& row) const {
   const auto found = places_.find(entry.author.agent);
   if (found == places_.end()) return;
-  const std::deque<Place>& places = found->second;
+  const std::vector<Place> places = without_gaps(found->second, entry.active_from);
   for (Block& block : row.blocks) {
     if (block.dead_reckoned_steps != block.held.steps) block.since.clear();
     block.dead_reckoned_steps = block.held.steps;

@@ -87,6 +87,7 @@ class Shadow {
   bool gains_are_possible(const Mission& mission, const TableView& agent, const Block& block) const;
   void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
+  static std::vector<Place> without_gaps(const std::deque<Place>& places, Tick active_from);
   void dead_reckon(const RosterEntry& entry, Row& row) const;
   Part part_of(const Mission& mission, const Block& block, Tick halvings) const;
   /// Adds `factor` times the shift of a tick.

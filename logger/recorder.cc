@@ -270,6 +270,8 @@ bool Recorder::write_next_row(Instant now) {
   if (!holds(row_.tick) || !holds(row_.tick + 1)) return false;
   const TickState &state = states_.at(row_.tick), &next = states_.at(row_.tick + 1);
   if (awaits_mission(state, now)) return false;
+  if (has_drivers())
+    tables_.facts().lost_positions += states_.add_lost(row_.tick + 1, mission().timing.dt_s);
   row_.uncounted = state.uncounted_ticks;
   row_.counts = next.uncounted_ticks <= state.uncounted_ticks;
   tables_.write(row_, state, next, known());

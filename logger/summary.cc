@@ -299,6 +299,7 @@ void add_wall_time(const RunFacts& facts, const RunContext& context, Json& summa
 /// What the record lacks, and what the world could not do in time.
 void add_losses(const RunFacts& facts, const RunContext& context, Json& summary) {
   summary["gaps"] = facts.gaps;
+  summary["lost_positions"] = facts.lost_positions;
   if (facts.halted) summary["emergency_stop"] = true;
   summary["segments"] = context.segments;
   summary["interruptions"] = context.interruptions;

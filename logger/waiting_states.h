@@ -42,6 +42,9 @@ class WaitingStates {
   const TickState& at(Tick tick) const { return states_.at(tick); }
   /// The newest tick. @pre !empty()
   Tick last() const { return states_.rbegin()->first; }
+  /// Puts vehicles whose part of a state was lost onto the line to their places in a later state,
+  /// up to kMostLostPlaces ticks after the state before. Returns how many. @pre has(tick)
+  int add_lost(Tick tick, double dt_s);
   /// The first of the first two successive states that are complete.
   std::optional<Tick> first_pair() const;
 

@@ -30,11 +30,27 @@ void RowTrack::extend(const CoverageTable& table, std::size_t row, const RosterE
   take_newer_blocks(table, row);
   for (auto place = first_to_add(); place != places_.end(); ++place) {
     if (!entry.active_at(place->tick)) continue;
-    if (place->tick != newest_tick_) move_to(*place, sampling);
-    add_step(place->tick, table, row, sampling);
-    const double weight = table.weight_at(place->tick);
-    if (weight != 1) add_due_steps(sampling, weight);
+    add_lost(place, table, row, sampling);
+    add_at(*place, table, row, sampling);
   }
+}
+
+/// Adds the steps between a place and the one before it, where positions were lost.
+void RowTrack::add_lost(std::vector<PlaceAtTick>::const_iterator place, const CoverageTable& table,
+                        std::size_t row, Sampling& sampling) {
+  if (place == places_.begin() || std::prev(place)->tick < active_from_) return;
+  const Tick oldest = oldest_block();
+  for_each_lost_place(*std::prev(place), *place, [&](const PlaceAtTick& lost) {
+    if (lost.tick > oldest) add_at(lost, table, row, sampling);
+  });
+}
+
+void RowTrack::add_at(const PlaceAtTick& place, const CoverageTable& table, std::size_t row,
+                      Sampling& sampling) {
+  if (place.tick != newest_tick_) move_to(place, sampling);
+  add_step(place.tick, table, row, sampling);
+  const double weight = table.weight_at(place.tick);
+  if (weight != 1) add_due_steps(sampling, weight);
 }
 
 /// Halves all that was added before the present tick as often as the row.
@@ -73,10 +89,15 @@ void RowTrack::take_newer_blocks(const CoverageTable& table, std::size_t row) {
   }
 }
 
+/// Up to which tick all blocks contain all steps.
+Tick RowTrack::oldest_block() const {
+  return std::ranges::min_element(blocks_, {}, &Block::until)->until;
+}
+
 /// The first known place that some block does not contain, but at latest the newest place: the
 /// vehicle goes on from there, also if its author has already sent it.
-std::vector<RowTrack::Place>::const_iterator RowTrack::first_to_add() const {
-  const Tick oldest = std::ranges::min_element(blocks_, {}, &Block::until)->until;
+std::vector<PlaceAtTick>::const_iterator RowTrack::first_to_add() const {
+  const Tick oldest = oldest_block();
   const auto first =
       places_.end() - std::min(std::ssize(places_), static_cast<std::ptrdiff_t>(most_places_));
   auto place = places_.end();
@@ -86,7 +107,7 @@ std::vector<RowTrack::Place>::const_iterator RowTrack::first_to_add() const {
 }
 
 /// Adds what is due at the place before.
-void RowTrack::move_to(const Place& place, Sampling& sampling) {
+void RowTrack::move_to(const PlaceAtTick& place, Sampling& sampling) {
   add_due_steps(sampling);
   newest_.emplace(place.x_m, sampling.domain(), sampling.basis());
   newest_tick_ = place.tick;

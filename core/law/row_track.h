@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A teammate's row since its last blocks, for the dead reckoning of core/law/forecast.h.
 //
-// S += f dt at each known place since a block was sent, in every block that does not contain the
-// step, as its author does. The table is not changed. The newest step of each block stays due until
-// it is needed, because a forecast adds it in the same loop as the row.
+// S += f dt at each place since a block was sent, in every block that does not contain the step, as
+// its author does. Places that were lost are those of core/law/lost_places.h. The table is not
+// changed. The newest step of each block stays due until it is needed, because a forecast adds it
+// in the same loop as the row.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +17,7 @@
 #include "core/basis/basis.h"
 #include "core/law/coverage_table.h"
 #include "core/law/forecast_sums.h"
+#include "core/law/lost_places.h"
 #include "core/law/sampling.h"
 #include "core/mission/roster.h"
 
@@ -61,10 +63,6 @@ class RowTrack {
   const double* newest_gains_in_slots() const { return in_slots_.data(); }
 
  private:
-  struct Place {
-    Tick tick;
-    Eigen::Vector3d x_m;
-  };
   struct Block {
     std::int64_t sent_steps = -1;  // of the block that was taken from the row
     std::int64_t steps = 0;        // with the places added since
@@ -78,17 +76,22 @@ class RowTrack {
   void restart(const RosterEntry& entry, const BlockLayout& layout);
   void take_newer_blocks(const CoverageTable& table, std::size_t row);
   void fade(const CoverageTable& table, const Sampling& sampling);
-  std::vector<Place>::const_iterator first_to_add() const;
-  void move_to(const Place& place, Sampling& sampling);
+  Tick oldest_block() const;
+  std::vector<PlaceAtTick>::const_iterator first_to_add() const;
+  void add_lost(std::vector<PlaceAtTick>::const_iterator place, const CoverageTable& table,
+                std::size_t row, Sampling& sampling);
+  void add_at(const PlaceAtTick& place, const CoverageTable& table, std::size_t row,
+              Sampling& sampling);
+  void move_to(const PlaceAtTick& place, Sampling& sampling);
   void add_due_steps(const Sampling& sampling, double weight = 1);
   void add_step(Tick tick, const CoverageTable& table, std::size_t row, const Sampling& sampling);
 
   std::size_t most_places_;
-  std::vector<Place> places_;  // ascending by tick; the last most_places_ count
-  Author author_;              // author of the row that is extended
-  Tick active_from_ = 0;       // of that author, from the roster, …
-  int kind_ = 0;               // … and its kind
-  std::uint64_t look_ = 0;     // of the forecast that extended it last
+  std::vector<PlaceAtTick> places_;  // ascending by tick; the last most_places_ count
+  Author author_;                    // author of the row that is extended
+  Tick active_from_ = 0;             // of that author, from the roster, …
+  int kind_ = 0;                     // … and its kind
+  std::uint64_t look_ = 0;           // of the forecast that extended it last
   std::vector<Block> blocks_;
   AlignedDoubles sums_;              // with the places; not set for blocks that are not extended
   std::int64_t halvings_ = 0;        // of these sums

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/law/look_ahead.h"
+#include "core/law/lost_places.h"
 #include "tests/agent/driven_agent.h"
 
 namespace ergocast {
@@ -160,9 +161,25 @@ TEST_F(Reckoning, APlaceBeyondTheRadiosRangeIsNone) {
   tell_of(2, 900);
   expect_foreseen(foreseen(mission_, 0, 2, their_path(0, 1), 1, 2));
   tell_of(3, 0);
-  Path known = their_path(0, 1);
-  known.push_back(their_place(3));
-  expect_foreseen(foreseen(mission_, 0, 3, known, 1, 0));
+  // It was about on the line meanwhile.
+  expect_foreseen(foreseen(mission_, 0, 3, their_path(0, 4), 1, 0));
+}
+
+TEST_F(Reckoning, SamplesOfLostStatesAreOnTheLineBetweenOthers) {
+  begin(dead_reckoning_mission(Pace::kRealtime));
+  run_ticks(0, 4);
+  run_ticks(4 + kMostLostPlaces, 20);
+  Path own;
+  for (Tick tick = 0; tick < 20; ++tick) own.push_back(own_place(tick));
+  EXPECT_EQ(agent_->coverage()->steps_held(author_of(0)), 20);
+  const double covered_s = 20 * mission_.timing.dt_s;
+  const auto error = [&] {
+    return (agent_->team_coverage() - sums_of(mission_, own) / covered_s).cwiseAbs().maxCoeff();
+  };
+  EXPECT_LT(error(), 1e-13);
+  // What was too long is not known.
+  run_ticks(20 + kMostLostPlaces + 1, 20 + kMostLostPlaces + 2);
+  EXPECT_EQ(agent_->coverage()->steps_held(author_of(0)), 21);
 }
 
 TEST_F(Reckoning, InRealTimePlacesOfAVehicleWithoutNewCommandsDoNotCount) {

@@ -184,6 +184,23 @@ inline bool has_forecast(const Author& author, const Known& known) {
          });
 }
 
+/// Where a vehicle was: the seen places, and those on the line between two of them that lack at
+/// most 8 ticks, if the first one is not from before its author took part.
+inline std::map<Tick, Eigen::Vector3d> places_of(AgentId id, const std::vector<Tick>& seen,
+                                                 Tick active_from, const Mission& mission) {
+  std::map<Tick, Eigen::Vector3d> all;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    all[seen[i]] = place(id, seen[i], mission);
+    if (i == 0 || seen[i - 1] < active_from || seen[i] - seen[i - 1] > 9) continue;
+    const Eigen::Vector3d from_m = place(id, seen[i - 1], mission);
+    const auto ticks = static_cast<double>(seen[i] - seen[i - 1]);
+    for (Tick lost = 1; lost < seen[i] - seen[i - 1]; ++lost)
+      all[seen[i - 1] + lost] =
+          from_m + static_cast<double>(lost) / ticks * (all[seen[i]] - from_m);
+  }
+  return all;
+}
+
 /// Adds the places of the author's vehicle since its last broadcast.
 inline void dead_reckon(const Author& author, int block, const Known& known, const Mission& mission,
                         Row& row) {
@@ -191,10 +208,10 @@ inline void dead_reckon(const Author& author, int block, const Known& known, con
   if (seen == known.seen.end() || author.agent == kSelf.agent || row.steps == 0) return;
   const auto entry = std::find_if(known.roster.begin(), known.roster.end(),
                                   [&](const RosterEntry& one) { return one.author == author; });
-  for (const Tick tick : seen->second) {
+  for (const auto& [tick, x_m] :
+       places_of(author.agent, seen->second, entry->active_from, mission)) {
     if (tick < row.tick || !entry->active_at(tick)) continue;
-    const Coefficients f =
-        basis_values(place(author.agent, tick, mission), mission.domain, mission.basis);
+    const Coefficients f = basis_values(x_m, mission.domain, mission.basis);
     const double left = left_at(known.tick, tick, mission);
     std::fill(row.gains.begin(), row.gains.end(), 0);
     for (int k = block * kBlockSize;

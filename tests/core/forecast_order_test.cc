@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/law/forecast.h"
+#include "core/law/lost_places.h"
 #include "tests/core/forecast_history.h"
 
 namespace ergocast {
@@ -102,6 +103,31 @@ TEST(DeadReckoning, DoesNotDependOnWhenPlacesAndBlocksComeNorOnWhenOneLooks) {
     forecast.look_ahead(table, team.roster, kEnd - 1, coverage);
     EXPECT_EQ(coverage, expected) << "bit for bit, round " << round;
   }
+}
+
+TEST(DeadReckoning, PutsLostPlacesOntoTheLineBetweenOthers) {
+  const Mission mission = mission_of(true);
+  const Known team = team_of(2, mission, 1000);
+  const CoverageTable table = table_of(team, mission);
+  const auto x_m = [](Tick tick) {
+    return Eigen::Vector3d(100 + 3.0 * static_cast<double>(tick), 300, 0);
+  };
+  const auto foreseen = [&](const std::function<bool(Tick)>& is_seen) {
+    Forecast forecast(mission, kSelf);
+    for (Tick tick = 0; tick <= 40; ++tick) {
+      if (is_seen(tick)) forecast.see(1, tick, x_m(tick));
+    }
+    Coefficients coverage(144);
+    forecast.look_ahead(table, team.roster, 40, coverage);
+    return coverage;
+  };
+  const Coefficients all = foreseen([](Tick) { return true; });
+  const auto lost = [](Tick first, Tick count) {
+    return [=](Tick tick) { return tick < first || tick >= first + count; };
+  };
+  EXPECT_LT((foreseen(lost(20, 1)) - all).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((foreseen(lost(20, kMostLostPlaces)) - all).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_GT((foreseen(lost(20, kMostLostPlaces + 1)) - all).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 /// ĉ after the team has sent everything up to tick 20, and `seen` has shown agent 1's vehicle at

@@ -159,7 +159,9 @@ class Mission(Programs):
 def figures_of(mission, wall_s, cpu_s):
     summary = json.loads((mission.out / "summary.json").read_text())
     commands = max(1, summary["ticks"] * mission.options.agents)
+    views = [agent["ergodic_metric"] for agent in summary["agents"]]
     return {"result": summary["result"], "ticks": summary["ticks"], "metric": summary["ergodic_metric"]["last"],
+            "metric_of_agents": [min(views), max(views)], "lost_positions": summary["lost_positions"],
             "late_share": round(summary["missed_deadlines"] / commands, 4),
             "skipped_ticks": summary["skipped_ticks"], "gaps": summary["gaps"],
             "cores": round(cpu_s / wall_s, 2)}

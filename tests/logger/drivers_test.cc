@@ -70,5 +70,25 @@ TEST_P(RecordOfDrivers, HasTheOthersRowsWhereThePartsOfOneAreMissing) {
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }
 
+TEST_P(RecordOfDrivers, HasLostPositionsOnTheLineBetweenOthers) {
+  Mission mission = driven(2);
+  if (!GetParam()) mission.separation = {};
+  Record record(mission);
+  const auto is_lost = [](Tick tick) { return tick == 5 || (tick > 10 && tick <= 18); };
+  for (Tick tick = 0; tick < 40; ++tick) {
+    for (const AgentId id : {1, 0}) {
+      if (id == 0 || !is_lost(tick)) record.deliver(part_of(id, 2, tick), at(tick * 100ms));
+    }
+  }
+  record.recorder.stop("enough");
+  const auto rows = record.trajectory_rows();
+  ASSERT_EQ(rows.size(), 39u * 2);
+  for (std::size_t i = 1; i < rows.size(); i += 2) {
+    EXPECT_EQ(number(rows[i], 2), 1);
+    EXPECT_NEAR(number(rows[i], 4), 500 + number(rows[i], 0), 1e-9) << rows[i];
+  }
+  EXPECT_EQ(record.recorder.facts().lost_positions, 9);
+}
+
 }  // namespace
 }  // namespace ergocast
