@@ -17,6 +17,8 @@ void add_run(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 /// `study`: simulates each combination of scenario, variation and seed once.
 void add_study(CLI::App& app, Action& action);
+/// `bench`: compares laws of papers and of other people on nine targets.
+void add_bench(CLI::App& app, Action& action);
 /// `new`: writes a scenario for robots in a map.
 void add_new(CLI::App& app, Action& action);
 /// `check`: reports every problem of a scenario.

@@ -16,9 +16,10 @@ constexpr const char* kExitCodes =
 
 /// In the order of --help.
 constexpr void (*kCommands[])(CLI::App&, Action&) = {
-    add_run,    add_simulate, add_study, add_new,    add_check, add_report,   add_verify,
-    add_keygen, add_deploy,   add_list,  add_status, add_watch, add_run_page, add_export,
-    add_replay, add_pause,    add_amend, add_recall, add_stop,  add_spy,      add_doctor};
+    add_run,    add_simulate, add_study,  add_bench,  add_new,   add_check,
+    add_report, add_verify,   add_keygen, add_deploy, add_list,  add_status,
+    add_watch,  add_run_page, add_export, add_replay, add_pause, add_amend,
+    add_recall, add_stop,     add_spy,    add_doctor};
 
 int parse_and_do(int argc, char** argv) {
   CLI::App app("Ergocast: teams of robots that spread their time over a region as a map demands.",

@@ -3,14 +3,9 @@
 // Python draw the figures.
 #include "report/report.h"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "cli/commands.h"
 #include "cli/debian_python.h"
@@ -19,37 +14,10 @@
 #include "cli/report_error.h"
 #include "cli/team/recorded_team.h"
 #include "runtime/process/program_options.h"
-#include "runtime/process/shipped_folder.h"
 #include "text/printable.h"
 
 namespace ergocast::cli {
 namespace {
-
-/// Arguments: the folder of the package of a build, or "", and the run directory.
-constexpr const char* kDraw = R"(import sys
-sys.path[:0] = filter(None, sys.argv[1:2])
-try:
-    import matplotlib
-    from ergocast import plot
-except ModuleNotFoundError as missing:
-    package = "python3-" + missing.name.split(".")[0]
-    print(f"no figures: they need {package}; as root: apt-get install {package}", file=sys.stderr)
-    sys.exit(3)
-sys.exit(plot.main(sys.argv[2])))";
-
-/// Becomes Python.
-int draw_figures(const std::filesystem::path& run_dir) {
-  std::fflush(stdout);
-  // -P: what happens to lie in the working directory is not imported.
-  std::vector<std::string> words{kPython, "-P", "-c", kDraw, python_of_this_build(), run_dir};
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execv(kPython, arguments.data());
-  return report_error(kExitUnavailable, std::string("no figures: ") + kPython + ": " +
-                                            std::strerror(errno) +
-                                            "; as root: apt-get install python3-ergocast");
-}
 
 int report(const std::filesystem::path& run_dir, bool figures) {
   const auto mission = recorded_mission_or_complain(run_dir);
@@ -63,7 +31,8 @@ int report(const std::filesystem::path& run_dir, bool figures) {
                  printable(log_problem).c_str());
   }
   std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());
-  return figures ? draw_figures(run_dir) : kExitDone;
+  if (!figures) return kExitDone;
+  return become_python("ergocast.plot", {run_dir}, "no figures: they need");
 }
 
 }  // namespace

@@ -82,17 +82,23 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   add_set_option(command, options.settings);
   add_seeds_option(command, options.seeds, "One mission of every combination for each seed")
       ->required();
-  command
-      .add_option_function<std::string>(
-          "--shard", [&options](const std::string& text) { options.shard = parse_shard(text); },
-          "Only part I of N of the missions; `study merge` joins the folders of all parts")
-      ->type_name("I/N");
+  add_shard_option(
+      command, options.shard,
+      "Only part I of N of the missions; `study merge` joins the folders of all parts");
   command.add_option("--out", options.out, "The study's folder: new, or one to continue")
       ->required()
       ->type_name("DIR");
   command.add_option("--duration", options.duration_s, "Mission time [s]");
   add_jobs_option(command, options.jobs);
   add_measure_option(command, options.measures);
+}
+
+void add_shard_option(CLI::App& command, std::optional<StudyShard>& shard,
+                      const std::string& meaning) {
+  command
+      .add_option_function<std::string>(
+          "--shard", [&shard](const std::string& text) { shard = parse_shard(text); }, meaning)
+      ->type_name("I/N");
 }
 
 CLI::App* add_merge(CLI::App& study, MergeOptions& options) {

@@ -35,6 +35,10 @@ struct StudyOptions {
 
 void add_study_options(CLI::App& command, StudyOptions& options);
 
+/// --shard I/N.
+void add_shard_option(CLI::App& command, std::optional<StudyShard>& shard,
+                      const std::string& meaning);
+
 /// The options of `study merge`.
 struct MergeOptions {
   std::vector<std::filesystem::path> shards;  ///< their folders

@@ -82,14 +82,18 @@ def _compile(
 def _file(scenario: str | os.PathLike[str]) -> str:
     """The file of a shipped scenario, if `scenario` is the name of one; else `scenario`."""
     name = os.fspath(scenario)
-    here = Path(__file__).resolve()
     if name.isidentifier() and not os.path.exists(name):
-        # Below the prefix of an installation, or in the source tree.
-        for folder in (here.parents[4] / "share/ergocast/scenarios", here.parents[2] / "scenarios"):
+        for folder in shipped_folders():
             file = folder / f"{name}.textproto"
             if file.exists():
                 return str(file)
     return name
+
+
+def shipped_folders() -> list[Path]:
+    """Where shipped scenarios may be: below the prefix of an installation, or in the source tree."""
+    here = Path(__file__).resolve()
+    return [here.parents[4] / "share/ergocast/scenarios", here.parents[2] / "scenarios"]
 
 
 def fields_of(values: Mapping[str, Value] | None) -> list[tuple[str, str, str]]:

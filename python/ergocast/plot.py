@@ -30,6 +30,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogFormatterSciNotation, LogLocator
 
 from ergocast._errors import ErgocastError
+from ergocast._interval import interval
 from ergocast._native import Domain, Mission
 from ergocast._run import Run, load
 
@@ -196,8 +197,9 @@ def save(run: Run, folder: Place | None = None, formats: Iterable[str] = ("svg",
     return written
 
 
-def main(run_dir: str) -> int:
-    """What `ergocast report --figures` runs: save(), the paths printed, and an exit code."""
+def main(arguments: Sequence[str]) -> int:
+    """What `ergocast report --figures RUN_DIR` runs: save(), the paths printed, and an exit code."""
+    (run_dir,) = arguments
     plt.switch_backend("agg")
     try:
         for path in save(load(run_dir)):
@@ -374,20 +376,6 @@ def _lines(rows: pd.DataFrame, fields: list[str]) -> dict[str, pd.DataFrame]:
     named = [(f, "" if f == "scenario" else f.split(".")[-1] + " ") for f in fields]
     labels = rows.apply(lambda row: ", ".join(f"{name}{row[f]}" for f, name in named), axis=1)
     return {str(label): line for label, line in rows.groupby(labels, sort=False)}
-
-
-def interval(values: pd.Series | Floats) -> tuple[float, float, float]:
-    """The median between the ends of its interval of 95 %: from the r-th smallest value to the r-th
-    largest, r by the binomial distribution; of fewer than six, from the smallest to the largest."""
-    found = np.sort(np.asarray(values, dtype=float))
-    found = found[~np.isnan(found)]
-    n = len(found)
-    if n == 0:
-        return math.nan, math.nan, math.nan
-    k = np.arange(1, n // 2 + 1)
-    log_terms = np.cumsum([n * math.log(0.5), *np.log((n - k + 1) / k)])
-    rank = max(1, int(np.sum(np.cumsum(np.exp(log_terms)) <= 0.025)))
-    return float(found[rank - 1]), float(np.median(found)), float(found[n - rank])
 
 
 def _with_unit(name: str) -> str:

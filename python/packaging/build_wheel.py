@@ -79,7 +79,9 @@ def get_requires_for_build_wheel(config_settings=None):
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     info = f"ergocast-{version()}.dist-info"
-    files = {f"ergocast/{path.name}": path.read_bytes() for path in sorted(built_package().iterdir()) if path.is_file()}
+    package = built_package()
+    files = {f"ergocast/{path.relative_to(package)}": path.read_bytes()
+             for path in sorted(package.rglob("*")) if path.is_file() and "__pycache__" not in path.parts}
     # pip puts them below the environment's share, where the package finds them by name.
     shipped = f"ergocast-{version()}.data/data/share/ergocast/scenarios"
     folder = ROOT / "scenarios"

@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The laws of papers: each equation against a second computation, and their missions.
-
-baselines_test.py FOLDER: that of studies/bench/laws.
-"""
+"""The laws of papers: each equation against a second computation, and their missions."""
 
 import os
-import sys
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,14 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import ergocast
-
-LAWS = Path(sys.argv.pop())
-sys.path.insert(0, str(LAWS))
-import hedac  # noqa: E402
-import kernel  # noqa: E402
-import random_walk  # noqa: E402
-import smc  # noqa: E402
-import target  # noqa: E402
+from ergocast.bench.laws import density_driven, hedac, kernel, random_walk, receding, smc, target
 
 BENCH = Path(os.environ["ERGOCAST_SCENARIO_DIR"]) / "bench"
 SHORT = {"time.duration_s": 30}
@@ -237,6 +226,127 @@ class Kernel(unittest.TestCase):
         self.assertLess(wanted[1, 0], -19)     # west
 
 
+class Receding(unittest.TestCase):
+    @staticmethod
+    def metric(mission, paths_m, before_m):
+        """Σ Λ_k (c_k − μ_k)² / h_k² of what agents have passed and will pass, mode by mode."""
+        size = mission.domain.size_m
+        places, total = np.concatenate([before_m, paths_m]).reshape(-1, 2), 0.0
+        for m in range(mission.basis.modes_x):
+            for n in range(mission.basis.modes_y):
+                square = np.prod(size) * (1 if m == 0 else 0.5) * (1 if n == 0 else 0.5)
+                f = np.cos(m * np.pi * places[:, 0] / size[0]) * np.cos(n * np.pi * places[:, 1] / size[1])
+                total += (1 + m**2 + n**2) ** -1.5 * (f.mean() - mission.mu[m, n]) ** 2 / square
+        return total
+
+    def law_and_tick(self):
+        """A law with a short plan, amid a mission of two agents."""
+        mission = mission_of("two_far", **{"basis.modes_x": 5, "basis.modes_y": 4})
+        before_m = np.random.default_rng(5).uniform(200, 1800, (4, 2, 2))  # ticks 0 to 3
+        values = mission.basis.values(before_m.reshape(-1, 2), mission.domain)
+        now = tick_of(mission, before_m[-1], values.mean(axis=0), tick=3)
+        law = receding.Receding()
+        law.prepare(mission, 2)
+        law.steps = 6
+        return law, now, before_m
+
+    def test_the_plan_follows_the_slope_of_the_metric(self):
+        """Each step goes against the derivative of the metric by all later places of this agent."""
+        law, now, before_m = self.law_and_tick()
+        self.addCleanup(setattr, receding, "GAIN", receding.GAIN)
+        receding.GAIN = 0.01  # so small that nothing is shortened
+        plan = np.random.default_rng(6).uniform(-14, 14, (6, 2, 2))
+        paths_m = law.predicted(now, plan)
+        wanted = law.improved(now, plan)
+        places = 2 * (4 + 5)  # of both agents
+        for step in range(6):
+            for agent in range(2):
+                for axis in range(2):
+                    ends = []
+                    for sign in (1, -1):
+                        moved = paths_m.copy()
+                        moved[step:, agent, axis] += sign * 0.01
+                        ends.append(self.metric(now.mission, moved[1:], np.concatenate([before_m[:-1], moved[:1]])))
+                    slope = (ends[0] - ends[1]) / 0.02 * places / 2
+                    expected = -0.01 * 2000**2 * 20**2 * 0.5 * slope
+                    self.assertAlmostEqual(wanted[step, agent, axis], expected, delta=1e-5 * np.abs(wanted).max())
+
+    def test_the_plan_moves_on_by_one_step_each_tick(self):
+        law, now, _ = self.law_and_tick()
+        law.plan = np.zeros((6, 2, 2))
+        first = law.wanted_mps(now)
+        self.assertTrue(np.array_equal(first, law.plan[0]))
+        expected = law.improved(now, np.concatenate([law.plan[1:], np.zeros((1, 2, 2))]))
+        self.assertTrue(np.array_equal(law.wanted_mps(now), expected[0]))
+
+    def test_predictions_end_at_edges_and_inputs_at_u_max(self):
+        law, now, _ = self.law_and_tick()
+        plan = np.full((6, 2, 2), 14.0) * [[[1, 1], [-1, -1]]]
+        now.x_m = np.array([[1999.0, 1995], [1, 1000]])
+        path_m = law.predicted(now, plan)
+        self.assertEqual(path_m[-1, 0].tolist(), [2000, 2000])
+        self.assertEqual(path_m[-1, 1].tolist(), [0, 1000 - 5 * 7])
+        self.assertLessEqual(np.linalg.norm(law.improved(now, plan), axis=2).max(), 20 * (1 + 1e-12))
+
+
+def chosen_by_hand(points_m, weights, share, x_m):
+    """g of D²OC: sort all points, and take weight from the first until `share` is full."""
+    ranked = sorted(range(len(points_m)), key=lambda i: np.sum((points_m[i] - x_m) ** 2) / weights[i] ** 2)
+    mean, left = np.zeros(len(x_m)), share
+    for i in ranked:
+        part = min(left, weights[i])
+        mean += part * points_m[i]
+        left -= part
+        if left <= 0:
+            break
+    return mean / (share - left)
+
+
+class DensityDriven(unittest.TestCase):
+    def law_with(self, points_m, weights, share):
+        law = density_driven.DensityDriven()
+        law.points_m, law.weights, law.share = np.array(points_m, float), np.array(weights, float), share
+        return law
+
+    def test_goals_are_those_of_a_sort(self):
+        random = np.random.default_rng(7)
+        for axes in (2, 3):
+            for share in (0.003, 0.05):  # less than a point, and several
+                points_m, weights = random.uniform(0, 1000, (80, axes)), random.uniform(0.004, 0.02, 80)
+                law = self.law_with(points_m, weights, share)
+                for x_m in random.uniform(0, 1000, (20, axes)):
+                    expected = chosen_by_hand(points_m, weights, share, x_m)
+                    self.assertTrue(np.allclose(law.goal(x_m), expected, rtol=0, atol=1e-9))
+
+    def test_the_nearest_points_pay(self):
+        law = self.law_with([[0, 0], [10, 0], [30, 0]], [0.2, 0.3, 0.5], 0.35)
+        law.take(np.array([9.0, 0]))
+        self.assertEqual(law.points_m.tolist(), [[0, 0], [30, 0]])
+        self.assertTrue(np.allclose(law.weights, [0.15, 0.5], atol=1e-15))
+
+    def test_after_the_last_step_nothing_is_left(self):
+        mission = mission_of("one_peak", **SHORT)
+        law, random = density_driven.DensityDriven(), np.random.default_rng(8)
+        x_m = np.array([[700.0, 1200], [300, 300], [1900, 100]])
+        for tick in range(mission.tick_count):
+            law.wanted_mps(tick_of(mission, x_m, mission.mu, tick))
+            x_m = random.uniform(0, 2000, (3, 2))
+        self.assertLess(law.weights.sum(), 1e-9)
+        self.assertTrue(np.isfinite(law.wanted_mps(tick_of(mission, x_m, mission.mu))).all())
+
+    def test_the_first_input_is_that_of_the_whole_horizon(self):
+        """K by one linear system: the minimum of Σ (x_h − g)² + COST (u_h dt)² over all inputs."""
+        steps = density_driven.HORIZON
+        sums = np.tril(np.ones((steps, steps)))  # places by inputs
+        way = np.linalg.solve(sums.T @ sums + density_driven.COST * np.eye(steps), sums.T @ np.ones(steps))
+        self.assertAlmostEqual(density_driven.gain(), way[0], places=12)
+
+    def test_points_have_the_density_of_the_target(self):
+        points_m = target.sampled(mission_of("two_far"), 8000, 2, np.random.default_rng(9))
+        self.assertAlmostEqual(np.mean(np.linalg.norm(points_m - (300, 300), axis=1) < 500), 0.8, delta=0.05)
+        self.assertAlmostEqual(np.mean(np.linalg.norm(points_m - (1700, 1700), axis=1) < 500), 0.2, delta=0.05)
+
+
 class RandomWalks(unittest.TestCase):
     def test_the_walk_spends_its_time_as_the_target_demands(self):
         """A long chain by next_goal() alone, without motion: its histogram is the density."""
@@ -286,7 +396,8 @@ class RandomWalks(unittest.TestCase):
 
 class Missions(unittest.TestCase):
     def test_every_law_runs_in_the_domains_that_it_allows_and_repeats(self):
-        everywhere = [smc.FirstOrder, smc.SecondOrder, kernel.Kernel, random_walk.RandomWalk, random_walk.Waypoints]
+        everywhere = [smc.FirstOrder, smc.SecondOrder, kernel.Kernel, receding.Receding, density_driven.DensityDriven,
+                      random_walk.RandomWalk, random_walk.Waypoints]
         for name in ("four_peaks", "rooms", "box"):
             laws = everywhere + ([hedac.Hedac] if name == "four_peaks" else [])
             for law in laws:

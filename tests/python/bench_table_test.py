@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The bench's table: rows of studies and of others, medians, ranks, and what it refuses.
-
-bench_table_test.py FOLDER: studies/bench.
-"""
+"""The bench's table: rows of studies and of others, medians, ranks, and what it refuses."""
 
 import csv
 import subprocess
@@ -11,7 +8,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
-TABLE = Path(sys.argv.pop()) / "table.py"
+from ergocast.bench import table
+
+LAWS = Path(table.__file__).resolve().parent / "laws"
 MEASURES = "ergodic_metric,detection_probability,time_to_half_s,time_to_four_fifths_s,sliced_wasserstein_m,greatest_age_s,path_m"
 STUDY = f"scenario,agents.random_count,law.kind,seed,agents,{MEASURES}\n"
 
@@ -30,7 +29,7 @@ class Table(unittest.TestCase):
         return str(self.folder / name)
 
     def run_with(self, *files):
-        return subprocess.run([sys.executable, TABLE, self.folder, *files], capture_output=True, text=True)
+        return subprocess.run([sys.executable, "-m", "ergocast.bench.table", self.folder, *files], capture_output=True, text=True)
 
     def cells(self):
         with (self.folder / "bench.csv").open() as opened:
@@ -47,10 +46,10 @@ class Table(unittest.TestCase):
         self.assertEqual(cells["SMC", "detection_probability"]["rank"], "near")
         self.assertEqual(cells["SMC", "time_to_four_fifths_s"]["median"], "inf")
         self.assertEqual(cells["COVER", "greatest_age_s"]["median"], "")
-        self.assertIn("--law studies/bench/laws/smc.py:FirstOrder scenarios/bench/ring.textproto "
+        self.assertIn(f"--law {LAWS}/smc.py:FirstOrder {table.targets()['ring']} "
                       "--set agents.random_count=4 --seed 1", cells["SMC", "ergodic_metric"]["command"])
         page = (self.folder / "bench.html").read_text()
-        self.assertIn('<td class="best" title="7 runs; one of them: ergocast run scenarios/bench/ring', page)
+        self.assertIn(f'<td class="best" title="7 runs; one of them: ergocast run {table.targets()["ring"]}', page)
         self.assertIn("4.00e-04<br>[1.00e-04, 7.00e-04]", page)
 
     def test_rows_of_others_stand_beside_them(self):

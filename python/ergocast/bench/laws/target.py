@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The target's density as the laws of this folder know it: from its coefficients μ.
+"""The target's density as the laws of papers know it: from its coefficients μ.
 
 With f_k the cosines of the mission's basis and h_k² the integral of f_k² over the domain,
 
@@ -35,3 +35,18 @@ def density(mission, x_m):
     values = mission.basis.values(x_m, mission.domain)
     factors = mission.mu / squared_norms(mission)
     return np.maximum(0, np.tensordot(values, factors, axes=factors.ndim))
+
+
+CELLS = {2: 64, 3: 24}
+"""Cells along each axis, by the number of axes."""
+
+
+def sampled(mission, count, axes, random):
+    """Places of this density (count, axes): first the cell, then a place in it."""
+    low_m = np.asarray(mission.domain.origin_m)[:axes]
+    size_m = np.asarray(mission.domain.size_m)[:axes]
+    shape = (CELLS[axes],) * axes
+    index = np.indices(shape).reshape(axes, -1).T
+    shares = np.cumsum(density(mission, low_m + size_m * (index + 0.5) / CELLS[axes]))
+    cells = np.searchsorted(shares, random.random(count) * shares[-1], side="right")
+    return low_m + size_m * (index[cells] + random.random((count, axes))) / CELLS[axes]

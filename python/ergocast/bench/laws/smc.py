@@ -20,9 +20,9 @@ c = DAMPING / (u_max² · area), in a box its volume.
 """
 
 import numpy as np
-from target import cosines_only, squared_norms, wave_numbers
 
 import ergocast
+from ergocast.bench.laws.target import cosines_only, squared_norms, wave_numbers
 
 
 class FirstOrder(ergocast.Law):
@@ -31,15 +31,17 @@ class FirstOrder(ergocast.Law):
     def __init__(self):
         self.weights = None
 
+    def sobolev(self, k):
+        """Λ of the wave numbers k, whose first index is the axis."""
+        return (1 + np.sum(k**2, axis=0)) ** (-(len(k) + 1) / 2)
+
     def spectral_gradients(self, now):
         """B_j of each agent, shape (n, axes)."""
         if self.weights is None:
             mission = now.mission
             cosines_only(mission, "SMC")
-            k = wave_numbers(mission)
-            sobolev = (1 + np.sum(k**2, axis=0)) ** (-(len(k) + 1) / 2)
             # Both f_k in Λ_k S_k ∇f_k are divided by h_k.
-            self.weights = sobolev / squared_norms(mission)
+            self.weights = self.sobolev(wave_numbers(mission)) / squared_norms(mission)
         agent_time_s = len(now.agents) * (now.tick + 1) * now.mission.dt_s
         deficit_s = agent_time_s * (now.c - now.mu)
         return now.mission.basis.gradient(self.weights * deficit_s, now.x_m, now.mission.domain)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joins the rows of the bench's studies with rows from elsewhere, and makes table and heat maps.
 
-table.py DIR [ROWS.csv…]. docs/results/bench.md describes the files.
+python3 -m ergocast.bench.table DIR [ROWS.csv…] makes them without a run. docs/results/bench.md describes
+the files.
 """
 
 import csv
@@ -10,7 +11,9 @@ import math
 import sys
 from pathlib import Path
 
-from ergocast.plot import interval
+from ergocast._errors import ErgocastError
+from ergocast._interval import interval
+from ergocast._simulate import shipped_folders
 
 # Column: title, whether less is better, how numbers are written.
 MEASURES = {
@@ -22,23 +25,38 @@ MEASURES = {
     "greatest_age_s": ("greatest age [s]", True, "{:.0f}"),
     "path_m": ("path [m]", True, "{:.0f}"),
 }
+PRINTED = ("ergodic_metric", "detection_probability", "time_to_four_fifths_s")
 KEYS = ("target", "agents", "law", "seed")
 LAWS = {
     "laws/smc.py:FirstOrder": "SMC",
     "laws/smc.py:SecondOrder": "SMC2",
     "laws/hedac.py:Hedac": "HEDAC",
     "laws/kernel.py:Kernel": "KERNEL",
+    "laws/receding.py:Receding": "RECEDING",
+    "laws/density_driven.py:DensityDriven": "D2OC",
     "laws/random_walk.py:RandomWalk": "WALK",
     "laws/random_walk.py:Waypoints": "WAYPOINTS",
 }
-FILES = {name: f"studies/bench/{file}" for file, name in LAWS.items()}
 ORDER = ["COVER", "MOW", "SEARCH", *LAWS.values()]
+TARGETS = ("four_peaks", "uniform", "one_peak", "ring", "two_far", "strip", "lake", "rooms", "box")
+HERE = Path(__file__).resolve().parent
 MOST_ROWS = 1000000
-TARGETS = {file.stem for file in (Path(__file__).resolve().parents[2] / "scenarios/bench").glob("*.textproto")}
+
+
+class BenchError(ErgocastError):
+    """What a person can mend: rows, targets, folders."""
 
 
 def problem(text):
-    sys.exit(f"table.py: {text}")
+    raise BenchError(text)
+
+
+def targets():
+    """{target: its scenario}, in the order of the table."""
+    for folder in shipped_folders():
+        if (folder / "bench").is_dir():
+            return {name: folder / "bench" / f"{name}.textproto" for name in TARGETS}
+    problem("its scenarios are not installed (they come with the package ergocast)")
 
 
 def number(text, where):
@@ -52,13 +70,18 @@ def number(text, where):
     return value
 
 
+def name_of(law):
+    """The name in the table of what law.kind has: a law in Python has that of its class."""
+    return LAWS.get(law, law.rpartition(":")[2])
+
+
 def rows_of_study(file):
     """The rows of a study.csv of the bench, with the names of this table."""
     with file.open(newline="") as opened:
         for row in csv.DictReader(opened):
             law = row["law.kind"]
             yield {"target": row["scenario"], "agents": int(row["agents"]), "seed": int(row["seed"]),
-                   "law": LAWS.get(law, Path(law).stem if ".py:" in law else law),
+                   "law": name_of(law),
                    "from": law, **{key: number(row[key], file) for key in MEASURES}}
 
 
@@ -91,7 +114,7 @@ def rows_added(file):
 def joined(folder, files):
     """All rows by (target, agents, law, seed); what ran here comes before what was added."""
     rows = {}
-    for study in sorted(folder.glob("*/study.csv")):
+    for study in sorted([*folder.glob("*/study.csv"), *folder.glob("*/*-of-*/study.csv")]):
         for row in rows_of_study(study):
             rows.setdefault(tuple(row[key] for key in KEYS), row)
     here, repeated, elsewhere = {key[0] for key in rows}, 0, 0
@@ -109,14 +132,14 @@ def joined(folder, files):
         if count:
             print(f"{count} added rows left out: {why}", file=sys.stderr)
     if not rows:
-        problem(f"{folder} has no study with a row (run studies/bench/run)")
+        problem(f"{folder} has no study with a row (run ergocast bench)")
     return rows
 
 
 def command_of(target, agents, law, source):
-    scenario = f"scenarios/bench/{target}.textproto --set agents.random_count={agents} --seed 1"
+    scenario = f"{targets()[target]} --set agents.random_count={agents} --seed 1"
     if ".py:" in source:
-        return f"/usr/bin/python3 -m ergocast --law {FILES.get(law, source)} {scenario}"
+        return f"/usr/bin/python3 -m ergocast --law {HERE / source} {scenario}"
     return f"ergocast run {scenario} --set law.kind={law}" if source == law else f"rows of {source}"
 
 
@@ -126,7 +149,8 @@ def cells_of(rows):
     for row in rows.values():
         groups.setdefault((row["target"], row["agents"], row["law"]), []).append(row)
     cells = []
-    for (target, agents, law), runs in groups.items():
+    # Laws of one row stay in the order of the first study.
+    for (target, agents, law), runs in sorted(groups.items(), key=lambda group: group[0][:2]):
         measures = {key: interval([run[key] for run in runs]) for key in MEASURES}
         cells.append({"target": target, "agents": agents, "law": law, "runs": len(runs),
                       "command": command_of(target, agents, law, runs[0]["from"]),
@@ -255,16 +279,20 @@ def write_page(folder, cells):
     (folder / "bench.html").write_text(PAGE.replace("OPTIONS", options).replace("TABLES", tables), encoding="utf-8")
 
 
-def main(folder, *files):
+def write(folder, files):
+    """Makes the files of the table from the studies in `folder` and the rows of `files`; prints it."""
     folder = Path(folder)
     rows = joined(folder, files)
     cells = cells_of(rows)
     write_csv(folder, rows, cells)
     write_page(folder, cells)
-    for key in ("ergodic_metric", "detection_probability", "time_to_four_fifths_s"):
-        print(f"\n{markdown(cells, key)}")
-    print(f"\n{len(rows)} runs: {folder}/bench.html, bench.csv, rows.csv")
+    text = "\n\n".join(markdown(cells, key) for key in PRINTED)
+    (folder / "bench.md").write_text(f"{text}\n", encoding="utf-8")
+    print(f"\n{text}\n\n{len(rows)} runs: {folder}/bench.html, bench.md, bench.csv, rows.csv")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    try:
+        write(sys.argv[1], sys.argv[2:])
+    except BenchError as why:
+        sys.exit(str(why))

@@ -21,10 +21,10 @@ The integrals are sums over the middles of CELLS² cells. Only planes without wa
 """
 
 import numpy as np
-from smc import directions
-from target import density
 
 import ergocast
+from ergocast.bench.laws.smc import directions
+from ergocast.bench.laws.target import density
 
 CELLS = 64
 REACH = 0.1

@@ -20,10 +20,10 @@ over the middles of cells. Edges and walls do not bend it.
 """
 
 import numpy as np
-from smc import directions
-from target import density
 
 import ergocast
+from ergocast.bench.laws.smc import directions
+from ergocast.bench.laws.target import density
 
 WIDTH = 0.025
 CELLS = {2: 64, 3: 24}  # along each axis, by the number of axes

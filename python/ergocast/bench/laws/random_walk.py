@@ -19,9 +19,9 @@ An agent that does not arrive in twice the time, for example because of a wall, 
 """
 
 import numpy as np
-from target import density
 
 import ergocast
+from ergocast.bench.laws.target import density
 
 STEP = 0.05
 CELLS = 64
