@@ -64,6 +64,8 @@ assert run.ergodic_metric() == run.summary["ergodic_metric"]["last"] == same.erg
 print("python", ergocast.__version__)
 END
   in_root python3 -I /tmp/test/program.py || fail 'python3-ergocast'
+  in_root ergocast bench --only one_peak --agents 1 --seeds 1:1 --published --out /tmp/test/bench >"$work/said" 2>&1 &&
+    grep -q '^one_peak,1,D2OC,1,' "$root/tmp/test/bench/rows.csv" || { cat "$work/said"; fail 'ergocast bench'; }
   expect_file usr/share/doc/python3-ergocast/examples/run_and_sweep.ipynb
 }
 

@@ -52,6 +52,16 @@ class Table(unittest.TestCase):
         self.assertIn(f'<td class="best" title="7 runs; one of them: ergocast run {table.targets()["ring"]}', page)
         self.assertIn("4.00e-04<br>[1.00e-04, 7.00e-04]", page)
 
+    def test_the_published_tables_are_those_of_the_published_rows(self):
+        (self.folder / "ring/study.csv").unlink()
+        result = self.run_with(LAWS.parent / "published.csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        page = (LAWS.parents[3] / "docs/results/bench.md").read_text()
+        for text in (self.folder / "bench.md").read_text().split("\n\n"):
+            self.assertIn(text.strip(), page)
+        runs = len((self.folder / "rows.csv").read_text().splitlines()) - 1
+        self.assertIn(f"\n{runs} runs", page)
+
     def test_rows_of_others_stand_beside_them(self):
         file = self.write("theirs.csv", "target,agents,law,seed,ergodic_metric\nring,4,THEIRS <b>,1,5e-5\nring,4,COVER,1,9\n")
         result = self.run_with(file)

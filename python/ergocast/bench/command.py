@@ -95,7 +95,7 @@ class Bench:
                 if code != DONE and not (code == FAILED and rows):
                     return code
                 self.failed = self.failed or code == FAILED
-        table.write(self.out, self.added)
+        table.write(self.out, self.added, intervals=self.options.own)
         if self.stopped:
             print("stopped: the same command goes on")
         if self.failed:

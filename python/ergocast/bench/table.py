@@ -210,19 +210,46 @@ def laws_of(cells):
     return sorted(laws, key=lambda law: ORDER.index(law) if law in ORDER else len(ORDER))
 
 
+def marked(cell, key, interval):
+    """The text of a cell: the best is bold, a star marks what is not separated from it."""
+    text, kind = text_of(cell, key, interval), cell["rank"].get(key)
+    return f"**{text}**" if kind == "best" else f"{text}\\*" if kind == "near" else text
+
+
+def table_of(head, lines):
+    return "\n".join("| " + " | ".join(line) + " |" for line in [head, *lines]).replace(
+        "\n", "\n" + "|---" * len(head) + "|\n", 1)
+
+
+def places_of(cells):
+    return in_order((cell["target"], cell["agents"]) for cell in cells)
+
+
+def at(cells, place):
+    """{law: its cell} of a target and number of agents."""
+    return {cell["law"]: cell for cell in cells if (cell["target"], cell["agents"]) == place}
+
+
 def markdown(cells, key):
-    """One line a target and number of agents; the best is bold, a star marks what is not separated."""
-    laws = laws_of(cells)
-    lines = [f"| {MEASURES[key][0]} | " + " | ".join(laws) + " |", "|---" * (len(laws) + 1) + "|"]
-    for target, agents in in_order((cell["target"], cell["agents"]) for cell in cells):
-        found = {c["law"]: c for c in cells if (c["target"], c["agents"]) == (target, agents)}
-        texts = []
-        for law in laws:
-            text = text_of(found[law], key, interval=False) if law in found else ""
-            kind = found[law]["rank"].get(key) if law in found else None
-            texts.append(f"**{text}**" if kind == "best" else f"{text}\\*" if kind == "near" else text)
-        lines.append(f"| {target}, {agents} | " + " | ".join(texts) + " |")
-    return "\n".join(lines)
+    """A line for each target and number of agents, with the medians of all laws."""
+    laws, lines = laws_of(cells), []
+    for place in places_of(cells):
+        found = at(cells, place)
+        lines.append(["{}, {}".format(*place),
+                      *(marked(found[law], key, interval=False) if law in found else "" for law in laws)])
+    return table_of([MEASURES[key][0], *laws], lines)
+
+
+def with_intervals(cells):
+    """A table for each target and number of agents, with a line for each law."""
+    tables = []
+    for place in places_of(cells):
+        found = at(cells, place)
+        lines = [[law, str(found[law]["runs"]), *(marked(found[law], key, interval=True) for key in PRINTED)]
+                 for law in laws_of(cells) if law in found]
+        head = ["{}, {}".format(*place), "runs", *(MEASURES[key][0] for key in PRINTED)]
+        tables.append(table_of(head, lines))
+    return "\n\n".join(tables)
 
 
 def shade(cell, key, others):
@@ -279,7 +306,7 @@ def write_page(folder, cells):
     (folder / "bench.html").write_text(PAGE.replace("OPTIONS", options).replace("TABLES", tables), encoding="utf-8")
 
 
-def write(folder, files):
+def write(folder, files, intervals=False):
     """Makes the files of the table from the studies in `folder` and the rows of `files`; prints it."""
     folder = Path(folder)
     rows = joined(folder, files)
@@ -288,6 +315,7 @@ def write(folder, files):
     write_page(folder, cells)
     text = "\n\n".join(markdown(cells, key) for key in PRINTED)
     (folder / "bench.md").write_text(f"{text}\n", encoding="utf-8")
+    text = with_intervals(cells) if intervals else text
     print(f"\n{text}\n\n{len(rows)} runs: {folder}/bench.html, bench.md, bench.csv, rows.csv")
 
 
