@@ -41,6 +41,8 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/potential_test.cc
     core/search/search_test.cc
     core/separation_test.cc
+    core/sites/site_history.cc
+    core/sites/site_rows_test.cc
     core/smooth_input_test.cc
     core/speed_limit_test.cc
     core/step_constraints_test.cc

@@ -109,13 +109,21 @@ double LookAhead::horizon_s(int n, Tick tick) const {
   return std::min({share_s, most_s_, left_s});
 }
 
-double LookAhead::weight_s(double horizon_s, Tick span, Tick age, Tick period) const {
+double LookAhead::cap_s(Tick period) const {
   // A message may announce anything, also a past tick.
   const Tick believed = std::clamp<Tick>(period, 0, longest_period_);
-  const double cap_s = static_cast<double>(kPeriods * believed) * dt_s_;
+  return static_cast<double>(kPeriods * believed) * dt_s_;
+}
+
+double LookAhead::weight_s(double horizon_s, Tick span, Tick age, Tick period) const {
+  const double lag_s = std::min(static_cast<double>(span) * dt_s_, cap_s(period));
+  return weight_with_lag_s(horizon_s, lag_s, age, period);
+}
+
+double LookAhead::weight_with_lag_s(double horizon_s, double lag_s, Tick age, Tick period) const {
   const double age_s = static_cast<double>(age) * dt_s_;
-  if (age_s > std::max(horizon_s, cap_s)) return 0;
-  return horizon_s + std::min(static_cast<double>(span) * dt_s_, cap_s) + age_s;
+  if (age_s > std::max(horizon_s, cap_s(period))) return 0;
+  return horizon_s + lag_s + age_s;
 }
 
 }  // namespace ergocast

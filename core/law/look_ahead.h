@@ -55,12 +55,17 @@ class LookAhead {
   ///   w = h + min(span dt, cap) + age dt,   0 if age dt > max(h, cap),   cap = 8 periods
   /// @param period  as announced by the teammate; any number is limited to what the plan allows
   double weight_s(double horizon_s, Tick span, Tick age, Tick period) const;
+  /// The same with what stands in the place of min(span dt, cap), such as a mean over members:
+  ///   w = h + lag + age dt,   0 if age dt > max(h, cap)
+  double weight_with_lag_s(double horizon_s, double lag_s, Tick age, Tick period) const;
 
   /// The longest time between two broadcasts that the plan allows.
   Tick longest_period() const { return longest_period_; }
 
  private:
   LookAhead(const Mission& mission, const Eigen::Matrix3d& covariance_m2);
+
+  double cap_s(Tick period) const;
 
   double dt_s_;
   double alone_s_;             // h of a team of one

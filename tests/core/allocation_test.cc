@@ -17,6 +17,8 @@
 #include "core/law/coverage_table.h"
 #include "core/law/forecast.h"
 #include "core/law/searcher.h"
+#include "core/law/site_row.h"
+#include "core/law/site_table.h"
 #include "core/motion/push.h"
 #include "core/motion/separation.h"
 #include "core/motion/wall_following.h"
@@ -172,6 +174,38 @@ TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
       EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
     }
   }
+}
+
+TEST(Allocations, SummingUpASiteAndMergingItsRowMakesNone) {
+  const Mission mission = full_mission(Regularization::kAbsolute, Perturbation::kConstant, 1);
+  constexpr int kModes = 400, kSites = 4;
+  const LookAhead look_ahead(mission);
+  const std::vector<double> covered(kModes, 0.5);
+  std::vector<SiteRow> rows;
+  for (int site = 0; site < kSites; ++site) rows.emplace_back(site, kModes);
+  SiteTable table(kSites, 0, kModes, 10);
+  std::vector<double> sums(kModes);
+  double time_s = 0;
+  const auto step = [&](Tick tick) {
+    for (SiteRow& row : rows) {
+      row.restart(1, {row.site(), 1}, tick);
+      for (AgentId id = 0; id < 100; ++id) {
+        row.add({.name = {{id, 1}, 1},
+                 .steps = tick + 1,
+                 .elapsed_s = 1,
+                 .sums = covered.data(),
+                 .gains = covered.data(),
+                 .gained_s = 1,
+                 .lag_s = 0.1});
+      }
+      ASSERT_EQ(table.merge(row), SiteMerge::kNewer);
+    }
+    time_s = table.add_forecast(look_ahead, 1, tick, sums.data());
+    time_s += table.add_coverage(sums.data());
+  };
+  for (Tick tick = 0; tick < 5; ++tick)
+    EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
+  EXPECT_GT(time_s, 600);
 }
 
 TEST(Allocations, KeepingADistanceMakesNone) {
