@@ -13,6 +13,7 @@
 #include "core/motion/filter_rules.h"
 #include "core/motion/push.h"
 #include "core/motion/vehicle.h"
+#include "lab/site_exchange.h"
 
 namespace ergocast::lab {
 namespace {
@@ -80,6 +81,9 @@ IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
   bodies_.resize(separation_ ? agents_.size() : 0);
 }
 
+IdealTeam::IdealTeam(IdealTeam&&) noexcept = default;
+IdealTeam::~IdealTeam() = default;
+
 bool IdealTeam::stands_for(const Mission& mission, const LawNeeds& needs) {
   const Timing& timing = mission.timing;
   const bool all_is_sent = longest_period_ticks(timing) == 1;
@@ -88,6 +92,32 @@ bool IdealTeam::stands_for(const Mission& mission, const LawNeeds& needs) {
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
          (all_is_sent || all_is_known) && !needs.search && !any_station(mission) &&
          mission.objects.end_when_found == 0;
+}
+
+void IdealTeam::divide(const SiteRules& rules) {
+  if (rules.sites < 1 || static_cast<std::size_t>(rules.sites) > agents_.size() || !foresees_ ||
+      !mission_.dead_reckoning || HalfLife(mission_).any())
+    throw std::logic_error("the laboratory cannot divide this team into sites");
+  sites_ = std::make_unique<SiteExchange>(mission_, rules);
+}
+
+/// The rows of all agents at this tick, from which each site's row is summed up.
+void IdealTeam::exchange() {
+  const double dt_s = mission_.timing.dt_s;
+  std::vector<MemberRow>& rows = sites_->rows();
+  rows.clear();
+  for (const Agent& agent : agents_) {
+    rows.push_back({.name = {agent.author, 1},
+                    .steps = tick_ + 1,
+                    .elapsed_s = static_cast<double>(tick_ + 1) * dt_s,
+                    .quality = quality(agent),
+                    .sums = table_.sums_of(agent.author),
+                    .gains = agent.gain.data(),
+                    .gained_s = dt_s,
+                    .lag_s = dt_s,
+                    .counts_in_team = true});
+  }
+  sites_->update(tick_);
 }
 
 void IdealTeam::note(const Amendments& list) {
@@ -114,7 +144,9 @@ void IdealTeam::use_amendments() {
 void IdealTeam::step() {
   sample();
   use_amendments();
-  if (foresees_) {
+  if (sites_) {
+    exchange();
+  } else if (foresees_) {
     look_ahead();
   } else if (needs_.coverage) {
     table_.average(coverage_);
@@ -127,7 +159,10 @@ void IdealTeam::step() {
     places_.push_back({team_[i], agents_[i].x_m});
   search();
   for (Agent& agent : agents_) {
-    if (foresees_) {
+    if (sites_) {
+      sites_->foresee(static_cast<std::size_t>(agent.author.agent), coverage_);
+      agent.law->set_coverage(coverage_);
+    } else if (foresees_) {
       foresee(agent);
       correct();
       compare_with_present();

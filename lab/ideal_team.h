@@ -3,7 +3,7 @@
 //
 // It computes the same bits as a distributed lockstep team that broadcasts or knows all coverage
 // each tick (tests/studies/same_as_simulate_test.cc), several times as fast: for statistics
-// over many seeds.
+// over many seeds. Divided into sites, it has less knowledge than that.
 #pragma once
 
 #include <functional>
@@ -27,6 +27,9 @@
 
 namespace ergocast::lab {
 
+class SiteExchange;
+struct SiteRules;
+
 /// What happens to a vehicle that crosses the domain's edge.
 enum class Edges {
   kReflect,
@@ -38,6 +41,8 @@ class IdealTeam {
   /// Throws std::logic_error if laws of the mission differ in their needs().
   explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect,
                      const LawMaker& laws = make_law);
+  IdealTeam(IdealTeam&&) noexcept;
+  ~IdealTeam();
 
   /// Whether a distributed team would compute the same: it is in lockstep, every agent receives
   /// from every other, and no agent goes home; all coverage is broadcast each tick or known by dead
@@ -46,6 +51,12 @@ class IdealTeam {
   static bool stands_for(const Mission& mission, const LawNeeds& needs);
   /// The same under make_law().
   static bool stands_for(const Mission& mission) { return stands_for(mission, law_needs(mission)); }
+
+  /// From now on agents know of other sites only by these sites' rows (lab/site_exchange.h). Call
+  /// it before the first step. Throws std::logic_error if there are fewer agents than sites, or if
+  /// agents do not look ahead with dead reckoning, or forget.
+  /// @pre no amendments
+  void divide(const SiteRules& rules);
 
   /// Takes in the newest list of amendments, of which only targets and laws count: its ticks are
   /// those that count. A change of the target is for the ticks to come. A distributed team computes
@@ -100,6 +111,7 @@ class IdealTeam {
   void look_ahead();
   void foresee(const Agent& agent);
   void weigh(const Agent& agent);
+  void exchange();
   void correct();
   void compare_with_present();
   double quality(const Agent& agent) const { return sensors_.of(agent.kind).quality; }
@@ -134,6 +146,7 @@ class IdealTeam {
   Objects objects_;
   Reports reports_;
   std::vector<Agent> agents_;
+  std::unique_ptr<SiteExchange> sites_;  // null: every agent receives from every other
   std::optional<SeparationFilter> separation_;
   std::vector<Neighbour> bodies_;
   std::int64_t blocked_steps_ = 0, longest_block_ticks_ = 0;
