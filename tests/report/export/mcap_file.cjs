@@ -17,8 +17,8 @@ exports.tableOf = (runDir, name) => {
 };
 
 /**
- * The messages of each topic, by the file's index. `begin(mcap)` sees the file's header and schemas, and returns
- * what reads a message: (message, channel, schema) => value.
+ * The messages of each topic, by the file's index. `begin(mcap)` sees the file's header and schemas, and
+ * returns what reads a message: (message, channel, schema) => value.
  */
 exports.readTopics = async (reader, file, begin) => {
   const handle = await open(file),
