@@ -17,7 +17,7 @@ import { connectControl, showControl } from './panels/control.js';
 import { connectDrawing, followDrawing } from './panels/drawing.js';
 import { connectZones, followZones } from './panels/zone_list.js';
 import { connectMap } from './panels/map_pointer.js';
-import { labelBoxes } from './map/finds_layer.js';
+import { labelBoxes, signsAt } from './map/finds_layer.js';
 import { connectSpace, showView } from './panels/space_controls.js';
 import { svgText } from './panels/save.js';
 import { addLog, watchLive } from './data/live.js';
@@ -81,6 +81,7 @@ window.ergocast = {
   setTheme,
   svgText: () => svgText(view),
   labelBoxes,
+  signs: () => signsAt(shown(), view, mapState().row),
   focus: focusOf,
   get view() {
     return view;

@@ -188,6 +188,10 @@ TEST_F(FoundInABrowser, FindsHaveLabelsOfTheirOwn) {
          "return [n, boxes[4].x > 300]");
   EXPECT_EQ(overlaps[0], 0);
   EXPECT_EQ(overlaps[1], true);
+  EXPECT_LE(js("const [box] = ergocast.labelBoxes([[380, 50]], [60], 400); return box.x + box.w")
+                .get<double>(),
+            380)
+      << "it stays on the picture";
   screenshot("finds");
   expect_no_errors();
 }
@@ -210,6 +214,84 @@ TEST_F(FoundInABrowser, ContactsAreListedTheLikeliestFirst) {
   }
   EXPECT_FALSE(js("return document.getElementById('contactBox').hidden").get<bool>());
   screenshot("contacts");
+  expect_no_errors();
+}
+
+/// Each contact and each find of the summary has a sign where it is, on the page and in the picture
+/// that the page saves.
+TEST_F(FoundInABrowser, ContactsAndFindsHaveSignsOnTheMapAndInPictures) {
+  open_report(
+      {"--seed", "4", "--set", "sensor.false_alarms_per_s=0.02", "--set", "sensor.radius_m=60"},
+      "#theme=light&tail=0", "mine_line");
+  const nlohmann::json contacts = summary()["contacts"], finds = summary()["objects"]["finds"];
+  const auto confirmed =
+      std::count_if(contacts.begin(), contacts.end(),
+                    [](const nlohmann::json& one) { return one["confirmed"].get<bool>(); });
+  ASSERT_GT(confirmed, 0);
+  ASSERT_LT(confirmed, static_cast<std::ptrdiff_t>(contacts.size()));
+  ASSERT_GT(finds.size(), 0U);
+  wait_for_frame();
+  // Place, label, filled, and the pixel in the middle of each sign.
+  const std::string signs =
+      "const g = document.getElementById('markers').getContext('2d'), dpr = devicePixelRatio;"
+      "return ergocast.signs().map(({ at: [x, y], label, filled }) => [x, y, label, filled,"
+      "  [...g.getImageData(Math.round(x * dpr), Math.round(y * dpr), 1, 1).data]])";
+  const nlohmann::json shown = js(signs);
+  ASSERT_EQ(shown.size(), finds.size() + contacts.size());
+  const nlohmann::json svg =
+      js("const svg = new DOMParser().parseFromString(ergocast.svgText(), 'image/svg+xml');"
+         "return [...svg.querySelectorAll('text')].map(node => node.textContent)");
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const bool find = i < finds.size();
+    const nlohmann::json& one = find ? finds[i] : contacts[i - finds.size()];
+    const nlohmann::json at = js("return [ergocast.view.px(" + one["x_m"].dump() +
+                                 "), ergocast.view.py(" + one["y_m"].dump() + ")]");
+    EXPECT_NEAR(shown[i][0].get<double>(), at[0].get<double>(), 1e-6);
+    EXPECT_NEAR(shown[i][1].get<double>(), at[1].get<double>(), 1e-6);
+    const std::string label = shown[i][2];
+    if (find) {
+      EXPECT_EQ(label.find(one["object"].dump() + ": "), 0U) << label;
+    } else {
+      const double percent = 100 * one["probability"].get<double>();
+      EXPECT_NE(label.find('%'), std::string::npos) << label;
+      EXPECT_TRUE(percent > 99.9 || std::abs(std::stod(label) - percent) < 0.051) << label;
+    }
+    EXPECT_EQ(shown[i][3], find || one["confirmed"].get<bool>()) << label;
+    EXPECT_NE(std::find(svg.begin(), svg.end(), label), svg.end()) << label << svg;
+  }
+  // Open signs show the panel's colour, filled ones the ink's: where no other sign is near. The
+  // canvas rounds colours of faint signs.
+  constexpr std::array<int, 3> kInk{23, 32, 43}, kPanel{255, 255, 255};
+  const auto apart = [&](std::size_t i) {
+    for (std::size_t k = 0; k < shown.size(); ++k)
+      if (k != i && std::hypot(shown[i][0].get<double>() - shown[k][0].get<double>(),
+                               shown[i][1].get<double>() - shown[k][1].get<double>()) < 24)
+        return false;
+    return true;
+  };
+  std::set<bool> seen;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (!apart(i)) continue;
+    const bool filled = shown[i][3];
+    seen.insert(filled);
+    const nlohmann::json& pixel = shown[i][4];
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(pixel[k].get<int>(), (filled ? kInk : kPanel)[k], 3) << shown[i];
+    EXPECT_GT(pixel[3].get<int>(), filled ? 250 : 90) << shown[i];
+  }
+  EXPECT_EQ(seen.size(), 2U) << shown;
+  screenshot("contacts_on_the_map");
+  js("ergocast.setTheme('dark')");
+  screenshot("contacts_on_the_map_dark");
+  // What is not known of an earlier time is not shown there.
+  js("ergocast.draw(0)");
+  EXPECT_EQ(js("return ergocast.signs().length"), 0);
+  js("ergocast.draw(ergocast.S.run.end);"
+     "ergocast.S.run.contacts = [{}, { x_m: 'a', y_m: 1, t_s: 1 }, { x_m: 5, y_m: 5, t_s: 1 }];"
+     "ergocast.draw(ergocast.S.run.end)");
+  EXPECT_EQ(js("return ergocast.signs().length").get<std::size_t>(), finds.size() + 1);
+  browser_->press("?");
+  EXPECT_NE(text("words").find("triangle"), std::string::npos);
   expect_no_errors();
 }
 

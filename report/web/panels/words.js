@@ -59,6 +59,9 @@ const MAP = {
   'no-entry sign': 'An agent that an edge or a wall has blocked for a second or more.',
   cross: 'Where an agent started.',
   diamond: 'Where an agent was when it found an object: the number of the object, and when.',
+  triangle:
+    'A contact at its newest probability, from its newest report on: sensors have reported something there. ' +
+    'A filled one is confirmed.',
   square: 'A station: where an agent is at the end of the mission.',
   'hatched area': 'The target is 0 here: it wants no agent.',
 };
@@ -167,6 +170,7 @@ function isShown(label) {
     'New zone': S.live,
     zone: S.run.zones.length > 0,
     diamond: S.run.finds.length > 0,
+    triangle: S.run.contacts.length > 0,
     'hidden objects found': S.run.mission.objects > 0,
     square: mission.stations?.length > 0,
     'Radio range': mission.radio_range_m > 0,
