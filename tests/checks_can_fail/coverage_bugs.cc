@@ -21,6 +21,7 @@ WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi"
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
+WRAPPED(void, note_notes, "_ZN8ergocast7Efforts4noteESt4spanIKNS_10SearchNoteELm18446744073709551615EES1_IKNS_4HoldELm18446744073709551615EE", Efforts*, std::span<const SearchNote>, std::span<const Hold>)
 WRAPPED(bool, merge_looks, "_ZN8ergocast7Efforts5mergeERKNS_6AuthorEmNS_10EffortTileEl", Efforts*, const Author&, std::size_t, EffortTile, Tick)
 // clang-format on
 
@@ -235,6 +236,10 @@ bool bug_merge_looks(Efforts* self, const Author& author, std::size_t tile, Effo
   if (bug("a relayed row is the relayer's") && is_relayed)
     return real_merge_looks(self, {author.agent, author.incarnation + 1}, tile, theirs, sent);
   return real_merge_looks(self, author, tile, theirs, sent);
+}
+
+void bug_note_notes(Efforts* self, std::span<const SearchNote> notes, std::span<const Hold> holds) {
+  if (!bug("agents forget nothing by a note")) real_note_notes(self, notes, holds);
 }
 
 }  // namespace ergocast

@@ -183,6 +183,8 @@ const Plant kPlants[] = {
     {Invariant::kLooksAreTrue, "a tile is added to the one before", "", kSearch},
     {Invariant::kLooksAreTrue, "an old tile replaces a newer one", kLateBlocks, kSearch},
     {Invariant::kLooksAreTrue, "a relayed row is the relayer's", "", kSearch, "", "--lockstep"},
+    {Invariant::kLooksAreTrue, "agents forget nothing by a note", kTargets, kSearch, "",
+     "--lockstep"},
     {Invariant::kFindsAreRecorded, "a find is recorded a tick late", "", kObjects, "",
      "--lockstep"},
     {Invariant::kFindsAreRecorded, "no find is recorded", "", kObjects, "", "--lockstep"},
