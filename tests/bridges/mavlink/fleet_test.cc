@@ -11,11 +11,26 @@ namespace ergocast::mavlink {
 namespace {
 
 constexpr double kDistance_m = 8;
+/// What a vehicle that is allowed to move covers within a minute, also in a crowd.
+constexpr double kWay_m = 5;
 
-/// 16 vehicles over 130 m × 130 m with a wall in the middle, so they meet all the time.
+/// Much of the target is at two places on both sides of the wall, where not all have room: filters
+/// act all the time, and some vehicles hardly move.
+Coefficients two_crowds(const Mission& mission) {
+  const auto at = [&](double x_m, double y_m) {
+    return basis_values({x_m, y_m, 0}, mission.domain, mission.basis);
+  };
+  Coefficients target = 0.2 * at(45, 65) + 0.2 * at(85, 65);
+  target[0] = 1;
+  return target;
+}
+
+/// 16 vehicles over 130 m × 130 m with a wall in the middle. They are slow, so that they keep
+/// little more than the distance for old positions and responses.
 Mission mission_of_16() {
-  Mission mission = fleet_mission(130, 5, kDistance_m, 0.5, square_of_starts(4, 20, 30));
+  Mission mission = fleet_mission(130, 2.5, kDistance_m, 0.5, square_of_starts(4, 20, 30));
   mission.seed = 7;
+  mission.target_coefficients = two_crowds(mission);
   mission.walls = Rings{Ring{{60, 60}, {70, 60}, {70, 70}, {60, 70}}};
   mission.wall_clearance_m = 5;
   return mission;
@@ -65,7 +80,7 @@ void Flight16::begin() {
   for (std::size_t i = 0; i < fleet_.size(); ++i) way_m(i);
   fleet_.pass(60);
   for (std::size_t i = 0; i < fleet_.size(); ++i)
-    EXPECT_GT(way_m(i), 20) << i << " " << fleet_.log(i);
+    EXPECT_GT(way_m(i), kWay_m) << i << " " << fleet_.log(i);
 }
 
 /// Two pilots take over; their vehicles stand, whatever their agents want.
@@ -80,7 +95,7 @@ void Flight16::take_over() {
     fleet_.pilot(i, "mode " + fleet_.external_mode(i));
   }
   fleet_.pass(60);
-  for (const std::size_t i : {4, 5}) EXPECT_GT(way_m(i), 20) << i << " " << fleet_.log(i);
+  for (const std::size_t i : {4, 5}) EXPECT_GT(way_m(i), kWay_m) << i << " " << fleet_.log(i);
 }
 
 /// Two drivers are killed, and others begin. PX4 leaves OFFBOARD, so its pilot decides again.
@@ -96,7 +111,7 @@ void Flight16::restart_drivers() {
   fleet_.pilot(8, "mode OFFBOARD");
   for (const std::size_t i : {8, 9}) way_m(i);
   fleet_.pass(60);
-  for (const std::size_t i : {8, 9}) EXPECT_GT(way_m(i), 20) << i << " " << fleet_.log(i);
+  for (const std::size_t i : {8, 9}) EXPECT_GT(way_m(i), kWay_m) << i << " " << fleet_.log(i);
 }
 
 void Flight16::end() {
@@ -104,7 +119,7 @@ void Flight16::end() {
   std::printf("least distance %.2f m, longest gap between setpoints %.2f s\n",
               fleet_.least_distance_m(), fleet_.longest_gap_s());
   EXPECT_GE(fleet_.least_distance_m(), kDistance_m);
-  EXPECT_LE(fleet_.least_distance_m(), 3 * kDistance_m)
+  EXPECT_LE(fleet_.least_distance_m(), 1.9 * kDistance_m)
       << "they have not met: what agents keep for old positions and responses is within this";
   EXPECT_EQ(fleet_.disobeyed(), 0);
   EXPECT_EQ(fleet_.coordinator().state(), MissionState::kRunning);
