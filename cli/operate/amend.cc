@@ -77,6 +77,10 @@ class Amending : public TeamCommand {
     if (!problem && team().recorded())
       problem = why_no_contact(mission, *options_.dismissal, *team().recorded());
     if (problem) return report_error(kExitBadInput, std::vector{*problem});
+    if (team().recorded()) {
+      const auto warning = why_perhaps_no_contact(mission, *options_.dismissal, *team().recorded());
+      if (warning) print_message("warning: " + to_string(*warning));
+    }
     return order(wish_of_dismissal(*options_.dismissal), 0);
   }
 

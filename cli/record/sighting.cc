@@ -103,15 +103,38 @@ std::optional<Problem> why_not_dismissed(const Mission& mission, const SearchNot
                  "name that of a contact, in metres"};
 }
 
+namespace {
+
+bool is_listed(const Mission& mission, const SearchNote& dismissal, const RecordAck& recorded) {
+  const auto contacts = recorded.all_contacts();
+  const auto forgotten = forgotten_cells(dismissal, SearchCells(mission));
+  return std::ranges::any_of(forgotten, [&](std::int32_t cell) {
+    return std::ranges::find(contacts, cell, &Contact::cell) != contacts.end();
+  });
+}
+
+bool may_lack_some(const RecordAck& recorded) {
+  return recorded.contact_count >= recorded.contact_room();
+}
+
+}  // namespace
+
 std::optional<Problem> why_no_contact(const Mission& mission, const SearchNote& dismissal,
                                       const RecordAck& recorded) {
-  const auto contacts = recorded.all_contacts();
-  if (recorded.contact_count >= recorded.contact_room()) return std::nullopt;
-  for (const std::int32_t cell : forgotten_cells(dismissal, SearchCells(mission)))
-    if (std::ranges::find(contacts, cell, &Contact::cell) != contacts.end()) return std::nullopt;
+  if (may_lack_some(recorded) || is_listed(mission, dismissal, recorded)) return std::nullopt;
   return Problem{"--dismiss", "there is no contact at this place",
-                 contacts.empty() ? "wait until sensors report something"
-                                  : "name the place of one that `ergocast status` lists"};
+                 recorded.contact_count == 0
+                     ? "wait until sensors report something"
+                     : "name the place of one that `ergocast status` lists"};
+}
+
+std::optional<Problem> why_perhaps_no_contact(const Mission& mission, const SearchNote& dismissal,
+                                              const RecordAck& recorded) {
+  if (!may_lack_some(recorded) || is_listed(mission, dismissal, recorded)) return std::nullopt;
+  return Problem{"--dismiss",
+                 "there may be no contact at this place: the logger names only the " +
+                     std::to_string(recorded.contact_count) + " likeliest ones",
+                 "without one, the dismissal has no effect"};
 }
 
 }  // namespace ergocast::cli

@@ -48,4 +48,9 @@ std::optional<Problem> why_not_dismissed(const Mission& mission, const SearchNot
 std::optional<Problem> why_no_contact(const Mission& mission, const SearchNote& dismissal,
                                       const RecordAck& recorded);
 
+/// A warning: no contact that `recorded` names is near the place, and it may lack some.
+/// @pre !why_not_dismissed(mission, dismissal)
+std::optional<Problem> why_perhaps_no_contact(const Mission& mission, const SearchNote& dismissal,
+                                              const RecordAck& recorded);
+
 }  // namespace ergocast::cli

@@ -119,6 +119,7 @@ std::string team_json(const TeamPicture& at) {
   if (at.wrong_confirmations) {
     json["wrong_confirmations"] = *at.wrong_confirmations;
     json["contacts"] = contacts_json(at);
+    json["more_contacts"] = at.more_contacts;
   }
   json["holds"] = nlohmann::ordered_json::array();
   for (const Hold& hold : at.holds)

@@ -272,13 +272,15 @@ std::string condition_text(const AgentRow& row) {
 
 namespace {
 
-std::string contact_lines(const std::vector<Contact>& contacts, bool colour) {
+std::string contact_lines(const TeamPicture& picture, bool colour) {
   constexpr std::size_t kMost = 8;
+  const std::vector<Contact>& contacts = picture.contacts;
   std::string text;
   for (std::size_t i = 0; i < std::min(kMost, contacts.size()); ++i)
     text += '\n' + tinted("contact", Tint::kFaint, colour) + "  " + to_text(contacts[i]);
   if (contacts.size() > kMost)
-    text += "\nand " + std::to_string(contacts.size() - kMost) + " less likely ones";
+    text += "\nand " + std::to_string(contacts.size() - kMost) +
+            (picture.more_contacts ? " or more less likely ones" : " less likely ones");
   return text.empty() ? text : text + '\n';
 }
 
@@ -309,7 +311,7 @@ std::string team_table(const TeamPicture& picture, bool colour) {
       rows[i].insert(rows[i].begin() + 1, Cell{picture.agents[i].kind});
   }
   if (!rows.empty()) text += '\n' + aligned(columns, rows, colour);
-  text += contact_lines(picture.contacts, colour);
+  text += contact_lines(picture, colour);
   if (!picture.clients.empty()) text += '\n';
   for (const std::string& client : picture.clients)
     text += tinted("shown to", Tint::kFaint, colour) + "  " + printable(client) + '\n';

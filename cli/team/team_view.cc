@@ -87,6 +87,7 @@ void TeamView::on(const RecordAck& ack, const Arrival& arrival) {
   if (!arrival.fresh) return;
   detection_probability_ = ack.detection_probability;
   contacts_.assign(ack.all_contacts().begin(), ack.all_contacts().end());
+  more_contacts_ = ack.contact_count >= ack.contact_room();
   const auto finds = ack.all_finds();
   if (finds.size() > finds_.size()) finds_.assign(finds.begin(), finds.end());
   wrong_confirmations_ = std::max(wrong_confirmations_, ack.wrong_confirmations);
@@ -243,6 +244,7 @@ void TeamView::add_contacts(TeamPicture& picture) const {
   const auto& mission = follower().mission();
   if (!mission || !mission->sensor.has_false_alarms()) return;
   const SearchCells search(*mission);
+  picture.more_contacts = more_contacts_;
   for (Contact contact : contacts_) {
     if (static_cast<std::size_t>(contact.cell) >= search.cells.total()) continue;
     contact.x_m = search.middle_m(contact.cell);

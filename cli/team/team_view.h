@@ -85,6 +85,7 @@ struct TeamPicture {
   std::vector<Find> finds;                 ///< in their order, as a logger has reported them
   std::optional<int> wrong_confirmations;  ///< likewise, with false alarms
   std::vector<Contact> contacts;           ///< likewise, those that are confirmed first
+  bool more_contacts = false;              ///< the logger may know others, which are less likely
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
@@ -159,6 +160,7 @@ class TeamView {
   std::optional<double> detection_probability_;  // from the newest RECORD_ACK
   int wrong_confirmations_ = 0;
   std::vector<Contact> contacts_;           // as it lists them
+  bool more_contacts_ = false;              // the list is full
   std::vector<Find> finds_;                 // from the one with most
   std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;

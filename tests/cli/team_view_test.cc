@@ -152,6 +152,15 @@ TEST_F(TeamViewWithFalseAlarms, HasTheContactsOfTheNewestRecordAck) {
   EXPECT_EQ(told[0]["t_s"], contact.t_s);
   EXPECT_EQ(told[0]["confirmed"], true);
   EXPECT_NE(team_table(picture, false).find("contact  " + to_text(contact)), std::string::npos);
+  EXPECT_FALSE(picture.more_contacts);
+  ack.header.sequence = next_sequence();
+  ack.contact_count = kMaxContactsPerMessage;  // the logger may know more
+  for (std::int32_t i = 0; i < ack.contact_count; ++i)
+    ack.contacts[static_cast<std::size_t>(i)] = {.cell = i, .probability = 0.5};
+  give(view_, ack, at(1s));
+  const TeamPicture full = view_.picture(at(1s));
+  EXPECT_EQ(nlohmann::json::parse(team_json(full))["more_contacts"], true);
+  EXPECT_NE(team_table(full, false).find("and 8 or more less likely ones"), std::string::npos);
   ack.header.sequence = next_sequence();
   ack.contact_count = 0;  // dismissed
   give(view_, ack, at(2s));

@@ -213,6 +213,7 @@ TEST_F(FoundInABrowser, ContactsAreListedTheLikeliestFirst) {
     EXPECT_EQ(rows[i][5], contacts[i]["confirmed"] ? "confirmed" : "");
   }
   EXPECT_FALSE(js("return document.getElementById('contactBox').hidden").get<bool>());
+  EXPECT_EQ(text("contactNote"), "") << "a record has all";
   screenshot("contacts");
   expect_no_errors();
 }
@@ -314,6 +315,27 @@ TEST_F(FoundInABrowser, ARunningTeamShowsItsFinds) {
   expect_no_errors();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  close_page_of(mission);
+}
+
+/// The logger names 16 contacts.
+TEST_F(FoundInABrowser, ARunningTeamWithManyContactsShowsTheLikeliest) {
+  Child mission =
+      launch_endless(scenario("pace: REALTIME realtime_factor: 10"),
+                     {"--set", "sensor.radius_m=100", "--set", "sensor.false_alarms_per_s=0.5",
+                      "--watch", "--port", "8819", "--lcm-url", kUrl});
+  browser_->open("http://127.0.0.1:8819/");
+  EXPECT_TRUE(
+      browser_->becomes("return document.getElementById('contactNote')?.textContent === "
+                        "'the 16 likeliest; there may be more'"));
+  EXPECT_TRUE(browser_->becomes("return ergocast.signs().length === 16")) << "on the map, too";
+  EXPECT_EQ(js("return document.getElementById('contacts').rows.length"), 16);
+  screenshot("contacts_live");
+  expect_no_errors();
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  EXPECT_EQ(text("contactNote"), "");
+  EXPECT_GT(js("return document.getElementById('contacts').rows.length"), 16) << "the record";
   close_page_of(mission);
 }
 

@@ -40,6 +40,20 @@ class Sightings : public RunningMission {
                   contact["y_m"].get<double>());
     return place;
   }
+  /// A place with no contact within three cells of 100 m.
+  static std::string free_place(const nlohmann::json& contacts) {
+    for (int x_m = 50; x_m < 2000; x_m += 100) {
+      for (int y_m = 50; y_m < 2000; y_m += 100) {
+        const bool free = std::all_of(contacts.begin(), contacts.end(), [&](const auto& one) {
+          return std::hypot(one["x_m"].template get<double>() - x_m,
+                            one["y_m"].template get<double>() - y_m) > 300;
+        });
+        if (free) return std::to_string(x_m) + "," + std::to_string(y_m);
+      }
+    }
+    ADD_FAILURE() << "contacts are everywhere: " << contacts;
+    return "0,0";
+  }
   /// The share of the agents' rows from t = 150 s to 250 s that are within 150 m of the middle.
   static double share_near(const std::filesystem::path& run) {
     int near = 0, all = 0;
@@ -126,6 +140,53 @@ TEST_F(Sightings, NameWhatIsWrong) {
   EXPECT_TRUE(answered("its sensors have no false alarms")) << output();
   release();
   EXPECT_EQ(wait_for(mission), 0) << printed();
+}
+
+/// The logger names 16 contacts, and this team has more. While it is paused, the list is that of
+/// the pause's first tick, once that is recorded.
+TEST_F(Sightings, WarnOfAPlaceThatIsNotNamedIfTheListIsFull) {
+  Child mission = launch_endless(scenario(), with({"--lockstep", "--lcm-url", kUrl}));
+  EXPECT_TRUE(eventually([&] { return contacts().size() == 16; })) << output();
+  EXPECT_TRUE(nlohmann::json::parse(output())["more_contacts"]) << output();
+  ASSERT_EQ(ergocast({"status", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_TRUE(answered("and 8 or more less likely ones")) << output();
+  ASSERT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 0) << output();
+  const auto dismissed_at = [&](const std::string& place) {
+    EXPECT_EQ(amend({"--dismiss", place}), 0) << output();
+    EXPECT_TRUE(answered("dismissed, holds since")) << output();
+    return answered("there may be no contact at this place: the logger names only the 16");
+  };
+  bool warns_of_free = false, warns_of_named = true;
+  EXPECT_TRUE(eventually([&] {
+    const nlohmann::json before = contacts();
+    warns_of_free = dismissed_at(free_place(before));
+    if (contacts() != before) return false;
+    warns_of_named = dismissed_at(text(before[0], "%.10g,%.10g"));
+    return true;
+  })) << output();
+  EXPECT_TRUE(warns_of_free);
+  EXPECT_FALSE(warns_of_named);
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
+}
+
+TEST_F(Sightings, AreRefusedInABox) {
+  Child mission = launch_held(scenario_file("cube_corners"), {"--lcm-url", kUrl});
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& why) {
+    EXPECT_EQ(ergocast(std::move(arguments)), 2) << output();
+    EXPECT_TRUE(answered(why)) << output();
+  };
+  const std::string box = "a sighting is a place in a plane, and the domain is a box",
+                    none = "the mission has no contacts, because its sensors have no false alarms";
+  refused({"amend", "--sighting", "50,50", "--lcm-url", kUrl}, box);
+  refused({"amend", "--dismiss", "50,50", "--lcm-url", kUrl}, none);
+  refused({"simulate", scenario_file("cube_corners"), "--sighting", "1:50,50"}, box);
+  refused({"simulate", scenario_file("cube_corners"), "--dismiss", "1:50,50"}, none);
+  refused({"check", scenario_file("cube_corners"), "--set", "sensor.false_alarms_per_s=0.1"},
+          "reports belong to a plane, and the domain is a box");
+  release();
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
 }
 
 TEST_F(Sightings, NameWhatIsWrongWithAPlace) {

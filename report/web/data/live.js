@@ -203,6 +203,7 @@ export function watchLive(page) {
       run.finds = findsIn(team);
       run.wrong = wrongIn(team);
       run.contacts = contactsIn(team);
+      run.moreContacts = Boolean(team.more_contacts);
       const standing = team.state === 'running' ? [] : agents.filter(agent => agent.moves === false);
       run.standing = new Set(standing.map(agent => agent.id));
       if (run.times.length && run.times[run.times.length - 1] >= t) {

@@ -47,6 +47,7 @@ export class Run {
     this.homeFrom = new Map(); // tick from which an agent goes home, where no status reports it
     this.summary = null;
     this.wrong = 0;
+    this.moreContacts = false; // whether the newest status may lack some, which are less likely
     this.contacts = []; // {x_m, y_m, probability, reports, t_s, confirmed}, as finds
     this.finds = []; // {object, agent, tick, t_s, x_m, y_m}, as a record or the newest status has them
     // {number, kind, from: tick, hash, tick_count}, ascending, as far as the page knows them

@@ -54,7 +54,13 @@ function placeOf(run, view, { x_m: x, y_m: y }) {
 function findsAt(run, view, row) {
   return run.finds
     .filter(({ tick }) => tick <= row * run.stride)
-    .map(find => ({ at: placeOf(run, view, find), corners: DIAMOND, label: labelOf(find), filled: true, strength: 1 }));
+    .map(find => ({
+      at: placeOf(run, view, find),
+      corners: DIAMOND,
+      label: labelOf(find),
+      filled: true,
+      strength: 1,
+    }));
 }
 
 // The contacts from their newest report on, the likeliest first. What the page knows of them is the newest

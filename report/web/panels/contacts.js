@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lists the contacts: where sensors with false alarms have reported something, the likeliest first.
-import { $, chance, element } from '../text.js';
+import { $, chance, element, put } from '../text.js';
 
 const fixed = (v, digits = 1) => (typeof v === 'number' ? v.toFixed(digits) : '–');
 const COLUMNS = [
@@ -16,8 +16,9 @@ const COLUMNS = [
   ['', 'Whether it is confirmed: agents then search elsewhere', one => (one.confirmed ? 'confirmed' : '')],
 ];
 
-export function showContacts(contacts) {
+export function showContacts({ contacts, moreContacts }) {
   $('contactBox').hidden = contacts.length === 0;
+  put($('contactNote'), moreContacts ? `the ${contacts.length} likeliest; there may be more` : '');
   const rows = contacts.map(one => COLUMNS.map(([, , text]) => text(one))),
     shown = JSON.stringify(rows);
   if ($('contacts').dataset.shown === shown) return;

@@ -57,7 +57,7 @@ export function showRecord(run, at) {
   show(run);
   showFollowing();
   showFacts(null);
-  showContacts(run.contacts);
+  showContacts(run);
   seek(Math.min(at ?? run.end, run.end));
   buildCheckpoints(run);
 }
@@ -88,7 +88,7 @@ export const livePage = {
       run.stripAt = performance.now();
       buildStrip();
       showFacts(facts);
-      showContacts(run.contacts);
+      showContacts(run);
     }
     if (run.tracks.length > 12 && !run.tailChosen) {
       run.tailChosen = true;

@@ -174,6 +174,10 @@ TEST(SearchNotes, AreCheckedBeforeTheyAreNamed) {
   mission.law.kind = LawKind::kCover;
   EXPECT_FALSE(is_search_note(sighting(), mission)) << "the team does not search";
   mission.law.kind = LawKind::kSearch;
+  Mission box = searched_field();
+  box.domain.size_m.z() = 10;
+  EXPECT_FALSE(is_search_note(sighting(), box)) << "the domain is a box";
+  EXPECT_FALSE(is_search_note(dismissal(), box));
   const std::vector<SearchNote> many(kMaxSearchNotes + 1, sighting());
   EXPECT_FALSE(are_search_notes(many, mission));
 }
