@@ -12,6 +12,9 @@ endif()
 # Equal seeds must give equal trajectories on every machine, so the compiler may not fuse multiply
 # and add.
 add_compile_options(-ffp-contract=off)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  add_compile_options("SHELL:-include ${CMAKE_SOURCE_DIR}/cmake/unfused_neon.h")
+endif()
 
 # Programs with sanitizers are large, and lld links them faster.
 find_program(LLD ld.lld)

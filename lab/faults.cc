@@ -3,9 +3,9 @@
 #include "lab/faults.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/noise.h"
+#include "core/base/portable_math.h"
 #include "lab/random_stream.h"
 
 namespace ergocast::lab {
@@ -77,9 +77,9 @@ std::span<const FaultField> fault_fields() { return kFields; }
 Faults drawn(std::uint64_t seed) {
   RandomStream random(seed, kSwarm);
   Faults faults;
-  if (random.coin()) faults.loss = 0.7 * std::pow(random.uniform(), 2);
-  if (random.coin()) faults.duplication = 0.5 * std::pow(random.uniform(), 2);
-  if (random.coin()) faults.corruption = 0.3 * std::pow(random.uniform(), 2);
+  if (random.coin()) faults.loss = 0.7 * portable::square(random.uniform());
+  if (random.coin()) faults.duplication = 0.5 * portable::square(random.uniform());
+  if (random.coin()) faults.corruption = 0.3 * portable::square(random.uniform());
   if (random.coin()) {
     faults.delay_mean_s = random.log_uniform(1e-3, 0.3);
     faults.delay_max_s = faults.delay_mean_s * random.log_uniform(1, 7);
@@ -107,7 +107,7 @@ Faults drawn(std::uint64_t seed) {
   }
   if (random.coin()) faults.swarm_bus_only = 1;
   if (random.coin()) {
-    faults.replay = 0.3 * std::pow(random.uniform(), 2);
+    faults.replay = 0.3 * portable::square(random.uniform());
     faults.replay_max_s = random.log_uniform(0.1, 60);
   }
   // Last, so that a seed keeps its other faults.
@@ -159,9 +159,9 @@ bool hinders(const Faults& f, double patience_s) {
   const double link_loss = has_bad_links(f) ? f.link_loss : 0;
   const double link_s = has_bad_links(f) ? f.link_delay_s + f.link_jitter_s : 0;
   const double arrives =
-      std::pow(std::max(0.0, 1 - f.loss - f.corruption) * (1 - link_loss), kInARow);
+      portable::pow(std::max(0.0, 1 - f.loss - f.corruption) * (1 - link_loss), kInARow);
   const double latest_s = kInARow * (f.delay_max_s + f.reordering_max_s + f.clog_max_s + link_s);
-  return std::pow(1 - arrives, patience_s / 2) > kNever || latest_s > patience_s / 2;
+  return portable::pow(1 - arrives, patience_s / 2) > kNever || latest_s > patience_s / 2;
 }
 
 std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, int agents,

@@ -4,10 +4,10 @@
 #include "lab/network.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/base/noise.h"
+#include "core/base/portable_math.h"
 
 namespace ergocast::lab {
 namespace {
@@ -159,7 +159,7 @@ Instant Network::arrival(Instant now, Link& link, std::uint32_t link_index, doub
   const auto how_long =
       uniform_pair(seed_, Purpose::kFault, stream(kHowLong, link_index), link.sent);
   if (faults_.delay_mean_s > 0) {
-    const double delay_s = -faults_.delay_mean_s * std::log(how_long.x());
+    const double delay_s = -faults_.delay_mean_s * portable::log(how_long.x());
     at += seconds(std::min(delay_s, faults_.delay_max_s));
     ++counted_.delayed;
   }

@@ -2,10 +2,10 @@
 // A stream of random numbers that follows from a seed and a stream number alone.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "core/base/noise.h"
+#include "core/base/portable_math.h"
 
 namespace ergocast::lab {
 
@@ -17,10 +17,10 @@ class RandomStream {
   /// In (0, 1).
   double uniform() { return uniform_pair(seed_, Purpose::kFault, stream_, ++draws_).x(); }
   bool coin() { return uniform() < 0.5; }
-  double exponential(double mean) { return -mean * std::log(uniform()); }
+  double exponential(double mean) { return -mean * portable::log(uniform()); }
   /// Between `least` and `most`, each power of ten as likely.
   double log_uniform(double least, double most) {
-    return least * std::pow(most / least, uniform());
+    return least * portable::pow(most / least, uniform());
   }
 
  private:

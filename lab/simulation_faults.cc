@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
 #include "core/motion/zones.h"
 #include "lab/random_stream.h"
 #include "lab/simulation.h"
@@ -235,7 +236,7 @@ void Simulation::want_zone(std::uint64_t word) {
       const double angle = turn + 2 * std::numbers::pi * i / corners;
       const double far_m = size_m * (0.4 + 0.6 * random.uniform());
       zone.corners_m.push_back(center_m +
-                               far_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+                               far_m * Eigen::Vector2d(portable::cos(angle), portable::sin(angle)));
     }
     if (!domain.planar()) {
       zone.low_m = domain.origin_m.z() + domain.size_m.z() * (0.7 * random.uniform() - 0.1);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/base/portable_math.h"
 #include "core/basis/basis.h"
 #include "core/law/coverage_table.h"
 #include "core/mission/mission.h"
@@ -45,7 +46,9 @@ inline Tick halvings_at(const Mission& mission, Tick counted) {
   return std::max<Tick>(0, counted) / std::max<Tick>(1, static_cast<Tick>(ticks));
 }
 /// What is left of coverage after so many halvings more.
-inline double left_after(Tick halvings) { return std::pow(0.5, static_cast<double>(halvings)); }
+inline double left_after(Tick halvings) {
+  return portable::pow(0.5, static_cast<double>(halvings));
+}
 
 inline std::int64_t steps_of(const CoverageTable& table, const Author& author) {
   return table.steps_held(author).value_or(0);

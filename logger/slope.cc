@@ -3,9 +3,9 @@
 // count equally.
 #include "logger/slope.h"
 
-#include <cmath>
 #include <vector>
 
+#include "core/base/portable_math.h"
 #include "core/base/require.h"
 
 namespace ergocast {
@@ -35,7 +35,7 @@ double mean(const std::vector<double>& values, const std::vector<double>& share)
 }  // namespace
 
 double PowerLaw::at(double t_s) const {
-  return std::exp(center_log_value + slope * (std::log(t_s) - center_log_t));
+  return portable::exp(center_log_value + slope * (portable::log(t_s) - center_log_t));
 }
 
 std::optional<PowerLaw> fit_last_decade(std::span<const double> t_s,
@@ -44,18 +44,18 @@ std::optional<PowerLaw> fit_last_decade(std::span<const double> t_s,
   std::vector<double> log_t, log_value;
   for (std::size_t i = 0; i < t_s.size(); ++i) {
     if (!(t_s[i] > 0 && t_s[i] >= t_s.back() / 10 && values[i] > 0)) continue;
-    log_t.push_back(std::log(t_s[i]));
-    log_value.push_back(std::log(values[i]));
+    log_t.push_back(portable::log(t_s[i]));
+    log_value.push_back(portable::log(values[i]));
   }
-  if (log_t.size() < kFewestRows || log_t.back() - log_t.front() < std::log(kShortestSpan))
+  if (log_t.size() < kFewestRows || log_t.back() - log_t.front() < portable::log(kShortestSpan))
     return {};
 
   PowerLaw law;
   const std::vector<double> share = shares(log_t);
   law.center_log_t = mean(log_t, share);
   law.center_log_value = mean(log_value, share);
-  law.from_s = std::exp(log_t.front());
-  law.to_s = std::exp(log_t.back());
+  law.from_s = portable::exp(log_t.front());
+  law.to_s = portable::exp(log_t.back());
   // Sums about the means: the textbook formula n·Σxy − Σx·Σy would cancel most digits.
   double square = 0, product = 0;
   for (std::size_t i = 0; i < log_t.size(); ++i) {

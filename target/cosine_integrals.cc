@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -25,8 +27,8 @@ struct Multiples {
 
   Multiples(double angle, int count) {
     for (int k = 0; k < count; ++k) {
-      sine[k] = std::sin(k * angle);
-      cosine[k] = std::cos(k * angle);
+      sine[k] = portable::sin(k * angle);
+      cosine[k] = portable::cos(k * angle);
     }
   }
 };
@@ -68,7 +70,8 @@ Eigen::VectorXd cosine_integrals(double low, double high, double length, int mod
   const double middle = wave * 0.5 * (low + high), half = wave * 0.5 * (high - low);
   Eigen::VectorXd integrals(modes);
   for (int m = 0; m < modes; ++m) {
-    integrals[m] = (high - low) * std::cos(m * middle) * sinc(m * half, std::sin(m * half));
+    integrals[m] =
+        (high - low) * portable::cos(m * middle) * sinc(m * half, portable::sin(m * half));
   }
   return integrals;
 }

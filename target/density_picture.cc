@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/portable_math.h"
 #include "target/leaning_gaussian.h"
 #include "target/trapezoids.h"
 
@@ -77,7 +78,7 @@ DensityGrid shares_of(const std::vector<Trapezoid>& pieces, const Eigen::Vector2
 Eigen::VectorXd averages_along(double mean, double deviation, double size, Eigen::Index cells) {
   const double cell = size / static_cast<double>(cells);
   const auto below = [&](Eigen::Index i) {
-    return 0.5 * std::erf((static_cast<double>(i) * cell - mean) / (deviation * std::sqrt(2)));
+    return 0.5 * portable::erf((static_cast<double>(i) * cell - mean) / (deviation * std::sqrt(2)));
   };
   Eigen::VectorXd averages(cells);
   for (Eigen::Index i = 0; i < cells; ++i) averages[i] = (below(i + 1) - below(i)) / cell;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/ordered_product.h"
+#include "core/base/portable_math.h"
 #include "target/panels.h"
 
 namespace ergocast {
@@ -17,7 +19,7 @@ Eigen::MatrixXd cosines_at(const Eigen::VectorXd& x, double length, int modes) {
   Eigen::MatrixXd table(modes, x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     for (int m = 0; m < modes; ++m) {
-      table(m, i) = std::cos(m * std::numbers::pi * x[i] / length);
+      table(m, i) = portable::cos(m * std::numbers::pi * x[i] / length);
     }
   }
   return table;
@@ -35,8 +37,8 @@ PlaneCoefficients correlated_at(const PlaneGaussian& g, const Eigen::Vector2d& s
       mass(i, j) = x.weight[i] * y.weight[j] * density({x.x[i], y.x[j]});
     }
   }
-  return cosines_at(x.x, size_m.x(), basis.modes_x) * mass *
-         cosines_at(y.x, size_m.y(), basis.modes_y).transpose();
+  return ordered_product(ordered_product(cosines_at(x.x, size_m.x(), basis.modes_x), mass),
+                         cosines_at(y.x, size_m.y(), basis.modes_y).transpose());
 }
 
 PlaneIntegrals correlated(const PlaneGaussian& g, const Eigen::Vector2d& size_m,
@@ -85,7 +87,7 @@ class AcrossAt {
 
  private:
   static double normal(double z) {
-    return std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+    return portable::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
   }
   double mean_x(double y) const { return mean_m_.x() + slope_ * (y - mean_m_.y()); }
 
@@ -129,7 +131,7 @@ GaussianDensity::GaussianDensity(const PlaneGaussian& g)
 
 double GaussianDensity::operator()(const Eigen::Vector2d& x_m) const {
   const Eigen::Vector2d d = x_m - mean_m_;
-  return std::exp(-0.5 * d.dot(precision_ * d)) / scale_;
+  return portable::exp(-0.5 * d.dot(precision_ * d)) / scale_;
 }
 
 PlaneCoefficients integrals_by(const PlaneGaussian& g, std::span<const Trapezoid> pieces,

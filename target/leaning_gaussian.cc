@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
 #include "target/panels.h"
 
 namespace ergocast {
@@ -52,7 +53,7 @@ PlaneGaussian GaussianAtHeight::at(double z_m) const {
 
 double GaussianAtHeight::density_z(double z_m) const {
   const double z = (z_m - mean_m_.z()) / deviation_z_m_;
-  return std::exp(-0.5 * z * z) / (deviation_z_m_ * std::sqrt(2 * std::numbers::pi));
+  return portable::exp(-0.5 * z * z) / (deviation_z_m_ * std::sqrt(2 * std::numbers::pi));
 }
 
 double GaussianAtHeight::scale_z_m() const {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -59,7 +61,7 @@ double panel_scale(double bell, double wave, Eigen::Index modes) {
 }
 
 void add_cosines(double mass, double angle, Eigen::VectorXd& sums) {
-  const double first_cos = std::cos(angle), first_sin = std::sin(angle);
+  const double first_cos = portable::cos(angle), first_sin = portable::sin(angle);
   double c = mass, s = 0;
   for (double& sum : sums) {
     sum += c;
@@ -80,9 +82,9 @@ Eigen::VectorXd integrals_along(double mean, double deviation, const Interval& p
     for (int i = 0; i < kNodes; ++i) {
       const double x = over.low + half * (2 * panel + 1 + kNode[i]);
       const double z = (x - mean) / deviation;
-      const double mass = half * kWeight[i] * scale * std::exp(-0.5 * z * z);
+      const double mass = half * kWeight[i] * scale * portable::exp(-0.5 * z * z);
       const double angle = std::numbers::pi * x / length;
-      for (int m = 0; m < modes; ++m) result[m] += mass * std::cos(m * angle);
+      for (int m = 0; m < modes; ++m) result[m] += mass * portable::cos(m * angle);
     }
   }
   return result;

@@ -316,6 +316,20 @@ ergocast_test(NAME layering_tests LABELS unit
   SOURCES layering/includes_test.cc layering/modules_test.cc layering/sources_test.cc
   LIBS ergocast::core)
 
+# Where the bits of results must be those of every processor.
+set(same_bits)
+set(same_bits_targets)
+foreach(library core target geo team plan agent coordinator sim logger)
+  list(APPEND same_bits "\"$<TARGET_FILE:ergocast_${library}>\"")
+  list(APPEND same_bits_targets ergocast_${library})
+endforeach()
+ergocast_test(NAME portable_tests LABELS unit OPTIMISED
+  SOURCES core/portable_math_test.cc layering/same_bits_test.cc target/bits_of_targets_test.cc
+  LIBS ergocast::target)
+add_dependencies(portable_tests ${same_bits_targets})
+target_compile_definitions(portable_tests PRIVATE
+  ERGOCAST_NM="${CMAKE_NM}" ERGOCAST_OBJDUMP="${CMAKE_OBJDUMP}" "ERGOCAST_SAME_BITS=$<JOIN:${same_bits},$<COMMA>>")
+
 ergocast_test(NAME lab_tests LABELS lab OPTIMISED
   SOURCES
     lab/invariants_home_test.cc

@@ -311,6 +311,8 @@ foreach(suite bookworm trixie)
   ergocast_nightly_script_test(package_release_${suite} package package/release_test.sh ${CMAKE_BINARY_DIR})
   set_tests_properties(package_release_${suite} PROPERTIES ENVIRONMENT suite=${suite} TIMEOUT 14400)
 endforeach()
+ergocast_nightly_script_test(package_arm64 package package/arm64_test.sh
+  ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR})
 ergocast_nightly_script_test(package_services package package/services_test.sh ${CMAKE_BINARY_DIR})
 ergocast_nightly_script_test(containers docker docker/docker_test.sh ${CMAKE_BINARY_DIR})
 

@@ -148,13 +148,10 @@ std::string difference_of(const TrajectoryComparison& comparison, const fs::path
   return "";
 }
 
-int report_difference(const fs::path& run_dir, const std::string& difference, const Json& summary,
+int report_difference(const fs::path& run_dir, const std::string& difference,
                       const std::string& where = "") {
   std::printf("%s differs from its simulation%s\n%s", run_dir.c_str(), where.c_str(),
               printable(difference).c_str());
-  if (summary.value("cpu_fma", Json(cpu_has_fma())) != cpu_has_fma()) {
-    std::printf("It was recorded on another kind of processor, whose sine differs.\n");
-  }
   return kExitDiffers;
 }
 
@@ -209,7 +206,7 @@ std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Miss
 int conclude_verification(const fs::path& run_dir, const TrajectoryComparison& comparison,
                           const Json& summary, const std::vector<FileComparison>& files) {
   for (const FileComparison& file : files) {
-    if (!file.difference.empty()) return report_difference(run_dir, file.difference, summary);
+    if (!file.difference.empty()) return report_difference(run_dir, file.difference);
   }
   const bool complete = summary.value("result", Json()) == "done";
   std::printf("%s: identical to its simulation, byte for byte, up to tick %s%s\n", run_dir.c_str(),
@@ -259,18 +256,18 @@ int verify(const fs::path& run_dir) {
 
   std::vector<FileComparison> files = compare_sources(run_dir, *mission, summary);
   for (const FileComparison& file : files) {
-    if (!file.difference.empty()) return report_difference(run_dir, file.difference, summary);
+    if (!file.difference.empty()) return report_difference(run_dir, file.difference);
   }
   if (summary.value("emergency_stop", Json()) == true) comparison.expect_halt();
   repetition->run(comparison);
   if (const auto& problem = comparison.problem()) return report_error(kExitBadInput, *problem);
   if (const auto difference = difference_of(comparison, run_dir, summary); !difference.empty()) {
     const std::string where = comparison.same() ? "" : ", first at " + comparison.place();
-    return report_difference(run_dir, difference, summary, where);
+    return report_difference(run_dir, difference, where);
   }
   files.push_back({kTrajectoryFile, std::to_string(comparison.rows()) + " rows", "", ""});
   auto rows = read_tracks(run_dir);
-  if (!rows) return report_difference(run_dir, rows.error() + '\n', summary);
+  if (!rows) return report_difference(run_dir, rows.error() + '\n');
   auto rest = compare_the_rest(run_dir, *mission, *std::move(rows), *amendments, *repetition,
                                comparison, summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));

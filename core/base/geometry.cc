@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/portable_math.h"
 #include "core/base/require.h"
 
 namespace ergocast {
@@ -49,8 +50,8 @@ double Box::farthest_distance_m(const Eigen::Vector3d& point_m) const {
   const Eigen::Vector3d high_m = origin_m + size_m;
   const Eigen::Vector3d away_m =
       (origin_m - point_m).cwiseAbs().cwiseMax((high_m - point_m).cwiseAbs());
-  const double in_plane_m = std::hypot(away_m.x(), away_m.y());
-  return planar() ? in_plane_m : std::hypot(in_plane_m, away_m.z());
+  const double in_plane_m = portable::hypot(away_m.x(), away_m.y());
+  return planar() ? in_plane_m : portable::hypot(in_plane_m, away_m.z());
 }
 
 Eigen::Vector3d reflect(const Eigen::Vector3d& x_m, const Box& domain) {
@@ -66,7 +67,7 @@ Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps) {
   const double greatest_mps = v_mps.cwiseAbs().maxCoeff();
   if (greatest_mps == 0) return v_mps;
   const Eigen::Vector3d share = v_mps / greatest_mps;
-  const double length = std::hypot(std::hypot(share.x(), share.y()), share.z());
+  const double length = portable::hypot(portable::hypot(share.x(), share.y()), share.z());
   if (length * greatest_mps <= limit_mps) return v_mps;
   return share / length * limit_mps;
 }

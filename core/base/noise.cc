@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -40,9 +42,9 @@ Eigen::Vector2d second_uniform_pair(std::uint64_t seed, Purpose purpose, std::ui
 }
 
 Eigen::Vector2d normal_of(const Eigen::Vector2d& u) {
-  const double radius = std::sqrt(-2 * std::log(u.x()));
-  const double angle = 2 * std::numbers::pi * u.y();
-  return {radius * std::cos(angle), radius * std::sin(angle)};
+  const double radius = std::sqrt(-2 * portable::log(u.x()));
+  const portable::SinCos at = portable::sin_cos(2 * std::numbers::pi * u.y());
+  return {radius * at.cos, radius * at.sin};
 }
 
 }  // namespace

@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests the pairs of edges that are near each other in extended precision, computes areas by the
-// shoelace formula and membership by counting crossings.
+// Tests the pairs of edges that are near each other with twice the digits of a double, computes
+// areas by the shoelace formula and membership by counting crossings.
 #include "core/base/rings.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/base/double_pair.h"
 #include "core/base/indexed_rings.h"
 
 namespace ergocast {
 namespace {
 
-/// The side of the line through a and b on which the point lies: 1 left, −1 right, 0 on it. In
-/// extended precision, because the sign of a small difference must be right.
+/// (a − b)(c − d), with twice the digits of a double.
+DoublePair product_of_differences(double a, double b, double c, double d) {
+  const DoublePair one = exact_sum(a, -b), other = exact_sum(c, -d);
+  const DoublePair product = exact_product(one.high, other.high);
+  const double rest = one.high * other.low + one.low * other.high;
+  return exact_sum(product.high, product.low + rest);
+}
+
+/// The side of the line through a and b on which the point lies: 1 left, −1 right, 0 on it. The
+/// sign of a small difference must be right.
 int side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& point) {
-  using Wide = long double;
-  const Wide cross = (Wide{b.x()} - a.x()) * (Wide{point.y()} - a.y()) -
-                     (Wide{b.y()} - a.y()) * (Wide{point.x()} - a.x());
+  const DoublePair left = product_of_differences(b.x(), a.x(), point.y(), a.y());
+  const DoublePair right = product_of_differences(b.y(), a.y(), point.x(), a.x());
+  const double cross = (left.high - right.high) + (left.low - right.low);
   return (cross > 0) - (cross < 0);
 }
 

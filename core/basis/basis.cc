@@ -9,6 +9,7 @@
 #include <numbers>
 #include <type_traits>
 
+#include "core/base/portable_math.h"
 #include "core/base/require.h"
 #include "core/base/vectorized.h"
 #include "core/basis/free_gains.h"
@@ -31,6 +32,11 @@ struct Wave {
   }
 };
 
+Wave first_wave(double angle) {
+  const portable::SinCos at = portable::sin_cos(angle);
+  return {at.cos, at.sin};
+}
+
 /// Calls each(m, wave along x, wave along y) for every mode of the axis that has more of them. One
 /// loop serves both axes: neither waits for the other, and the shorter one's tables have room.
 template <class Each>
@@ -40,8 +46,7 @@ inline void for_each_mode(const Eigen::Vector3d& x_m, const Box& domain, const B
   ERGOCAST_REQUIRE(basis.modes_x <= kMaxModesPerAxis && basis.modes_y <= kMaxModesPerAxis);
   const Eigen::Vector2d angle =
       wave_numbers_of(domain).cwiseProduct(x_m.head<2>() - domain.origin_m.head<2>());
-  const Wave first_x{std::cos(angle.x()), std::sin(angle.x())};
-  const Wave first_y{std::cos(angle.y()), std::sin(angle.y())};
+  const Wave first_x = first_wave(angle.x()), first_y = first_wave(angle.y());
   Wave x{1, 0}, y{1, 0};
   for (int m = 0, end = std::max(basis.modes_x, basis.modes_y); m < end; ++m) {
     each(m, x, y);
@@ -57,7 +62,7 @@ void for_each_mode_along_z(double z_m, const Box& domain, const Basis& basis, co
   ERGOCAST_REQUIRE(basis.modes_z <= kMaxModesPerAxis && !domain.planar());
   const double wave_number = std::numbers::pi / domain.size_m.z();
   const double angle = wave_number * (z_m - domain.origin_m.z());
-  const Wave first{std::cos(angle), std::sin(angle)};
+  const Wave first = first_wave(angle);
   Wave z{1, 0};
   for (int l = 0; l < basis.modes_z; ++l) {
     each(l, z, wave_number);
@@ -392,7 +397,7 @@ Coefficients sobolev_weights(const Basis& basis, const Box& domain) {
     const double h_squared = basis.normalized ? domain.content() * half_unless_zero(m) *
                                                     half_unless_zero(n) * half_unless_zero(l)
                                               : 1.0;
-    weights[k] = std::pow(base, -basis.sobolev_exponent) / h_squared;
+    weights[k] = portable::pow(base, -basis.sobolev_exponent) / h_squared;
   });
   return weights;
 }

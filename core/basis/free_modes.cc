@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "core/base/portable_math.h"
 #include "core/base/require.h"
 #include "core/base/vectorized.h"
 
@@ -142,7 +143,8 @@ Eigen::VectorXd free_weights(const FreeModes& modes, bool squared_norm, double e
     const double base = 1 + (squared_norm ? squared : std::sqrt(squared));
     const double mean_square = k == 0 ? 1 : 0.25;  // of f_k
     const double h_squared = normalized ? modes.free_area_m2() * mean_square : 1;
-    weights[k] = std::pow(base, -exponent) * mean_square / modes.mean_squares[mode] / h_squared;
+    weights[k] =
+        portable::pow(base, -exponent) * mean_square / modes.mean_squares[mode] / h_squared;
   }
   return weights;
 }

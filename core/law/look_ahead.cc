@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -15,7 +17,7 @@ namespace {
 constexpr Tick kPeriods = 8;
 
 /// The share of mode m in the mean along an axis of length 1, and in the mean of the square.
-double axis_share(int mode) { return 4 / std::pow(std::numbers::pi * mode, 2); }
+double axis_share(int mode) { return 4 / portable::square(std::numbers::pi * mode); }
 
 /// Coefficients along the axes of a basis.
 struct AxisModes {
@@ -105,7 +107,8 @@ void LookAhead::set_end(Tick tick_count) {
 
 double LookAhead::horizon_s(int n, Tick tick) const {
   const double left_s = static_cast<double>(std::max<Tick>(0, end_tick_ - tick)) * dt_s_;
-  const double share_s = alone_s_ / std::pow(static_cast<double>(n), inverse_dimensions_);
+  const double nats = inverse_dimensions_ * portable::log(static_cast<double>(n));
+  const double share_s = alone_s_ * portable::exp(-nats);  // cheaper than a pow()
   return std::min({share_s, most_s_, left_s});
 }
 

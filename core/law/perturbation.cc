@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -14,7 +16,7 @@ namespace {
 double push_gain(double epsilon, double curvature, double part) {
   if (!(curvature < 0)) return 0;
   // hypot and a ratio: ε falls with the residual, and its square would be lost first.
-  const double length = std::hypot(epsilon, part);
+  const double length = portable::hypot(epsilon, part);
   return length == 0 ? 1 : epsilon / length;
 }
 
@@ -32,7 +34,7 @@ Eigen::Vector2d push_in_plane(double epsilon, const Eigen::Matrix2d& hessian,
   // H = mean·1 + spread·(v vᵀ − w wᵀ) with its principal directions v and w, spread ≥ 0.
   const double mean = 0.5 * (hessian(0, 0) + hessian(1, 1));
   const Eigen::Vector2d difference(0.5 * (hessian(0, 0) - hessian(1, 1)), hessian(0, 1));
-  const double spread = std::hypot(difference.x(), difference.y());
+  const double spread = portable::hypot(difference.x(), difference.y());
   const Eigen::Vector2d v = principal_direction(difference, spread), w(-v.y(), v.x());
   const double along_v = push_gain(epsilon, mean + spread, gradient.dot(v));
   const double along_w = push_gain(epsilon, mean - spread, gradient.dot(w));
@@ -54,7 +56,7 @@ Eigen::Vector3d push_in_space(double epsilon, const FieldAt& field, const Eigen:
 }  // namespace
 
 Tick push_ticks(const ControlLaw& law, double dt_s) {
-  const double held_s = std::pow(law.noise_ceiling / law.u_max_mps, 2);
+  const double held_s = portable::square(law.noise_ceiling / law.u_max_mps);
   // No longer than any mission lasts.
   return static_cast<Tick>(std::clamp(std::ceil(held_s / dt_s - 1e-9), 1.0, 1e9));
 }
@@ -68,7 +70,7 @@ double greatest_push_mps(const ControlLaw& law, double dt_s) {
 double greatest_deviation_mps(const ControlLaw& law, double dt_s) {
   const double noise_mps = law.noise_intensity / std::sqrt(dt_s);
   if (law.perturbation == Perturbation::kConstant) return noise_mps;
-  return std::hypot(noise_mps, greatest_push_mps(law, dt_s));
+  return portable::hypot(noise_mps, greatest_push_mps(law, dt_s));
 }
 
 PerturbationScale::PerturbationScale(const ControlLaw& law, double dt_s)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/portable_math.h"
 #include "core/base/require.h"
 #include "core/measure/target_mass.h"
 
@@ -81,8 +82,8 @@ void Searcher::add_left(const LawInput& input) {
   each([&](std::size_t cell, std::uint32_t looks) {
     if (contacts_.confirmed(cell)) return;
     const bool mine = contacts_.nats(cell) != 0 && is_nearest(input, cell);
-    const double mass = prior_[cell] * std::exp((mine ? contacts_.nats(cell) : 0.0) -
-                                                cells_.nats_per_look * (looks - fewest));
+    const double mass = prior_[cell] * portable::exp((mine ? contacts_.nats(cell) : 0.0) -
+                                                     cells_.nats_per_look * (looks - fewest));
     source_[static_cast<Eigen::Index>(cell)] = -mass;
     left += mass;
   });
@@ -121,7 +122,7 @@ void Searcher::add_teammates(const LawInput& input) {
 void Searcher::set_gaussian(int axis, const Eigen::Vector3d& x_m, Eigen::VectorXd& along) const {
   for (int cell = 0; cell < cells_.cells.count[axis]; ++cell) {
     const double off = (cells_.cells.center_m(axis, cell) - x_m[axis]) / spread_m_;
-    along[cell] = std::exp(-off * off / 2);
+    along[cell] = portable::exp(-off * off / 2);
   }
 }
 

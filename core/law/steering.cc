@@ -2,9 +2,8 @@
 // Draws noise by agent and tick, so that equal seeds give equal velocities.
 #include "core/law/steering.h"
 
-#include <cmath>
-
 #include "core/base/noise.h"
+#include "core/base/portable_math.h"
 #include "core/mission/kinds.h"
 
 namespace ergocast {
@@ -13,8 +12,9 @@ Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double ep
                              double u_max_mps) {
   // hypot, because B falls below 1e-4: its square would lose the smallest residuals.
   const double b_z = spectral_gradient.z();
-  const double length = std::hypot(std::hypot(spectral_gradient.x(), spectral_gradient.y()),
-                                   b_z == 0 ? epsilon : std::hypot(b_z, epsilon));
+  const double length =
+      portable::hypot(portable::hypot(spectral_gradient.x(), spectral_gradient.y()),
+                      b_z == 0 ? epsilon : portable::hypot(b_z, epsilon));
   if (length == 0) return {0, 0, 0};
   // The division comes first: u_max / length overflows where B is close to 0.
   return spectral_gradient / length * -u_max_mps;

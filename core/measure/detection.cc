@@ -3,9 +3,9 @@
 #include "core/measure/detection.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
+#include "core/base/portable_math.h"
 #include "core/base/require.h"
 
 namespace ergocast {
@@ -55,8 +55,8 @@ Detection::Detection(const Mission& mission)
       dt_s_(mission.timing.dt_s),
       radius_m_(sensor_radius_m(mission)),
       ticks_per_look_(ergocast::ticks_per_look(mission, cells_)),
-      missed_in_look_(std::exp(-mission.sensor.detections_per_s * mission.timing.dt_s *
-                               static_cast<double>(ticks_per_look_))),
+      missed_in_look_(portable::exp(-mission.sensor.detections_per_s * mission.timing.dt_s *
+                                    static_cast<double>(ticks_per_look_))),
       mass_(cells_.total(), 0),
       missed_(cells_.total(), 1),
       seen_(cells_.total(), 0),

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/noise.h"
+#include "core/base/portable_math.h"
 
 namespace ergocast {
 namespace {
@@ -17,7 +18,7 @@ constexpr std::uint64_t kHeadings = 16;
 /// Numbers of random draws that belong to a leg: its turn, kHeadings headings, and the first one.
 constexpr std::uint64_t kDrawsPerLeg = 32;
 
-Eigen::Vector2d towards(double heading) { return {std::cos(heading), std::sin(heading)}; }
+Eigen::Vector2d towards(double heading) { return {portable::cos(heading), portable::sin(heading)}; }
 
 }  // namespace
 
@@ -39,7 +40,7 @@ double max_drift_mps(const Box& domain, double dt_s) {
 double mean_square_m2(const ObjectMotion& motion, double t_s) {
   const double share = t_s / motion.persistence_s;
   const double length_m = motion.speed_mps * motion.persistence_s;
-  return 2 * length_m * length_m * (share + std::expm1(-share));
+  return 2 * length_m * length_m * (share + portable::expm1(-share));
 }
 
 double time_to_drift_s(const ObjectMotion& motion, double distance_m) {

@@ -3,10 +3,10 @@
 #include "core/measure/objects.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "core/base/noise.h"
+#include "core/base/portable_math.h"
 #include "core/measure/detection.h"
 #include "core/measure/target_mass.h"
 
@@ -52,7 +52,7 @@ Objects::Objects(const Mission& mission)
                                           : mission.objects.places_m),
       seed_(mission.seed),
       radius_m_(sensor_radius_m(mission)),
-      probability_(-std::expm1(-mission.sensor.detections_per_s * mission.timing.dt_s)) {
+      probability_(-portable::expm1(-mission.sensor.detections_per_s * mission.timing.dt_s)) {
   if (mission.objects.motion.any() && !places_m_.empty()) drift_.emplace(mission, places_m_);
 }
 

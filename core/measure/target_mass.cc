@@ -8,6 +8,9 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/base/ordered_product.h"
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -18,7 +21,8 @@ Table cosines(int cells, int modes) {
   Table table(cells, modes);
   for (int cell = 0; cell < cells; ++cell) {
     for (int m = 0; m < modes; ++m)
-      table(cell, m) = (m == 0 ? 1 : 2) * std::cos(m * std::numbers::pi * (cell + 0.5) / cells);
+      table(cell, m) =
+          (m == 0 ? 1 : 2) * portable::cos(m * std::numbers::pi * (cell + 0.5) / cells);
   }
   return table;
 }
@@ -39,7 +43,7 @@ std::vector<double> densities(const Basis& basis, const Coefficients& target, co
     }
     Eigen::Map<PlaneCoefficients>(density.data() + cells.column(0, l), cells.count.x(),
                                   cells.count.y()) =
-        (along_x * layer * along_y.transpose()).cwiseMax(0);
+        ordered_product(ordered_product(along_x, layer), along_y.transpose()).cwiseMax(0);
   }
   return density;
 }

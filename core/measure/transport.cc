@@ -9,6 +9,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -21,12 +23,12 @@ std::vector<Eigen::Vector3d> directions(bool planar) {
   for (int i = 0; i < kDirections; ++i) {
     if (planar) {
       const double angle = std::numbers::pi * (i + 0.5) / kDirections;
-      list.emplace_back(std::cos(angle), std::sin(angle), 0);
+      list.emplace_back(portable::cos(angle), portable::sin(angle), 0);
       continue;
     }
     const double height = (i + 0.5) / kDirections, across = std::sqrt(1 - height * height);
     const double angle = 2 * std::numbers::pi * i / std::numbers::phi;  // Fibonacci's spiral
-    list.emplace_back(across * std::cos(angle), across * std::sin(angle), height);
+    list.emplace_back(across * portable::cos(angle), across * portable::sin(angle), height);
   }
   return list;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -44,7 +46,7 @@ Coefficients footprint_of(const Basis& basis, const Box& domain, double sigma_m)
   for_modes(basis, [&](int l, int m, int n, int k) {
     const double per_m2 = squared(m, domain.size_m.x()) + squared(n, domain.size_m.y()) +
                           squared(l, domain.size_m.z());
-    g[k] = std::exp(-0.5 * sigma_m * sigma_m * per_m2);
+    g[k] = portable::exp(-0.5 * sigma_m * sigma_m * per_m2);
   });
   return g;
 }

@@ -11,6 +11,7 @@
 #include <queue>
 #include <utility>
 
+#include "core/base/portable_math.h"
 #include "core/motion/walls.h"
 
 namespace ergocast {
@@ -43,8 +44,8 @@ FreeRegion::FreeRegion(const IndexedRings& walls, const Box& domain, double kept
     part_.push_back(clearance_m_.back() >= kept_m ? kUnreached : kNotFree);
   }
   for (std::size_t i = 0; i < kNeighbours.size(); ++i) {
-    steps_m_[i] = std::hypot(kNeighbours[i].column * size_m.x() / columns_,
-                             kNeighbours[i].row * size_m.y() / rows_);
+    steps_m_[i] = portable::hypot(kNeighbours[i].column * size_m.x() / columns_,
+                                  kNeighbours[i].row * size_m.y() / rows_);
   }
   join(walls, kept_m);
   for (int cell = 0; cell < this->cells(); ++cell) {

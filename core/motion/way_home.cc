@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/geometry.h"
+#include "core/base/portable_math.h"
 #include "core/mission/station.h"
 #include "core/motion/home.h"
 #include "core/motion/walls.h"
@@ -39,7 +40,8 @@ constexpr double kLookingShare = 1e-6;
 /// to a tick.
 double closing_s(double response_s, double dt_s) {
   if (response_s <= 0) return 0;
-  const double folds = std::ceil(std::log2(std::max(1.0, 2 * response_s / dt_s)));
+  int folds = 0;
+  while (std::ldexp(dt_s, folds) < 2 * response_s) ++folds;
   return 4 * response_s * (1 + folds);
 }
 
@@ -74,8 +76,8 @@ WayHome::WayHome(const Mission& mission, AgentId id)
       ahead_(motion_.vehicle.min_speed_mps == 0
                  ? kAhead
                  : std::min(kAheadOfWings,
-                            std::cos(std::min(motion_.vehicle.max_turn_radps * motion_.dt_s,
-                                              std::numbers::pi / 2)))),
+                            portable::cos(std::min(motion_.vehicle.max_turn_radps * motion_.dt_s,
+                                                   std::numbers::pi / 2)))),
       drift_(kWayDeviations * mission.disturbance_intensity / speed_mps_),
       way_(mission, motion_),
       detour_(static_cast<std::int64_t>(std::ceil((kPatience_s + slack_s_) / motion_.dt_s)),

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/portable_math.h"
 #include "core/base/require.h"
 #include "core/measure/detection.h"
 
@@ -23,8 +24,8 @@ constexpr double kMostEvidence = 300;
 double in_own_cell(double error_m, double side_m) {
   if (!(error_m > 0)) return 1;
   const double sides = side_m / error_m;
-  return std::erf(sides / std::numbers::sqrt2) -
-         std::sqrt(2 / std::numbers::pi) / sides * -std::expm1(-sides * sides / 2);
+  return portable::erf(sides / std::numbers::sqrt2) -
+         std::sqrt(2 / std::numbers::pi) / sides * -portable::expm1(-sides * sides / 2);
 }
 
 }  // namespace
@@ -32,7 +33,7 @@ double in_own_cell(double error_m, double side_m) {
 Contacts::Contacts(const Mission& mission)
     : cells_(mission),
       has_false_alarms_(mission.sensor.has_false_alarms()),
-      confirmed_at_(std::log(mission.sensor.confirm_at / (1 - mission.sensor.confirm_at))),
+      confirmed_at_(portable::log(mission.sensor.confirm_at / (1 - mission.sensor.confirm_at))),
       prior_(cells_.cells.total(), 0),
       left_(prior_),
       nats_(prior_),
@@ -42,7 +43,7 @@ Contacts::Contacts(const Mission& mission)
   if (!has_false_alarms_) return;
   const SearchSensor& sensor = mission.sensor;
   const Eigen::Vector3d& side_m = cells_.cells.size_m;
-  const double seen_m2 = std::numbers::pi * std::pow(sensor_radius_m(mission), 2);
+  const double seen_m2 = std::numbers::pi * portable::square(sensor_radius_m(mission));
   const double ratio =
       sensor.detections_per_s * seen_m2 / (sensor.false_alarms_per_s * side_m.x() * side_m.y());
   for (const std::size_t columns : {0, 1}) {
@@ -51,7 +52,7 @@ Contacts::Contacts(const Mission& mission)
       const double own_row = in_own_cell(sensor.position_error_m, side_m.y());
       const double share = (columns == 0 ? own_column : (1 - own_column) / 2) *
                            (rows == 0 ? own_row : (1 - own_row) / 2);
-      gain_[columns][rows] = std::log1p(ratio * share);
+      gain_[columns][rows] = portable::log1p(ratio * share);
     }
   }
   contacts_.reserve(prior_.size());
@@ -74,7 +75,7 @@ void Contacts::renew(const Efforts& efforts) {
   std::ranges::fill(gain_at_, 0.0);
   for (const std::size_t contact : contacts_)
     for_neighbours(contact, [&](std::size_t cell) {
-      if (gain_at_[cell] == 0) gain_at_[cell] = std::exp(log_gain(cell));
+      if (gain_at_[cell] == 0) gain_at_[cell] = portable::exp(log_gain(cell));
     });
   confirm_likely();
   weigh();
@@ -88,7 +89,7 @@ void Contacts::read(const Efforts& efforts) {
     for (int j = 0; j < count.y(); ++j, ++cell) {
       const TileCell at = cells_.tile_cell(i, j);
       reports_[cell] = efforts.reports(at);
-      left_[cell] = prior_[cell] * std::exp(-cells_.nats_per_look * efforts.looks(at));
+      left_[cell] = prior_[cell] * portable::exp(-cells_.nats_per_look * efforts.looks(at));
       if (reports_[cell] > 0) contacts_.push_back(cell);
     }
   }
@@ -135,12 +136,12 @@ void Contacts::confirm(const Likely& likely) {
     reports_[cell] = 0;
   });
   for_near(contact, 2, [&](std::size_t cell, std::size_t, std::size_t) {
-    gain_at_[cell] = std::exp(log_gain(cell));
+    gain_at_[cell] = portable::exp(log_gain(cell));
   });
 }
 
 std::vector<Contacts::Judged> Contacts::judged() const {
-  const auto likely = [](double odds) { return 1 / (1 + std::exp(-odds)); };
+  const auto likely = [](double odds) { return 1 / (1 + portable::exp(-odds)); };
   std::vector<Judged> all;
   for (std::size_t i = 0; i < confirmed_contacts_.size(); ++i)
     all.push_back({confirmed_contacts_[i], likely(confirmed_odds_[i]), true});
@@ -161,8 +162,8 @@ void Contacts::weigh() {
   std::ranges::fill(nats_, 0.0);
   for (const std::size_t contact : contacts_) {
     if (reports_[contact] == 0) continue;
-    nats_[contact] =
-        log_gain(contact) - std::log(others(contact)) - std::log1p(std::exp(log_odds(contact)));
+    nats_[contact] = log_gain(contact) - portable::log(others(contact)) -
+                     portable::log1p(portable::exp(log_odds(contact)));
   }
 }
 
@@ -183,7 +184,7 @@ double Contacts::log_odds(std::size_t contact) const {
   for_neighbours(contact, [&](std::size_t cell) {
     if (confirmed_[cell] == 0 && left_[cell] > 0) sum += left_[cell] * gain_at_[cell];
   });
-  return std::log(sum) - std::log(others(contact));
+  return portable::log(sum) - portable::log(others(contact));
 }
 
 /// 1 − Σ m.

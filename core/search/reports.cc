@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/noise.h"
+#include "core/base/portable_math.h"
 #include "core/measure/detection.h"
 
 namespace ergocast {
@@ -16,7 +17,7 @@ Reports::Reports(const Mission& mission)
       seed_(mission.seed),
       radius_m_(sensor_radius_m(mission)),
       error_m_(mission.sensor.position_error_m),
-      probability_(-std::expm1(-mission.sensor.false_alarms_per_s * mission.timing.dt_s)) {
+      probability_(-portable::expm1(-mission.sensor.false_alarms_per_s * mission.timing.dt_s)) {
   if (mission.sensor.has_false_alarms()) cells_ = SearchCells(mission).cells;
 }
 
@@ -37,7 +38,7 @@ std::int32_t Reports::cell(AgentId id, Tick tick, const Eigen::Vector3d& x_m, Ob
     const Eigen::Vector2d draw = uniform_pair(seed_, Purpose::kFalseAlarm, who, 2 * step + 1);
     const double off_m = radius_m_ * std::sqrt(draw.x());
     const double angle = 2 * std::numbers::pi * draw.y();
-    place_m = x_m + off_m * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+    place_m = x_m + off_m * Eigen::Vector3d(portable::cos(angle), portable::sin(angle), 0);
     if (!domain_.contains(place_m)) return kNoCell;
   }
   return static_cast<std::int32_t>(cells_->cell_of(place_m));

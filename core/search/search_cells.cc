@@ -3,8 +3,8 @@
 #include "core/search/search_cells.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "core/base/portable_math.h"
 #include "core/measure/detection.h"
 
 namespace ergocast {
@@ -31,7 +31,7 @@ SearchCells::SearchCells(const Mission& mission)
                         kLeastRadiusPerSearchCell * cells.size_m.head<2>().maxCoeff())),
       ticks_per_look(ergocast::ticks_per_look(mission, cells)),
       look_bits(mission.sensor.has_false_alarms() ? 12 : 16) {
-  const double share = std::pow(sensor_radius_m(mission) / radius_m, 2);
+  const double share = portable::square(sensor_radius_m(mission) / radius_m);
   nats_per_look = share * mission.sensor.detections_per_s * static_cast<double>(ticks_per_look) *
                   mission.timing.dt_s;
   const double nats = reports() ? kMostNatsWithFalseAlarms : kMostNats;

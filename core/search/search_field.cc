@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "core/base/portable_math.h"
 #include "core/base/rings.h"
 
 namespace ergocast {
@@ -33,7 +33,7 @@ SearchField::SearchField(const Cells& cells, const Rings& walls, double smoothin
         if (!linked(axis, i, j)) continue;
         const auto [ni, nj] = next(axis, i, j);
         const int there = index(ni, nj);
-        const double exchange = std::pow(smoothing_m / cells_.size_m[axis], 2);
+        const double exchange = portable::square(smoothing_m / cells_.size_m[axis]);
         entries.emplace_back(here, here, exchange);
         entries.emplace_back(there, there, exchange);
         entries.emplace_back(there, here, -exchange);

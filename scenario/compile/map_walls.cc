@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/portable_math.h"
 #include "core/motion/free_region.h"
 #include "core/motion/walls.h"
 #include "scenario/parse/findings.h"
@@ -51,7 +52,8 @@ class MapWallReader {
         bodies_(bodies),
         map_(std::move(map)) {
     const double turn = map_.about().yaw_rad;
-    along_m_ = map_.about().resolution_m * Eigen::Vector2d(std::cos(turn), std::sin(turn));
+    along_m_ =
+        map_.about().resolution_m * Eigen::Vector2d(portable::cos(turn), portable::sin(turn));
   }
 
   Result<MapWalls, MapProblem> run() {

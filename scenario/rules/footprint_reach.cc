@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/base/portable_math.h"
 #include "core/basis/basis.h"
 #include "core/mission/kinds.h"
 
@@ -49,7 +50,7 @@ class Reach {
       cells_[axis] = cells;
       cosines_[axis] = Matrix::NullaryExpr(cells, modes, [cells](auto cell, auto mode) {
         const double at = (static_cast<double>(cell) + 0.5) / cells;
-        return std::cos(std::numbers::pi * static_cast<double>(mode) * at);
+        return portable::cos(std::numbers::pi * static_cast<double>(mode) * at);
       });
     }
     const Sensors sensors(mission);

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string>
 
+#include "core/base/portable_math.h"
+
 namespace ergocast {
 namespace {
 
@@ -218,7 +220,13 @@ Eigen::Affine2d affine(double a, double b, double c, double d, double e, double 
 
 Eigen::Affine2d turned(double angle_deg) {
   const double angle = angle_deg * std::numbers::pi / 180;
-  return affine(std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle), 0, 0);
+  return affine(portable::cos(angle), portable::sin(angle), -portable::sin(angle),
+                portable::cos(angle), 0, 0);
+}
+
+double tangent(double degrees) {
+  const portable::SinCos at = portable::sin_cos(degrees * std::numbers::pi / 180);
+  return at.sin / at.cos;
 }
 
 Eigen::Affine2d step_of(std::string_view name, const std::vector<double>& v) {
@@ -229,10 +237,8 @@ Eigen::Affine2d step_of(std::string_view name, const std::vector<double>& v) {
   if (name == "rotate" && n == 1) return turned(v[0]);
   if (name == "rotate" && n == 3)
     return affine(1, 0, 0, 1, v[1], v[2]) * turned(v[0]) * affine(1, 0, 0, 1, -v[1], -v[2]);
-  if (name == "skewX" && n == 1)
-    return affine(1, 0, std::tan(v[0] * std::numbers::pi / 180), 1, 0, 0);
-  if (name == "skewY" && n == 1)
-    return affine(1, std::tan(v[0] * std::numbers::pi / 180), 0, 1, 0, 0);
+  if (name == "skewX" && n == 1) return affine(1, 0, tangent(v[0]), 1, 0, 0);
+  if (name == "skewY" && n == 1) return affine(1, tangent(v[0]), 0, 1, 0, 0);
   fail("has a transform that SVG does not know: " + std::string(name), "save the drawing anew");
 }
 

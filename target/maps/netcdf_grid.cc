@@ -258,7 +258,7 @@ class Grid : public NetcdfGrid {
     const std::string is_unsigned = file_->text(variable_, kUnsigned);
     if ((is_unsigned == "true" || is_unsigned == "TRUE" || is_unsigned == "True") &&
         type.bits < 64 && !type.is_float)
-      wrap_ = std::exp2(type.bits);
+      wrap_ = std::ldexp(1.0, type.bits);
     for (const char* attribute : {"_FillValue", "missing_value"}) {
       for (const double fill : file_->numeric_attributes(variable_, attribute))
         fills_.push_back(as_meant(fill));

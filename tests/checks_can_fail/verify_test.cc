@@ -102,11 +102,6 @@ std::vector<Lie> lies_of_the_summary() {
       {"summary.json, /scenario_hash", 1,
        [](const fs::path& run) { edit_summary(run, [](Json& s) { s["scenario_hash"] = "0"; }); }},
       {"so restarts are unknown", 0, [](const fs::path& run) { fs::remove(run / "summary.json"); }},
-      {"another kind of processor", 1,
-       [](const fs::path& run) {
-         edit_summary(run, [](Json& s) { s["cpu_fma"] = !s["cpu_fma"].get<bool>(); });
-         change_a_cell(run / "trajectory.csv");
-       }},
   };
 }
 

@@ -3,7 +3,9 @@
 // without a height or without a second mode.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/base/noise.h"
 #include "core/law/control.h"
@@ -90,23 +92,30 @@ TEST(CommandInSpace, RelativeEpsilonIsAShareOfTheResidualGradientsRms) {
   EXPECT_NEAR(controller.epsilon() / (0.05 * std::sqrt(square / std::pow(kPoints, 3))), 1, 1e-12);
 }
 
+// A team is chaotic: at one tick of one seed, the last bit of a sine decides by how much φ² has
+// fallen.
 TEST(TeamInSpace, CoversTheBoxAndNeverLeavesIt) {
   for (const double anticipation : {0.0, 2.0}) {
     Mission mission = pushed(space_mission());
     mission.law.anticipation = anticipation;
-    lab::IdealTeam team(mission);
-    team.step();
-    const double at_first = team.metric();
-    Eigen::Vector3d low = mission.domain.center_m(), high = low;
-    team.run_until(200, [&] {
-      for (std::size_t i = 0; i < team.size(); ++i) {
-        ASSERT_TRUE(mission.domain.contains(team.x_m(i))) << team.x_m(i).transpose();
-        low = low.cwiseMin(team.x_m(i));
-        high = high.cwiseMax(team.x_m(i));
-      }
-    });
-    EXPECT_LT(team.metric(), at_first / 50) << anticipation;
-    EXPECT_GT(((high - low).cwiseQuotient(mission.domain.size_m)).minCoeff(), 0.9);
+    std::vector<double> left;
+    for (mission.seed = 1; mission.seed <= 7; ++mission.seed) {
+      lab::IdealTeam team(mission);
+      team.step();
+      const double at_first = team.metric();
+      Eigen::Vector3d low = mission.domain.center_m(), high = low;
+      team.run_until(200, [&] {
+        for (std::size_t i = 0; i < team.size(); ++i) {
+          ASSERT_TRUE(mission.domain.contains(team.x_m(i))) << team.x_m(i).transpose();
+          low = low.cwiseMin(team.x_m(i));
+          high = high.cwiseMax(team.x_m(i));
+        }
+      });
+      left.push_back(team.metric() / at_first);
+      EXPECT_GT(((high - low).cwiseQuotient(mission.domain.size_m)).minCoeff(), 0.9);
+    }
+    std::ranges::nth_element(left, left.begin() + 3);
+    EXPECT_LT(left[3], 1.0 / 50) << anticipation;
   }
 }
 

@@ -185,13 +185,13 @@ TEST(SearchNotes, AreCheckedBeforeTheyAreNamed) {
 TEST(SearchNotes, ASightingThatIsReplacedBeforeItHoldsLeavesTheList) {
   const Mission mission = searched_field();
   Amendments list;
-  name_target(list, kFrom, {.target = mission.target_coefficients});
+  name_target(list, kFrom, {.target = mission.target_coefficients, .cosine = {}});
   note_sighting(list, sighting());
   name_dismissal(list, kFrom, dismissal());
   EXPECT_EQ(list.notes[0].number, list.targets[0].number);
   EXPECT_EQ(list.notes[1].number, 1);
   EXPECT_TRUE(are_amendments(list, mission));
-  replace_target(list, {.target = mission.target_coefficients});
+  replace_target(list, {.target = mission.target_coefficients, .cosine = {}});
   ASSERT_EQ(list.notes.size(), 1U);
   EXPECT_FALSE(list.notes[0].is_sighting());
   EXPECT_TRUE(are_amendments(list, mission));

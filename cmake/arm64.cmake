@@ -1,0 +1,21 @@
+# The toolchain of the preset arm64: Debian's g++-aarch64-linux-gnu, and a sysroot that
+# packaging/arm64-sysroot made.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+if(NOT DEFINED ERGOCAST_SYSROOT)
+  set(ERGOCAST_SYSROOT ${CMAKE_CURRENT_LIST_DIR}/../build/arm64-sysroot)
+endif()
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES ERGOCAST_SYSROOT)
+set(CMAKE_SYSROOT ${ERGOCAST_SYSROOT})
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64-static;-L;${CMAKE_SYSROOT})
+
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(ENV{PKG_CONFIG_SYSROOT_DIR} ${CMAKE_SYSROOT})
+set(ENV{PKG_CONFIG_LIBDIR}
+  ${CMAKE_SYSROOT}/usr/lib/aarch64-linux-gnu/pkgconfig:${CMAKE_SYSROOT}/usr/share/pkgconfig)
