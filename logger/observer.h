@@ -45,9 +45,10 @@ class Observer {
     shift_ = target - mission.target_coefficients;
     before_ = sums_;
   }
-  bool has_seen_any() const { return sums_.covered_s > 0; }
+  /// A time that is no number counts, so that it shows in the metric.
+  bool has_seen_any() const { return sums_.covered_s != 0; }
   /// Whether it has seen anything since the newest begin_target(), or since begin().
-  bool has_seen_any_of_target() const { return sums_.covered_s > before_.covered_s; }
+  bool has_seen_any_of_target() const { return sums_.covered_s != before_.covered_s; }
 
   /// c_k of (4) so far, shifted: c − μ₀ is the average of f − μ(t), where μ₀ is the plan's target.
   /// With law.history KEEP it is that of f − μ of now. @pre has_seen_any()

@@ -32,6 +32,7 @@ enum class Outside {
   kEarth,        // PROJ
   kXml,          // pugixml
   kPhysics,      // MuJoCo, and EGL for its pictures
+  kProcessor,    // the instructions of one kind of processor
   kDds,          // CycloneDDS, and what its idlc makes
   kFiles,        // files and standard streams
   kSystem,       // sockets, signals, processes, threads, the machine's clocks and dice
@@ -226,6 +227,8 @@ inline const std::vector<Rule> kRules = {
     {"bridges/ros2/options.h", {"runtime/process", "bridges/ros2"}, {kFiles}},
     {"bridges/ros2/options.cc", {"bridges/ros2"}, {}},
     {"bridges/ros2/main.cc", {"runtime/bus", "runtime/process", "bridges/ros2"}, {kLog, kSystem}},
+    // What a compiler for arm64 includes first.
+    {"cmake", {}, {kProcessor}},
     // What the generated reference says of fields and messages.
     {"docs/reference",
      {"text", "core", "plan", "team", "lcmtypes", "scenario", "scenario/parse"},
@@ -286,6 +289,7 @@ inline const std::vector<Kind> kKinds = {
     {kXml, {"pugixml.hpp"}},
     {kPhysics, {"mujoco/*", "EGL/*"}},
     {kDds, {"dds/*", "ros_types.h"}},
+    {kProcessor, {"arm_neon.h"}},
     {kFiles, {"fstream", "filesystem", "iostream", "syncstream", "ext/stdio_filebuf.h"}},
     {kSystem, {"thread",     "mutex",     "shared_mutex", "condition_variable",
                "future",     "semaphore", "latch",        "barrier",

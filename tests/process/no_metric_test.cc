@@ -14,9 +14,14 @@ class NoMetric : public RunningMission {
 };
 
 TEST_F(NoMetric, FailsARun) {
+  std::string text = text_of(scenario());
+  const std::string law = "law {";
+  text.insert(text.find(law) + law.size(), " memory_half_life_s: 2 ");
+  const auto forgetful = folder_ / "forgetful.textproto";
+  std::ofstream(forgetful) << text;
   setenv("LD_PRELOAD", ERGOCAST_NO_NUMBER, 1);
-  EXPECT_EQ(ergocast({"run", scenario(), "--duration", "10", "--out", out()}), 4) << output();
-  EXPECT_NE(output().find("failed: mission complete, but phi^2 is not a number from tick 0 on"),
+  EXPECT_EQ(ergocast({"run", forgetful, "--duration", "10", "--out", out()}), 4) << output();
+  EXPECT_NE(output().find("failed: mission complete, but phi^2 is not a number from tick 20 on"),
             output().npos)
       << output();
   EXPECT_EQ(summary()["result"], "failed");

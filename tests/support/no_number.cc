@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preloaded into programs, gives ergocast-logger a sine and cosine that are no numbers, as a
-// damaged installation might; other programs get the real ones.
+// Preloaded into programs, gives ergocast-logger no number where it forgets what was covered, as a
+// damaged installation might; other programs get the real one.
 #include <dlfcn.h>
 
 #include <cerrno>
@@ -14,23 +14,11 @@ bool is_logger() {
   return is;
 }
 
-template <class Function>
-Function* real(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
 }  // namespace
 
-extern "C" double sin(double x) noexcept {
-  static auto* const sine = real<double(double)>("sin");
-  return is_logger() ? std::nan("") : sine(x);
-}
-extern "C" double cos(double x) noexcept {
-  static auto* const cosine = real<double(double)>("cos");
-  return is_logger() ? std::nan("") : cosine(x);
-}
-extern "C" void sincos(double x, double* sine, double* cosine) noexcept {
-  static auto* const both = real<void(double, double*, double*)>("sincos");
-  if (!is_logger()) return both(x, sine, cosine);
-  *sine = *cosine = std::nan("");
+/// Sums that have been halved are multiplied by it. It is one of the few functions of the C library
+/// that sums depend on.
+extern "C" double ldexp(double x, int exponent) noexcept {
+  static auto* const real = reinterpret_cast<double (*)(double, int)>(dlsym(RTLD_NEXT, "ldexp"));
+  return is_logger() ? std::nan("") : real(x, exponent);
 }
