@@ -78,8 +78,8 @@ function contactsAt(run, view, row) {
     }));
 }
 
-// Finds and contacts of a row: {at: place on the map, corners, label, filled, strength}. Unlikely contacts are
-// faint.
+// Finds and contacts of a row: {at: place on the map, corners, label, filled, strength}. Unlikely contacts
+// are faint.
 export const signsAt = (run, view, row) => [...findsAt(run, view, row), ...contactsAt(run, view, row)];
 
 function paintSign(g, { at: [right, down], corners, filled }, colours) {

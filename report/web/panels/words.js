@@ -60,8 +60,8 @@ const MAP = {
   cross: 'Where an agent started.',
   diamond: 'Where an agent was when it found an object: the number of the object, and when.',
   triangle:
-    'A contact at its newest probability, from its newest report on: sensors have reported something there. ' +
-    'A filled one is confirmed.',
+    'A contact at its newest probability, from its newest report on: sensors have reported something ' +
+    'there. A filled one is confirmed.',
   square: 'A station: where an agent is at the end of the mission.',
   'hatched area': 'The target is 0 here: it wants no agent.',
 };

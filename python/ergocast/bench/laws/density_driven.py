@@ -10,7 +10,7 @@ agent-points of weight α = 1/(N M). Three stages make the distance of Wasserste
     A  The points in the order of ‖y_i − x_j‖² / w_i², until their weights sum up to α, have the mean
        g_j. The inputs u minimise Σ_h α ‖x_j(h) − g_j‖² + R ‖u(h)‖² over the steps h of a horizon.
     B  x_j takes the weight α from the nearest points that have some left.
-    C  Agents tell each other what they have taken.
+    C  Agents send each other what they have taken.
 
 Here vehicles are x_j(h + 1) = x_j(h) + dt u(h), so the minimum is u(0) = K (g_j − x_j) / dt with a number
 K < 1, and u is shortened to u_max. In stage C an agent always receives from all others. All agents take,
