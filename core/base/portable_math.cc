@@ -210,7 +210,8 @@ double pow(double x, double y) {
 double erf(double x) {
   const double a = std::abs(x);
   if (!(a < 6)) return std::isnan(x) ? x : std::copysign(1.0, x);
-  const auto j = static_cast<std::size_t>(a * 8 + 0.5);
+  const double nearest = std::floor(a * 8 + 0.5);
+  const auto j = static_cast<std::size_t>(nearest);
   if (j >= kErf.size()) return std::copysign(1.0, x);
   const double c = static_cast<double>(j) / 8;
   return std::copysign(kErf[j] + erf_beyond(c, a - c), x);
