@@ -121,6 +121,7 @@ RowTick RecordTables::replay(const RunData& past, const MissionKnowledge& known)
       facts_.held_ticks += row.counts ? 0 : 1;
     }
     observe(context, id, point.x_m, {point.detected, point.reported_cell});
+    row_places_m_.push_back(point.x_m);
     ++vehicles;
     former_end_ = {point.tick, id};
   });
@@ -163,6 +164,8 @@ void RecordTables::write_trajectory(const Context& context, const TickState& now
     if (after == next.vehicles.end() || std::pair(tick, id) <= former_end_) continue;
     const Seen seen =
         observe(context, id, vehicle.position_m, {vehicle.detected, vehicle.reported_cell});
+    // Two bodies may pass each other where the lines between their places cross.
+    if (!now.lost.contains(id)) row_places_m_.push_back(vehicle.position_m);
     if (context.row.is_last(context.ends.tick_count()))
       note_home(mission, id, after->second.position_m);
     line += std::to_string(tick) + ',';
@@ -218,7 +221,6 @@ RecordTables::Seen RecordTables::observe(const Context& context, AgentId id,
     observer_.see(mission, counted, entry->kind, x_m);
     if (in_cosines_) cosines_.see(*in_cosines_, counted, entry->kind, x_m);
   }
-  if (keeps_distance(mission)) row_places_m_.push_back(x_m);
   if (!covers || rests) return {0, kNoCell};
   seen.detected = facts_.finds.known(seen.detected);
   const double t_s = static_cast<double>(counted) * mission.timing.dt_s;
@@ -272,7 +274,8 @@ void RecordTables::note_target(const Mission& mission, Tick until) {
 void RecordTables::end_row(const Context& context) {
   if (!facts_.targets.empty()) note_target(context.mission(), context.row.tick + 1);
   if (context.row.counts) measures_.pass(context.row.counted());
-  facts_.nearest_m = std::min(facts_.nearest_m, least_distance_m(row_places_m_));
+  if (keeps_distance(context.mission()))
+    facts_.nearest_m = std::min(facts_.nearest_m, least_distance_m(row_places_m_));
   row_places_m_.clear();
   write_due_metrics(context);
 }

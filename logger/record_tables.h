@@ -173,7 +173,7 @@ class RecordTables {
   Observer cosines_;                   // observes in_cosines_, if there is one
   TeamMeasures measures_;
   Confirmations confirmations_;
-  std::vector<Eigen::Vector3d> row_places_m_;    // of all bodies, where a distance is kept
+  std::vector<Eigen::Vector3d> row_places_m_;    // of all bodies whose places were reported
   std::pair<Tick, AgentId> former_end_{-1, -1};  // a former process's last row, …
   MetricsRow former_metrics_{.tick = -1};        // … also of the metrics
   RunFacts facts_;

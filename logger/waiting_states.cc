@@ -47,6 +47,7 @@ int WaitingStates::add_lost(Tick tick, double dt_s) {
     between.detected = 0;
     between.reported_cell = kNoCell;
     state->second.vehicles.emplace(id, between);
+    state->second.lost.insert(id);
     ++lost;
   }
   return lost;

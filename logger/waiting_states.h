@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "core/base/ids.h"
 #include "team/messages.h"
@@ -23,6 +24,7 @@ struct TickState {
   Tick uncounted_ticks = 0;          ///< before it; as its first part has it
   std::int64_t roster_revision = 0;  ///< likewise
   std::map<AgentId, Vehicle> vehicles;
+  std::set<AgentId> lost;  ///< of these, the ones that add_lost() has put onto a line
 };
 
 class WaitingStates {

@@ -241,6 +241,9 @@ ergocast_script_test(deployed_over_ssh hosts hosts/deploy_ssh_test.sh
 ergocast_script_test(relay_sites hosts hosts/relay_sites.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
   ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto --lockstep --agents 8 --dt 0.5
   --duration 100 --delay-ms 5 --jitter-ms 4 --loss-percent 3)
+ergocast_script_test(relay_sites_with_drivers hosts hosts/relay_sites.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}
+  ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto --drivers --agents 4 --sites 2 --dt 0.1
+  --duration 20 --delay-ms 5 --jitter-ms 2 --loss-percent 5 --cut-s 0)
 ergocast_script_test(relay_wireguard hosts hosts/relay_wireguard_test.sh
   ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto)
 ergocast_script_test(tinc hosts hosts/tinc_test.sh

@@ -23,8 +23,8 @@
 
 namespace ergocast {
 
-/// Limit (Team): members' rows in a site's row, those of former members included. Beyond it: a
-/// further member's row is not summed up, and its coverage counts only at its own site.
+/// Members' rows in a site's row, those of former members included. Beyond it a further member's
+/// row is not summed up, and its coverage counts only at its own site.
 inline constexpr std::size_t kMostMemberRows = 1024;
 
 /// The name of a member's row.

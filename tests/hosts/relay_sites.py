@@ -322,6 +322,8 @@ def main():
                 raise SystemExit("the record over relays is not what the simulation gives")
             if figures["relayed"]["refused_by_sites"].get("tag", 0) == 0:
                 raise SystemExit("nothing forged was refused")
+        if options.drivers and options.loss_percent > 0 and figures["relayed"]["lost_positions"] == 0:
+            raise SystemExit("the record has no row for a lost position")
 
 
 if __name__ == "__main__":

@@ -90,5 +90,20 @@ TEST_P(RecordOfDrivers, HasLostPositionsOnTheLineBetweenOthers) {
   EXPECT_EQ(record.recorder.facts().lost_positions, 9);
 }
 
+TEST(RecordOfDriversThatKeepADistance, TakesItFromReportedPlacesOnly) {
+  // Robot 1 goes around robot 0 while its positions are lost, and the line leads through robot 0.
+  Record record(driven(2));
+  for (Tick tick = 0; tick < 30; ++tick) {
+    WorldState still = part_of(0, 2, tick), around = part_of(1, 2, tick);
+    still.vehicles[0].position_m = {500, 500, 0};
+    around.vehicles[0].position_m = {tick < 10 ? 400.0 : 600.0, 500, 0};
+    record.deliver(still, at(tick * 100ms));
+    if (tick < 10 || tick > 14) record.deliver(around, at(tick * 100ms));
+  }
+  record.recorder.stop("enough");
+  EXPECT_EQ(record.recorder.facts().lost_positions, 5);
+  EXPECT_EQ(record.recorder.facts().nearest_m, 100);
+}
+
 }  // namespace
 }  // namespace ergocast

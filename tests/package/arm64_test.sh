@@ -12,7 +12,7 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 [ "$(id -u)" = 0 ] || skip 'making a Debian system needs root'
 [ "$(uname -m)" = x86_64 ] || skip 'this test is for x86_64'
 for tool in debootstrap aarch64-linux-gnu-g++ qemu-aarch64-static; do
-  command -v "$tool" >/dev/null || skip "$tool is missing: packaging/packages-test.txt"
+  command -v "$tool" >/dev/null || skip "$tool is missing: packaging/packages-nightly.txt"
 done
 
 bin=$(cd "$1" && pwd)
