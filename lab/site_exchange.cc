@@ -39,6 +39,9 @@ void SiteExchange::send(std::size_t from, Tick tick) {
 }
 
 bool SiteExchange::is_lost(std::size_t from, std::size_t to, Tick tick) const {
+  constexpr std::size_t kCutSite = 1;
+  if (tick >= rules_.cut_from && tick < rules_.cut_until && (from == kCutSite || to == kCutSite))
+    return true;
   if (rules_.loss <= 0) return false;
   const auto link = static_cast<std::uint32_t>(from * sites_.size() + to);
   return uniform_pair(seed_, Purpose::kFault, link, static_cast<std::uint64_t>(tick)).x() <

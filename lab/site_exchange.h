@@ -22,6 +22,9 @@ struct SiteRules {
   /// tick ≡ ⌊s · period / S⌋ (mod period); others have the row in the same tick.
   Tick row_period_ticks = 1;
   double loss = 0;  ///< the share of rows that a receiving site loses
+  /// Site 1 is cut off: from the first of these ticks on, and before the second, no row passes
+  /// between it and another.
+  Tick cut_from = 0, cut_until = 0;
 };
 
 class SiteExchange {

@@ -326,6 +326,11 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vecto
   logger.write_summary(transport);
   if (const Finds& finds = recorder.facts().finds; finds.objects() > 0)
     spdlog::info("found {} of {} objects", finds.list().size(), finds.objects());
+  if (const std::int64_t missing = recorder.facts().missing_positions; missing > 0)
+    spdlog::warn(
+        "{} positions of vehicles did not arrive, and the record's phi^2 lacks them; for the "
+        "agents' own see `agents` in summary.json",
+        missing);
   spdlog::info("{} ticks recorded: {} ({})", recorder.facts().ticks, recorder.result(),
                recorder.reason());
   return logger.failed() ? kExitFailed : kExitDone;

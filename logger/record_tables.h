@@ -48,9 +48,10 @@ struct RunFacts {
   std::vector<TargetFacts> targets;
   /// The tick of the first row whose φ² is not a number: from there on the record has no coverage.
   std::optional<Tick> no_metric_from;
-  Tick gaps = 0;                    ///< ticks without rows before the last row
-  std::int64_t lost_positions = 0;  ///< of single vehicles, recorded on the line between others
-  bool halted = false;              ///< by an emergency stop: the last row stands still
+  Tick gaps = 0;                       ///< ticks without rows before the last row
+  std::int64_t lost_positions = 0;     ///< of single vehicles, recorded on the line between others
+  std::int64_t missing_positions = 0;  ///< of single vehicles, without which there is no row
+  bool halted = false;                 ///< by an emergency stop: the last row stands still
   /// Real time, as the world counts them; with several drivers, the largest count.
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;
   std::int64_t clamped_commands = 0;  ///< by the speed limit, likewise

@@ -272,12 +272,24 @@ bool Recorder::write_next_row(Instant now) {
   if (awaits_mission(state, now)) return false;
   if (has_drivers())
     tables_.facts().lost_positions += states_.add_lost(row_.tick + 1, mission().timing.dt_s);
+  tables_.facts().missing_positions += missing_positions(state, next);
   row_.uncounted = state.uncounted_ticks;
   row_.counts = next.uncounted_ticks <= state.uncounted_ticks;
   tables_.write(row_, state, next, known());
   row_.pass();
   states_.drop_before(row_.tick);
   return true;
+}
+
+/// How many members of the team have no row at this tick: a row needs the state after it, too.
+std::int64_t Recorder::missing_positions(const TickState& state, const TickState& next) const {
+  AgentId counted = kUnassigned;  // the roster ascends by number
+  return std::ranges::count_if(follower().roster(), [&](const RosterEntry& entry) {
+    const AgentId id = entry.author.agent;
+    if (id == counted || !entry.active_at(row_.tick)) return false;
+    counted = id;
+    return !state.vehicles.contains(id) || !next.vehicles.contains(id);
+  });
 }
 
 /// Lockstep: whether this state waits for the revision of the mission that its world knew. Its

@@ -122,6 +122,7 @@ class Recorder {
   MissionKnowledge known() const { return {follower(), reports_, amendments_}; }
   bool holds(Tick tick) const;
   bool has_drivers() const;
+  std::int64_t missing_positions(const TickState& state, const TickState& next) const;
   bool is_of_a_driver(const WorldState& part) const;
   bool all_rows_written() const {
     return me_.knows_mission() && row_.counted() >= me_.tick_count();

@@ -300,6 +300,7 @@ void add_wall_time(const RunFacts& facts, const RunContext& context, Json& summa
 void add_losses(const RunFacts& facts, const RunContext& context, Json& summary) {
   summary["gaps"] = facts.gaps;
   summary["lost_positions"] = facts.lost_positions;
+  summary["missing_positions"] = facts.missing_positions;
   if (facts.halted) summary["emergency_stop"] = true;
   summary["segments"] = context.segments;
   summary["interruptions"] = context.interruptions;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What it costs a team that agents receive one row of each other site instead of all members' rows,
 // for docs/network.md: φ² at the end against the same seeds where every agent receives all.
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -77,12 +78,37 @@ void run(const char* file, int seeds, const std::string& agents, const std::vect
   }
 }
 
+/// φ² of each seed at the end of a cut, and at the end of the mission.
+void run_cut(const char* file, int seeds, const std::string& agents, int sites, double from_s,
+             double until_s) {
+  std::vector<double> whole[2], divided[2];
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const Mission mission = mission_of(file, agents, seed);
+    const auto tick_of = [&](double t_s) { return std::lround(t_s / mission.timing.dt_s); };
+    for (const bool cut : {false, true}) {
+      lab::IdealTeam team(mission);
+      team.divide({sites, 1, 0, cut ? tick_of(from_s) : 0, cut ? tick_of(until_s) : 0});
+      auto& metrics = cut ? divided : whole;
+      for (const int end : {0, 1}) {
+        while (team.tick() < (end == 0 ? tick_of(until_s) : mission.timing.tick_count)) team.step();
+        metrics[end].push_back(team.metric());
+      }
+    }
+  }
+  for (const int end : {0, 1}) {
+    print(std::stoi(agents), std::to_string(sites).c_str(), end == 0 ? "cut ends" : "mission ends",
+          "site 1 cut off", divided[end], whole[end]);
+  }
+}
+
 }  // namespace
 }  // namespace ergocast::studies
 
 int main(int argc, char** argv) {
   if (argc < 5) {
-    std::fprintf(stderr, "usage: studies-network-sites SCENARIO SEEDS AGENTS SITES…\n");
+    std::fprintf(stderr,
+                 "usage: studies-network-sites SCENARIO SEEDS AGENTS SITES…\n"
+                 "       studies-network-sites cut SCENARIO SEEDS AGENTS SITES FROM_S UNTIL_S\n");
     return 2;
   }
   try {
@@ -90,6 +116,11 @@ int main(int argc, char** argv) {
         "| agents | sites | a row every [s] | rows | seeds | φ² (95 %%) | φ² against "
         "all-receive-all "
         "(95 %%) |\n|---|---|---|---|---|---|---|\n");
+    if (std::string(argv[1]) == "cut" && argc == 8) {
+      ergocast::studies::run_cut(argv[2], std::stoi(argv[3]), argv[4], std::stoi(argv[5]),
+                                 std::stod(argv[6]), std::stod(argv[7]));
+      return 0;
+    }
     std::vector<int> sites;
     for (int i = 4; i < argc; ++i) sites.push_back(std::stoi(argv[i]));
     ergocast::studies::run(argv[1], std::stoi(argv[2]), argv[3], sites);

@@ -54,6 +54,13 @@ TEST(SiteExchange, TheSameHoldsWhereKindsDiffer) {
   EXPECT_LT(distance_after(40, mission, {3, 1, 0}), 1e-6);
 }
 
+TEST(SiteExchange, ACutChangesNothingBeforeItBegins) {
+  const Mission mission = mission_of("random_count: 12");
+  EXPECT_LT(distance_after(20, mission, {3, 1, 0, 20, 40}), 1e-6);
+  EXPECT_GT(distance_after(60, mission, {3, 1, 0, 20, 40}), 1);
+  EXPECT_GT(distance_after(60, mission, {2, 1, 0, 20, 40}), 1);
+}
+
 TEST(SiteExchange, RareOrLostRowsChangeWhatAgentsKnow) {
   const Mission mission = mission_of("random_count: 12");
   EXPECT_GT(distance_after(40, mission, {4, 10, 0}), 1);

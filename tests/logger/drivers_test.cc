@@ -68,6 +68,7 @@ TEST_P(RecordOfDrivers, HasTheOthersRowsWhereThePartsOfOneAreMissing) {
   EXPECT_EQ(rows[2], 39);
   EXPECT_EQ(rows[1], 39 - 11) << "its last row before needs the state after, too";
   EXPECT_EQ(record.recorder.facts().gaps, 0);
+  EXPECT_EQ(record.recorder.facts().missing_positions, 11);
 }
 
 TEST_P(RecordOfDrivers, HasLostPositionsOnTheLineBetweenOthers) {
@@ -88,6 +89,7 @@ TEST_P(RecordOfDrivers, HasLostPositionsOnTheLineBetweenOthers) {
     EXPECT_NEAR(number(rows[i], 4), 500 + number(rows[i], 0), 1e-9) << rows[i];
   }
   EXPECT_EQ(record.recorder.facts().lost_positions, 9);
+  EXPECT_EQ(record.recorder.facts().missing_positions, 0);
 }
 
 TEST(RecordOfDriversThatKeepADistance, TakesItFromReportedPlacesOnly) {
