@@ -36,6 +36,11 @@ import ergocast
 run = ergocast.load("run")
 print(ergocast.__version__, len(run.trajectory), repr(float(run.trajectory.x_m.sum())))' >program
 cmp python program || fail "$(cat python) from Python, $(cat program) from the program"
+# The program `ergocast bench` calls this module of Debian's Python.
+env/bin/python -c 'import sys; from ergocast.bench.command import main; sys.exit(main(sys.argv[1:]))' \
+  --program "$bin/ergocast" --targets one_peak --agents 1 --seeds 1:1 --jobs 1 \
+  --published --out bench >said 2>&1 &&
+  grep -q '^one_peak,1,D2OC,1,' bench/rows.csv || { cat said; fail 'ergocast bench'; }
 env/bin/pip uninstall -y ergocast >/dev/null 2>&1 || fail 'pip uninstall'
 ! env/bin/python -c 'import ergocast' 2>/dev/null || fail 'uninstalled, and it is still there'
 echo "pip installs a package that simulates: $("$python" --version), $(cat python)"
