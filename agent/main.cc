@@ -40,26 +40,26 @@ class EncodingLog {
     if (refused == 0 || reported_) return;
     reported_ = true;
     spdlog::warn(
-        "coverage in another contribution_encoding than the plan's arrives and is refused: all "
-        "agents of a run must use the plan's");
+        "coverage with another contribution_encoding than the plan's was refused: all agents of a "
+        "run must use the plan's");
   }
 
  private:
   bool reported_ = false;
 };
 
-/// Logs each reason for which teammates' beacons were refused, once.
+/// Logs once each reason for which beacons of teammates were refused.
 class BeaconLog {
  public:
   void look(const Agent& agent) {
     const BeaconBook* const beacons = agent.beacons();
     if (beacons == nullptr) return;
     if (beacons->late() > 0 && !std::exchange(late_reported_, true))
-      spdlog::info("beacons of teammates overtake each other; overtaken beacons are ignored");
+      spdlog::info("beacons of teammates arrive out of order: those that arrive late are ignored");
     if (beacons->from_the_future() > 0 && !std::exchange(future_reported_, true))
       spdlog::warn(
-          "a teammate's beacon answers one that this agent has not sent yet, and is refused: does "
-          "another process send beacons under this agent's id?");
+          "a teammate's beacon was refused, because it answers one that this agent has not sent "
+          "yet: does another process send beacons under this agent's id?");
   }
 
  private:
@@ -128,9 +128,9 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check((CLI::Range(0, kMaxAgents - 1) | CLI::IsMember({"auto"})).description(""))
       ->type_name("N");
-  app.add_option(
-         "--kind", kind,
-         "Name of a kind in the scenario's agents { kind } (default: as planned for the number)")
+  app.add_option("--kind", kind,
+                 "Name of a kind in the scenario's agents { kind } (default: the one that the "
+                 "scenario plans for the number)")
       ->type_name("NAME");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   const AgentId requested_id = id == "auto" ? kUnassigned : std::stoi(id, nullptr, 0);

@@ -45,7 +45,8 @@ void SafeMotion::on(const WorldState& world) {
   if (filters_) bodies_.on(world);
 }
 
-/// A vehicle that no mission filters has no edges but those that reflect: its filter needs no hold.
+/// Where the mission filters no commands, a filter is made for the zones alone. It needs no hold
+/// ticks, because all edges of the domain reflect.
 void SafeMotion::note_zones(const std::vector<Zone>& zones, const Mission& mission) {
   if (zones == zones_) return;
   zones_ = zones;
@@ -53,7 +54,7 @@ void SafeMotion::note_zones(const std::vector<Zone>& zones, const Mission& missi
   separation_->set_zones(zones_);
 }
 
-/// Zones close and end between two lists, too.
+/// A zone may close or end without a new list of zones, so the ticks are compared each time.
 void SafeMotion::use_zones(Tick tick, const Mission& mission) {
   const auto in_use = [&](const Zone& zone) {
     return std::ranges::find(zones_in_use_, zone) != zones_in_use_.end();
@@ -131,8 +132,8 @@ Eigen::Vector3d SafeMotion::aim_mps(const Eigen::Vector3d& wanted_mps, const Age
   return wall_follower_->aim(step.tick, step.body_m, wanted_mps);
 }
 
-/// The filter goes slowly between two bodies if their uncertainties leave no gap: each counts
-/// twice.
+/// The way keeps twice the uncertainty from each body. Between two bodies whose uncertainties leave
+/// no gap, the filter would pass slowly.
 void SafeMotion::note_standing_bodies(const Mover& self, const AgentStep& step,
                                       const Participant& me) {
   if (undriven_.empty() || !keeps_distance(me.mission())) return;

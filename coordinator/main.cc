@@ -131,7 +131,8 @@ class MissionLog {
       return spdlog::info("zone {} has ended (amendment {})", to_hex(amendment.hash),
                           named_text(amendment));
     spdlog::info(
-        "zone {} is closed from tick {} on, and free from tick {} until tick {} (amendment {})",
+        "vehicles leave zone {} from tick {} on, and keep out from tick {} to tick {} (amendment "
+        "{})",
         to_hex(amendment.hash), zone->closed, zone->from, zone->end(), named_text(amendment));
   }
 

@@ -4,8 +4,8 @@
 // centimetres a second).
 //
 // The plane of a scenario is the azimuthal equidistant projection of WGS 84 around its origin, as
-// target/geo/local_plane.h has it: the distance s and the azimuth α of the geodesic from the origin
-// make (s sin α, s cos α).
+// target/geo/local_plane.h has it: (s sin α, s cos α) is the place that the geodesic from the
+// origin with the azimuth α reaches after the distance s.
 #pragma once
 
 #include <ergocast/core/base/result.h>
@@ -26,16 +26,16 @@ struct EarthPlace {
   bool has_altitude = true;
 };
 
-/// Beyond it a vehicle is taken to be lost, or the origin to be wrong [m].
+/// Farther from the origin than this [m], the vehicle counts as lost, or the origin as wrong.
 /// Limit (MAVLink): distance of a vehicle from the origin of its scenario [m]. Beyond it: its
 /// positions are not used.
 inline constexpr double kFarthestVehicle_m = 100e3;
 
-/// x and y of a place in the plane around `origin`, and its height above the origin; nothing
-/// farther away than kFarthestVehicle_m. Wrong by less than 1 mm.
+/// x and y of a place in the plane around `origin`, and its height above the origin. Returns
+/// nothing if the place is farther away than kFarthestVehicle_m. The error is less than 1 mm.
 std::optional<Eigen::Vector3d> local_m(const EarthPlace& origin, const EarthPlace& place);
 
-/// The place at such a point of the plane around `origin`: the inverse of local_m(). Wrong by less
+/// The place at a point of the plane around `origin`: the inverse of local_m(). The error is less
 /// than 1 mm.
 /// @pre |x_m| ≤ kFarthestVehicle_m
 EarthPlace place_at(const EarthPlace& origin, const Eigen::Vector2d& x_m);
@@ -45,7 +45,7 @@ Result<EarthPlace> read_place(std::string_view text);
 /// "1.5,-2" or "1.5,-2,0".
 Result<Eigen::Vector3d> read_point(std::string_view text);
 
-/// A vector in the scenario's directions as one in those of autopilots, and back.
+/// Converts a vector from the scenario's axes to those of autopilots, and back.
 inline Eigen::Vector3d ned_of(const Eigen::Vector3d& enu) { return {enu.y(), enu.x(), -enu.z()}; }
 inline Eigen::Vector3d enu_of(const Eigen::Vector3d& ned) { return {ned.y(), ned.x(), -ned.z()}; }
 

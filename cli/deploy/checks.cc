@@ -102,9 +102,9 @@ std::vector<Problem> problems_of(const Hosts& hosts, const DeployMission& missio
   if (mission.lockstep && !names_with(hosts, &DeployHost::driver).empty()) {
     problems.push_back(
         {file,
-         mission.name + " is in lockstep, and robots follow the clock: their drivers refuse it",
+         mission.name + " is in lockstep, and robots follow the clock: drivers refuse lockstep",
          "give --realtime, or write pace: REALTIME in the scenario, or give the role "
-         "sim in the place of driver"});
+         "sim instead of driver"});
   }
   if (apart && mission.url.ttl == 0) {
     LcmUrl wider = mission.url;

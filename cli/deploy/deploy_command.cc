@@ -146,8 +146,8 @@ void note_drivers(const Mission& mission, const std::vector<DeployHost>& hosts, 
   const bool driven = std::ranges::any_of(hosts, &DeployHost::driver);
   if (!driven || !uses_beacons(mission)) return;
   std::fprintf(stderr,
-               "note: each robot needs a driver of your own, which these files do not start: start "
-               "it beside agent N, as ergocast-example-driver --id N --lcm-url '%s'\n",
+               "note: each robot needs a driver of your own, and these files start none. Start one "
+               "beside agent N, such as ergocast-example-driver --id N --lcm-url '%s'\n",
                url.base().c_str());
 }
 

@@ -118,7 +118,7 @@ Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::strin
   if (!test.error.empty()) {
     return {
         {"peers", Level::kProblem, test.error,
-         "No probe could be sent, or none be listened for: no route, or a firewall.",
+         "This host could not send probes or listen for them: no route, or a firewall.",
          "ip route get " + url.group + "\nnft list ruleset   # as root: what drops outgoing udp?"}};
   }
   if (test.peers.empty()) return {nobody(url, test)};
@@ -129,7 +129,8 @@ Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::strin
         {"peers", Level::kProblem,
          std::to_string(test.only_received_by_others) +
              " more whose probes reach others, but not this host",
-         "One-way towards this host: other hosts receive one that it does not receive.",
+         "One-way towards this host: other hosts receive probes of a host that this host does not "
+         "receive.",
          "tcpdump -ni any udp port " + std::to_string(url.base_port) + "   # here: what arrives?"});
   }
   return findings;

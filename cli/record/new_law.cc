@@ -29,13 +29,13 @@ std::string of_kind(const Mission& mission, int kind) {
   return name.empty() ? "" : " of kind " + name;
 }
 
-/// Why nobody can wish for that; nothing if it can be set.
+/// Why this wish cannot be fulfilled; nothing if it can.
 std::optional<std::string> why_impossible(const Mission& mission, const LawWish& wish) {
   LawNumbers any;
   const auto has = [&](const AgentKind& kind) { return kind.name == wish.kind; };
   if (number_of(any, wish.field) == nullptr)
-    return "a running mission can get another u_max_mps, noise_intensity and noise_ceiling: name "
-           "one of these";
+    return "only u_max_mps, noise_intensity and noise_ceiling of a running mission can be changed: "
+           "name one of these";
   if (!wish.kind.empty() && std::ranges::none_of(mission.kinds, has))
     return "the mission has no kind \"" + wish.kind + "\": name one of its kinds, or none";
   if (wish.field == kCeiling && mission.law.perturbation == Perturbation::kConstant)

@@ -34,7 +34,8 @@ Result<ReplaySource> ReplaySource::open(const std::filesystem::path& run_dir,
 
 const ReplayedMessage* ReplaySource::refuse(Refusal why) {
   std::string remedy = "the file is damaged, or another version wrote it";
-  if (why == Refusal::kRun) remedy = "it is of another run: its log was copied into this folder";
+  if (why == Refusal::kRun)
+    remedy = "it belongs to another run, of which the log was copied into this folder";
   if (why == Refusal::kTag && !authenticator_.keyed())
     remedy = "the run had a mission key, or the file is damaged: give --key-file";
   if (why == Refusal::kTag && authenticator_.keyed()) remedy = "the run had another mission key";

@@ -16,46 +16,49 @@
 
 namespace ergocast {
 
-/// The ticks from … until − 1 do not count.
+/// The ticks `from`, …, `until` − 1 do not count.
 struct Hold {
   Tick from = 0;
-  Tick until = -1;  ///< −1: not named yet
+  Tick until = -1;  ///< −1: not announced yet
 
   bool open() const { return until < 0; }
-  /// The first tick after it; the greatest number while it is open.
+  /// The first tick after the hold; the greatest number while the hold is open.
   Tick end() const { return open() ? std::numeric_limits<Tick>::max() : until; }
   bool operator==(const Hold&) const = default;
 };
 
-/// The most holds of a mission: each travels in a part of MISSION.
+/// The greatest number of holds of a mission. Each one is sent in a part of MISSION.
 /// Limit (Team): pauses of a mission. Beyond it: `ergocast pause` ends with code 4.
 inline constexpr std::size_t kMaxHolds = 32;
 
-/// Whether each hold ends after it begins, none begins before the previous one has ended, only the
-/// last has no end, and there are at most kMaxHolds.
+/// Whether there are at most kMaxHolds, each ends after it begins, and none begins before the
+/// previous one has ended. Only the last may lack an end.
 bool are_holds(std::span<const Hold> holds);
 
 // ---- for holds that satisfy are_holds() ----
 
 bool is_held(std::span<const Hold> holds, Tick tick);
 
-/// How many of the ticks before `tick` count: the number of `tick` itself if it does. −1 stays −1.
+/// How many of the ticks before `tick` count. If `tick` itself counts, this is its number among
+/// those that count. −1 stays −1.
 Tick counted_ticks(std::span<const Hold> holds, Tick tick);
 
-/// The first tick before which `count` ticks count; the greatest number while that is open.
+/// The first tick before which `count` ticks count. The greatest number if that depends on a hold
+/// without an end.
 /// @pre count ≥ 0
 Tick tick_after(std::span<const Hold> holds, Tick count);
 
-/// Whether the last one has no end yet.
+/// Whether the last hold has no end yet.
 inline bool is_open(std::span<const Hold> holds) { return !holds.empty() && holds.back().open(); }
 
-/// How many ends of holds are named: an odd number while the mission is paused, or will be.
+/// How many beginnings and ends of holds are announced. The number is odd while the last hold has
+/// no end: the mission is paused, or will be.
 inline int named_changes(std::span<const Hold> holds) {
   return 2 * static_cast<int>(holds.size()) - (is_open(holds) ? 1 : 0);
 }
 
-/// The roster with ticks that count: an entry is active at the count of a tick that counts if it is
-/// active at that tick.
+/// The roster with numbers of counted ticks in place of the world's ticks. An entry is active at
+/// the number of a tick that counts if it is active at that tick.
 std::vector<RosterEntry> in_counted_ticks(std::vector<RosterEntry> roster,
                                           std::span<const Hold> holds);
 

@@ -15,7 +15,7 @@ class Socket {
  public:
   Socket(int family, int type, int protocol = 0)
       : fd_(socket(family, type | SOCK_CLOEXEC, protocol)) {}
-  /// Takes over an open one.
+  /// Takes over an open socket.
   explicit Socket(int fd) : fd_(fd) {}
   Socket(Socket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   Socket& operator=(Socket&& other) noexcept {
@@ -31,10 +31,10 @@ class Socket {
   int fd_;
 };
 
-/// The error text when the kernel refused a socket with `error`, with the remedy.
+/// What to print when the kernel has refused a socket with `error`: the problem and the remedy.
 std::string no_socket(int error);
 
-/// @pre `ip` is an IPv4 address, as LcmUrl has checked its group
+/// @pre `ip` is an IPv4 address. LcmUrl checks its group for this.
 sockaddr_in address_of(const std::string& ip, int port);
 
 }  // namespace ergocast

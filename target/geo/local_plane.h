@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Places on the earth (WGS 84) and the plane of a scenario, whose point (0, 0) is a place.
+// Converts between places on the earth (WGS 84) and a scenario's plane around such a place.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,21 +7,22 @@
 
 namespace ergocast {
 
-/// North and east of the equator and of Greenwich count as positive.
+/// Latitudes north of the equator and longitudes east of Greenwich are positive.
 struct GeoPlace {
   double latitude_deg = 0;   ///< −90 to 90
   double longitude_deg = 0;  ///< −180 to 180
 };
 
-/// How far from its origin a plane is used [m]. An area there is wrong by 0.4 %.
+/// The greatest distance from its origin at which a plane is used [m]. The error of an area there
+/// is 0.4 %.
 /// Limit (Files of a scenario): distance of a place in a file of polygons from the origin [m].
 /// Beyond it: the scenario is refused.
 inline constexpr double kFarthest_m = 1e6;
 
-/// The azimuthal equidistant projection on the ellipsoid: x is east, y is north; distances and
+/// The azimuthal equidistant projection on the ellipsoid: x is east, y is north. Distances and
 /// directions from the origin are true, and every place of the earth has coordinates. At a distance
-/// d, lengths across the direction to the origin are longer than true by d²/(6 R²): 4e-7 at 10 km,
-/// 4e-5 at 100 km.
+/// d from the origin, lengths at right angles to the direction of the origin are too great by the
+/// share d²/(6 R²): 4e-7 at 10 km, 4e-5 at 100 km.
 class LocalPlane {
  public:
   /// @pre within the limits of GeoPlace

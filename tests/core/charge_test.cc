@@ -6,7 +6,7 @@
 namespace ergocast {
 namespace {
 
-/// Used up in 1000 s, and full again in 500 s.
+/// It is empty after 1000 s of use, and full again after 500 s at the station.
 constexpr Battery kBattery{.capacity_wh = 10, .power_w = 36, .charge_w = 72, .reserve = 0.2};
 constexpr double kDt_s = 0.5;
 
@@ -20,7 +20,7 @@ TEST(Charge, IsUsedAwayFromTheStationAndComesBackThere) {
   EXPECT_EQ(charge_ppm_of(0.1234567), 123456);
 }
 
-/// Lets it use `per_s` of the capacity for `ticks`.
+/// Uses the share `per_s` of the capacity in each second of `ticks` ticks.
 std::int32_t use(ChargeWatch& watch, std::int32_t charge_ppm, double per_s, Tick from, Tick ticks) {
   for (Tick tick = from; tick < from + ticks; ++tick) {
     watch.note(tick, charge_ppm);
@@ -32,7 +32,7 @@ std::int32_t use(ChargeWatch& watch, std::int32_t charge_ppm, double per_s, Tick
 TEST(Charge, SendsTheAgentHomeWhenTheWayNeedsWhatIsAboveTheReserve) {
   ChargeWatch watch(kBattery, kDt_s);
   watch.note(0, 300'001);
-  EXPECT_FALSE(watch.must_go(100)) << "which need 0.1";
+  EXPECT_FALSE(watch.must_go(100)) << "the way needs 0.1 of the capacity, and the reserve is 0.2";
   watch.note(1, 300'000);
   EXPECT_TRUE(watch.must_go(100));
   watch.note(2, 900'000);
@@ -45,7 +45,7 @@ TEST(Charge, CountsTheUseThatWasMeasured) {
   ChargeWatch watch(kBattery, kDt_s);
   EXPECT_DOUBLE_EQ(watch.use_per_s(), 0.001);
   const std::int32_t left_ppm = use(watch, kWhole_ppm, 0.002, 0, 40);
-  EXPECT_DOUBLE_EQ(watch.use_per_s(), 0.001) << "4 % are too few to tell";
+  EXPECT_DOUBLE_EQ(watch.use_per_s(), 0.001) << "a use of 4 % is too little to measure by";
   use(watch, left_ppm, 0.002, 40, 200);
   EXPECT_NEAR(watch.use_per_s(), 0.002, 1e-6);
   watch.note(240, 760'000);
@@ -63,7 +63,7 @@ TEST(Charge, BeginsToMeasureAnewFromTheHighestChargeOn) {
   EXPECT_NEAR(watch.use_per_s(), 0.003, 5e-5);
 }
 
-/// A battery recovers by a percent or two when the vehicle brakes.
+/// The charge of a battery rises by a percent or two when the vehicle brakes.
 TEST(Charge, IsNotMeasuredAnewForALittleRise) {
   ChargeWatch watch(kBattery, kDt_s);
   use(watch, kWhole_ppm, 0.004, 0, 300);

@@ -174,7 +174,7 @@ TEST_F(RobotsWithTheirOwnDrivers, GoOnBesideBeaconsOutOfOrderAndFromTheFuture) {
   Stranger stranger(kUrl);
   EXPECT_TRUE(eventually([&] {
     stranger.send(Bus::kSwarm, late);
-    return first.printed().find("beacons of teammates overtake each other") != std::string::npos;
+    return first.printed().find("beacons of teammates arrive out of order") != std::string::npos;
   })) << first.printed();
   // It echoes a message that no process has sent.
   Beacon early = late;

@@ -47,7 +47,7 @@ TEST_P(ZoneInEitherPace, SendsTheTeamOutAndKeepsItOut) {
   ASSERT_TRUE(moves_on(200000)) << printed();
   ASSERT_EQ(amend({"--list"}), 0) << output();
   EXPECT_TRUE(answered("amendment 0, zone ")) << output();
-  EXPECT_TRUE(logs("coordinator", " is closed from tick ")) << log_of("coordinator");
+  EXPECT_TRUE(logs("coordinator", "vehicles leave zone ")) << log_of("coordinator");
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   ASSERT_TRUE(eventually([&] { return !mission.running(); })) << printed();
   const std::map<Tick, int> inside = counts_inside();
