@@ -131,6 +131,9 @@ std::optional<Refusal> CoverageExchange::merge(const Contribution& theirs, int k
       last_update_[theirs.author()] = counted;
       break;
     case Merge::kStale:
+      // A battery that is charged adds no step, and what its agent sends meanwhile is an update.
+      if (Tick* const last = last_update_.find(theirs.author()))
+        *last = std::max(*last, std::min(counted, theirs.header.tick));
       break;
   }
   return std::nullopt;

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/law/look_ahead.h"
+#include "core/mission/station.h"
+#include "core/motion/home.h"
 
 namespace ergocast {
 
@@ -16,8 +18,8 @@ Guidance::Guidance(const Mission& mission, const RosterEntry& self, const LawMak
       law_(laws(mission, self.kind)),
       law_numbers_(law_numbers(mission, self.kind, nullptr)),
       needs_(law_->needs()),
-      needs_state_(needs_.places ||
-                   (needs_.coverage && looks_ahead(mission) && mission.dead_reckoning)),
+      needs_state_(needs_.places || (needs_.coverage && looks_ahead(mission) &&
+                                     (mission.dead_reckoning || any_battery(mission)))),
       metric_(mission),
       foreseen_(Coefficients::Zero(mission.basis.mode_count())) {
   if (needs_.coverage && looks_ahead(mission)) forecast_.emplace(mission, self.author);
@@ -44,7 +46,8 @@ void Guidance::on(const WorldState& world, const RadioRange& radio, const Partic
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     if (!radio.receives(id_, vehicle.id)) continue;
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
-    forecast_->see(vehicle.id, me.counted(tick), vehicle.position_m);
+    const bool rests = charges(me.mission(), vehicle.id, vehicle.position_m, vehicle.velocity_mps);
+    forecast_->see(vehicle.id, me.counted(tick), vehicle.position_m, rests);
   }
 }
 

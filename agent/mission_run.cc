@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/mission/hold.h"
+#include "core/motion/home.h"
 
 namespace ergocast {
 namespace {
@@ -239,7 +240,11 @@ std::optional<MissionOver> MissionRun::begin_tick(Participant& me, Instant now, 
   motion_.bodies().begin(own, step_, me, out);
   // A restarted world may be a tick behind the roster. Our predecessor has covered that tick.
   const bool counts = step_.tick >= active_from_ && !step_.held;
-  const bool covers = counts && !step_.recalled && !ends_.rests(mission, me.id(), step_.counted);
+  const bool is_first = exchange_.table().steps_held(me.author()).value_or(0) == 0;
+  const bool charges =
+      !is_first && ergocast::charges(mission, me.id(), own.position_m, own.velocity_mps);
+  const bool covers =
+      counts && !step_.recalled && !charges && !ends_.rests(mission, me.id(), step_.counted);
   // A pause that ended meanwhile is not part of the line.
   const bool goes_on = step_.counted - before.tick == step_.tick - tick_before;
   if (std::exchange(covered_, covers) && covers && goes_on) add_lost_samples(before, mission);

@@ -120,6 +120,7 @@ void Invariants::check(double t_s, const WorldState& world) {
   check_ended(t_s, world);
   for (const Vehicle& vehicle : world.vehicles_in_part()) {
     places_m_[vehicle.id] = vehicle.position_m;
+    note_charge(vehicle, world.header.tick);
     if (!mission_.walls.empty()) check_wall(t_s, vehicle);
     if (mission_.domain.contains(vehicle.position_m)) continue;
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),

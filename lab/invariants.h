@@ -197,9 +197,10 @@ class Invariants {
   /// it for each MISSION, because one of them admits the agent and names its first tick.
   void received(const TableView& listener, const Message& message);
   /// An agent has begun the tick `holder.answered`, and may not have answered it yet. It has more
-  /// steps than before if the tick counts, and no more if not, or if it was recalled. In lockstep a
-  /// recalled point is at home after the time that the longest way takes, if no zone is closed.
-  /// Call it for each tick, before the agent receives anything else.
+  /// steps than before if the tick counts, and no more if not, if it was recalled, or if the
+  /// battery of its vehicle is charged at its station. In lockstep a recalled point is at home
+  /// after the time that the longest way takes, if no zone is closed. Call it for each tick, before
+  /// the agent receives anything else.
   void began(double t_s, const TableView& holder);
   /// An agent has answered a tick. What it holds never shrinks; no author's steps exceed the ticks
   /// so far that count; c_k is Σ S / Σ elapsed of what it holds; c_00 = 1. Where its law looks
@@ -306,6 +307,8 @@ class Invariants {
   void check_home(double t_s, const WorldState& world);
   bool counts_for_home(AgentId id) const;
   void check_batteries(double t_s, const WorldState& world);
+  void note_charge(const Vehicle& vehicle, Tick tick);
+  std::optional<bool> charged(AgentId id, Tick tick) const;
   void check_charge(double t_s, const Vehicle& vehicle, const Battery& battery, Tick tick,
                     double apart_m);
   double nearest_to_station_m(const Vehicle& vehicle) const;
@@ -354,6 +357,8 @@ class Invariants {
   std::map<Author, Tick> commanded_;   // the newest tick that a command has answered
   std::map<AgentId, Tick> home_from_;  // where agents have stations
   std::map<AgentId, std::pair<Tick, std::int32_t>> charges_;  // the newest, of a battery
+  /// Whether a battery is charged, at the newest ticks; nothing: states of two worlds differ.
+  std::map<AgentId, std::map<Tick, std::optional<bool>>> charged_;
   std::map<Author, Tick> rested_;                // counted ticks since an agent was recalled
   std::map<AgentId, Eigen::Vector3d> places_m_;  // in lockstep, of the newest state
   StateAssembler state_;                         // where a distance is kept

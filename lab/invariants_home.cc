@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "core/mission/kinds.h"
+#include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/vehicle.h"
 #include "lab/invariants.h"
+#include "lab/shadow_equations.h"
 
 namespace ergocast::lab {
 namespace {
@@ -182,6 +184,25 @@ void Invariants::check_batteries(double t_s, const WorldState& world) {
       violate(t_s, Invariant::kEmptyOnlyAtHome, "vehicle " + std::to_string(vehicle.id),
               text("is empty ", apart_m, " m from its station at tick ", world.header.tick));
   }
+}
+
+/// A restarted world may report a tick again, without the velocities.
+void Invariants::note_charge(const Vehicle& vehicle, Tick tick) {
+  constexpr std::size_t kTicksKept = 256;
+  if (!any_battery(mission_)) return;
+  auto& ticks = charged_[vehicle.id];
+  const bool now = is_charged(mission_, vehicle);
+  const auto [at, is_new] = ticks.try_emplace(tick, now);
+  if (!is_new && at->second != now) at->second.reset();
+  if (ticks.size() > kTicksKept) ticks.erase(ticks.begin());
+}
+
+/// Nothing if that is not known; false if the mission has no batteries.
+std::optional<bool> Invariants::charged(AgentId id, Tick tick) const {
+  const auto ticks = charged_.find(id);
+  if (ticks == charged_.end()) return false;
+  const auto at = ticks->second.find(tick);
+  return at == ticks->second.end() ? std::nullopt : at->second;
 }
 
 /// Compares the charge with that of the tick before. At the edge of its station it may have been

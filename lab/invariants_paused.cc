@@ -88,12 +88,13 @@ void Invariants::began(double t_s, const TableView& holder) {
   if (recalled && any_zone_closed_at(holder.answered)) rested_[holder.self] = 0;
   if (!recalled) rested_.erase(holder.self);
   check_recalled_home(t_s, holder);
-  const bool idle = by_plan || recalled;
+  const std::optional<bool> charged = this->charged(holder.self.agent, holder.answered);
+  const bool idle = by_plan || recalled || (before > 0 && charged == true);
   if ((idle || (exact && recalled_in_truth(holder))) && steps > before) {
     violate(t_s, Invariant::kNothingCountsWhilePaused, name_of(holder.self),
             text("has ", steps - before, " more steps at tick ", holder.answered));
   }
-  if (!idle && before > 0 && steps == before) {
+  if (!idle && charged && before > 0 && steps == before) {
     violate(t_s, Invariant::kWhatIsNotPausedCounts, name_of(holder.self),
             text("has no step of tick ", holder.answered));
   }

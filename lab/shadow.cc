@@ -57,12 +57,6 @@ bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, T
          });
 }
 
-bool has_forecast(const Mission& mission, const TableView& agent, const RosterEntry& entry) {
-  return entry.author != agent.self && !is_forgotten(entry, agent) &&
-         is_newest(*agent.roster, entry, agent.counted) && !is_recalled(entry, agent) &&
-         agent.counted < covers_until(mission, entry.author.agent, agent.amendments, agent.counted);
-}
-
 }  // namespace
 
 // ---- what was received ----
@@ -122,11 +116,24 @@ void Shadow::note_places(const Mission& mission, const TableView& agent, const W
         timing.pace == Pace::kLockstep || vehicle.answered_tick >= state_tick - hold;
     if (!driven || vehicle.id == agent.self.agent) continue;
     if (!in_range(mission, agent.self.agent, vehicle.id)) continue;
+    Charge& charge = charges_[vehicle.id];
+    if (tick <= charge.tick) continue;
+    charge = {tick, is_charged(mission, vehicle)};
+    if (charge.goes_on) continue;
     std::deque<Place>& places = places_[vehicle.id];
     if (!places.empty() && tick <= places.back().tick) continue;
     places.push_back({tick, vehicle.position_m});
     if (places.size() > most) places.pop_front();
   }
+}
+
+bool Shadow::has_forecast(const Mission& mission, const TableView& agent,
+                          const RosterEntry& entry) const {
+  const auto charge = charges_.find(entry.author.agent);
+  if (charge != charges_.end() && charge->second.goes_on) return false;
+  return entry.author != agent.self && !is_forgotten(entry, agent) &&
+         is_newest(*agent.roster, entry, agent.counted) && !is_recalled(entry, agent) &&
+         agent.counted < covers_until(mission, entry.author.agent, agent.amendments, agent.counted);
 }
 
 bool Shadow::in_range(const Mission& mission, AgentId one, AgentId other) const {

@@ -50,6 +50,11 @@ class Shadow {
   Coefficients foreseen(const Mission& mission, const TableView& agent) const;
 
  private:
+  /// Whether a teammate's battery is charged, and since when that is known.
+  struct Charge {
+    Tick tick = -1;
+    bool goes_on = false;
+  };
   struct Place {
     Tick tick;
     Eigen::Vector3d x_m;
@@ -86,6 +91,7 @@ class Shadow {
   void take(const Mission& mission, const TableView& agent, const Contribution& theirs);
   bool gains_are_possible(const Mission& mission, const TableView& agent, const Block& block) const;
   void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
+  bool has_forecast(const Mission& mission, const TableView& agent, const RosterEntry& entry) const;
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   static std::vector<Place> without_gaps(const std::deque<Place>& places, Tick active_from);
   void dead_reckon(const RosterEntry& entry, Row& row) const;
@@ -110,6 +116,7 @@ class Shadow {
   std::vector<double> own_sums_s_;  // … the sums of its first block, …
   Tick own_halvings_ = 0;           // … and how often they had been halved
   std::map<Author, Row> rows_;
+  std::map<AgentId, Charge> charges_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest are dropped
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // for the radio range, of the newest …
   Tick positions_tick_ = -1;                        // … world state

@@ -85,4 +85,36 @@ Coefficients seen_at(const Mission& mission, int kind, const Eigen::Vector3d& x_
   return gain;
 }
 
+bool is_charged(const Mission& mission, const Vehicle& vehicle) {
+  int place = vehicle.id;
+  for (const AgentKind& kind : mission.kinds) {
+    if (place >= kind.count) {
+      place -= kind.count;
+      continue;
+    }
+    if (kind.battery.capacity_wh == 0) return false;
+    const auto& stations_m = kind.stations_m;
+    const Eigen::Vector3d station_m =
+        stations_m.size() == 1 ? stations_m[0] : stations_m[static_cast<std::size_t>(place)];
+    const VehicleLimits& limits = kind.vehicle.value_or(mission.vehicle);
+    const double limit_mps =
+        kind.speed_limit_mps > 0 ? kind.speed_limit_mps : mission.speed_limit_mps;
+    const double v_mps = limit_mps > 0 ? std::min(kind.u_max_mps, limit_mps) : kind.u_max_mps;
+    const double dt_s = mission.timing.dt_s;
+    const double most_m = 2 * v_mps * dt_s + 12 * mission.disturbance_intensity * std::sqrt(dt_s) +
+                          2 * mission.separation.position_error_m;
+    Eigen::Vector3d at_m = vehicle.position_m;
+    if (limits.kind == VehicleKind::kFixedWing) {
+      // It circles to the left around a place that is a radius away.
+      const Eigen::Vector3d& v = vehicle.velocity_mps;
+      at_m += Eigen::Vector3d(-v.y(), v.x(), 0) / v.head<2>().norm() * limits.min_speed_mps /
+              limits.max_turn_radps;
+    } else if (vehicle.velocity_mps.norm() >= v_mps / 2) {
+      return false;
+    }
+    return (at_m - station_m).norm() <= most_m;
+  }
+  return false;
+}
+
 }  // namespace ergocast::lab

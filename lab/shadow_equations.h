@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The horizon, weights and gains of a forecast, computed a second time by the equations of
-// core/law/look_ahead.h. They share no code with core/.
+// core/law/look_ahead.h, and which batteries are charged. They share no code with core/.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,6 +8,7 @@
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
 #include "core/mission/mission.h"
+#include "team/messages.h"
 
 namespace ergocast::lab {
 
@@ -22,5 +23,10 @@ double weight_s(const Mission& mission, double h_s, Tick span, Tick age, Tick pe
 
 /// f(x) dt of every mode as the sensor of `kind` sees it: a Gaussian blurs each cosine by itself.
 Coefficients seen_at(const Mission& mission, int kind, const Eigen::Vector3d& x_m);
+
+/// Whether a vehicle's battery is charged, as a state of the world shows it: at most two steps,
+/// with twice what the world and its errors may add, from its station, and slower than half its
+/// speed.
+bool is_charged(const Mission& mission, const Vehicle& vehicle);
 
 }  // namespace ergocast::lab

@@ -9,6 +9,7 @@
 #include "core/base/require.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
+#include "core/motion/home.h"
 #include "core/motion/starts.h"
 
 namespace ergocast {
@@ -120,7 +121,8 @@ RowTick RecordTables::replay(const RunData& past, const MissionKnowledge& known)
       ++facts_.ticks;
       facts_.held_ticks += row.counts ? 0 : 1;
     }
-    observe(context, id, point.x_m, {point.detected, point.reported_cell});
+    observe(context, id, {point.x_m, came_with_mps(past.tracks.at(id), point.tick)},
+            {point.detected, point.reported_cell});
     row_places_m_.push_back(point.x_m);
     ++vehicles;
     former_end_ = {point.tick, id};
@@ -162,8 +164,8 @@ void RecordTables::write_trajectory(const Context& context, const TickState& now
   for (const auto& [id, vehicle] : now.vehicles) {
     const auto after = next.vehicles.find(id);
     if (after == next.vehicles.end() || std::pair(tick, id) <= former_end_) continue;
-    const Seen seen =
-        observe(context, id, vehicle.position_m, {vehicle.detected, vehicle.reported_cell});
+    const Seen seen = observe(context, id, {vehicle.position_m, vehicle.velocity_mps},
+                              {vehicle.detected, vehicle.reported_cell});
     // Two bodies may pass each other where the lines between their places cross.
     if (!now.lost.contains(id)) row_places_m_.push_back(vehicle.position_m);
     if (context.row.is_last(context.ends.tick_count()))
@@ -207,11 +209,15 @@ bool RecordTables::is_recalled(const Context& context, AgentId id) {
 }
 
 /// Returns what of `seen` counts: an agent that covers nothing finds nothing.
-RecordTables::Seen RecordTables::observe(const Context& context, AgentId id,
-                                         const Eigen::Vector3d& x_m, Seen seen) {
+RecordTables::Seen RecordTables::observe(const Context& context, AgentId id, const Pose& at,
+                                         Seen seen) {
   const Mission& mission = context.mission();
+  const Eigen::Vector3d& x_m = at.x_m;
   const RosterEntry* entry = member(context.known.follower, id, context.row.tick);
-  const bool covers = entry != nullptr && context.row.counts && !is_recalled(context, id);
+  const bool charging = entry != nullptr && entry->active_from < context.row.tick &&
+                        charges(mission, id, x_m, at.v_mps);
+  const bool covers =
+      entry != nullptr && context.row.counts && !is_recalled(context, id) && !charging;
   const Tick counted = context.row.counted();
   const bool rests = context.ends.rests(mission, id, counted);
   measures_.see(id, counted, x_m, covers && !rests);

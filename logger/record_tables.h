@@ -153,12 +153,16 @@ class RecordTables {
   void write_trajectory(const Context& context, const TickState& now, const TickState& next);
   void note_home(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m);
   bool is_recalled(const Context& context, AgentId id);
+  /// Where a vehicle is, and the velocity with which it came there.
+  struct Pose {
+    Eigen::Vector3d x_m, v_mps;
+  };
   /// What a sensor saw in a row.
   struct Seen {
     ObjectSet detected;
     std::int32_t cell;  // kNoCell: it reported nothing
   };
-  Seen observe(const Context& context, AgentId id, const Eigen::Vector3d& x_m, Seen seen);
+  Seen observe(const Context& context, AgentId id, const Pose& at, Seen seen);
   void begin_row(const Context& context);
   void begin_target(const Context& context, const ReceivedAmendment* change);
   void note_target(const Mission& mission, Tick until);

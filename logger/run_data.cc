@@ -8,12 +8,15 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "core/mission/kinds.h"
+#include "core/mission/station.h"
+#include "core/motion/home.h"
 #include "logger/amendments_file.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
@@ -158,10 +161,25 @@ std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
 
 }  // namespace
 
+Eigen::Vector3d came_with_mps(const Track& track, Tick tick) {
+  const auto at = std::ranges::lower_bound(track, tick, {}, &TrackPoint::tick);
+  if (at == track.begin() || std::prev(at)->tick + 1 != tick)
+    return Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  return std::prev(at)->v_mps;
+}
+
 bool RecordedRests::rests(AgentId id, Tick tick) const {
   const auto recall = run_.recalls.find(id);
   return (recall != run_.recalls.end() && tick >= recall->second) ||
-         ends_.rests(mission_, id, counted_ticks(run_.holds(), tick));
+         ends_.rests(mission_, id, counted_ticks(run_.holds(), tick)) || charges(id, tick);
+}
+
+bool RecordedRests::charges(AgentId id, Tick tick) const {
+  if (battery_of(mission_, id) == nullptr) return false;
+  const Track& track = run_.tracks.at(id);
+  const auto at = std::ranges::lower_bound(track, tick, {}, &TrackPoint::tick);
+  return at != track.end() && at->tick == tick &&
+         ergocast::charges(mission_, id, at->x_m, came_with_mps(track, tick));
 }
 
 double RunData::end_s() const {

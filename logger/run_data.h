@@ -60,8 +60,12 @@ struct RunData {
   double end_s() const;  ///< time of the last row, 0 if there is none
 };
 
-/// Which agents of a record rest at which tick: by the plan and its other ends, or because they
-/// were recalled.
+/// The velocity with which the vehicle of a track came to its place at a tick: that of the row
+/// before. Infinite if there is no such row. @pre the track ascends
+Eigen::Vector3d came_with_mps(const Track& track, Tick tick);
+
+/// Which agents of a record rest at which tick: by the plan and its other ends, because they were
+/// recalled, or because their batteries are charged.
 class RecordedRests {
  public:
   /// @param run      outlives this object, as `mission` does
@@ -71,6 +75,8 @@ class RecordedRests {
   bool rests(AgentId id, Tick tick) const;
 
  private:
+  bool charges(AgentId id, Tick tick) const;
+
   const RunData& run_;
   const Mission& mission_;
   EndSchedule ends_;

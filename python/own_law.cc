@@ -10,6 +10,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
+#include "core/motion/home.h"
 #include "logger/observer.h"
 #include "plan/plan.h"
 #include "python/arrays.h"
@@ -75,11 +76,15 @@ class TeamLaw {
   }
 
   void ask(Tick tick, std::span<const TeamPlace> places) {
-    tick_ = tick;
     failed_ = true;
-    places_.assign(places.begin(), places.end());
+    const std::vector<TeamPlace> before = std::exchange(places_, {places.begin(), places.end()});
+    const double passed_s = static_cast<double>(tick - tick_) * mission_.timing.dt_s;
+    tick_ = tick;
     for (const auto& [id, x_m] : places_) {
-      if (!rests(mission_, id, tick))
+      const auto at = std::ranges::find(before, id, &TeamPlace::agent);
+      const bool charging =
+          at != before.end() && charges(mission_, id, x_m, (x_m - at->x_m) / passed_s);
+      if (!rests(mission_, id, tick) && !charging)
         observer_.see(mission_, tick, planned_kind(mission_, id), x_m);
     }
     const py::gil_scoped_acquire python;

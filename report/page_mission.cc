@@ -12,6 +12,7 @@
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
+#include "core/motion/home.h"
 #include "core/motion/vehicle.h"
 #include "report/base64.h"
 #include "report/conventions.h"
@@ -129,7 +130,12 @@ Json stations_of(const Mission& mission) {
     list.push_back({{"id", id},
                     {"at_m", rounded_list((*station_m - mission.domain.origin_m).head(axes), 9)},
                     {"rest_from", rest_from(mission, id)}});
-    if (battery_of(mission, id) != nullptr) list.back()["battery"] = true;
+    if (battery_of(mission, id) == nullptr) continue;
+    list.back()["battery"] = true;
+    // Without velocities the page cannot see where a fixed wing circles.
+    if (motion_of(mission, id).vehicle.kind == VehicleKind::kFixedWing) continue;
+    list.back()["charges"] = {{"within_m", home_m(mission, id)},
+                              {"below_mps", home_speed_mps(mission, id) / 2}};
   }
   return list;
 }

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "core/base/require.h"
-#include "core/mission/station.h"
 #include "logger/slope.h"
 
 namespace ergocast::studies {
@@ -72,10 +71,9 @@ StudyMeasure::StudyMeasure(const Mission& mission)
   }
 }
 
-void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m) {
+void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m, bool covers) {
   ++positions_;
   const auto id = static_cast<AgentId>(agent);
-  const bool covers = !rests(mission_, id, tick);
   team_.see(id, tick, x_m, covers);
   if (covers) {
     const ObjectSet detected = objects_.detected(id, tick, x_m);

@@ -20,7 +20,8 @@ class StudyMeasure {
   explicit StudyMeasure(const Mission& mission);
 
   /// Agent `agent` was at `x_m` at `tick`; all of a tick before those of the next.
-  void position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m);
+  /// @param covers  whether it does not rest
+  void position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m, bool covers = true);
   /// All positions of `tick` are known.
   void pass(Tick tick) { team_.pass(tick); }
   /// One command of one agent, as its vehicle executes it.

@@ -14,6 +14,7 @@
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
+#include "core/motion/home.h"
 #include "lab/ideal_team.h"
 #include "lab/simulation.h"
 #include "logger/null_buffer.h"
@@ -51,8 +52,7 @@ class Judge {
   explicit Judge(const Mission& judged) : mission_(judged) { observer_.begin(judged); }
 
   void see(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m) {
-    const auto id = static_cast<AgentId>(agent);
-    if (!rests(mission_, id, tick)) observer_.see(mission_, tick, planned_kind(mission_, id), x_m);
+    observer_.see(mission_, tick, planned_kind(mission_, static_cast<AgentId>(agent)), x_m);
   }
   double metric() const { return observer_.metric(mission_); }
 
@@ -109,8 +109,11 @@ class Observer : public lab::SimulationObserver {
       if (tick > 0) measure_.command(vehicles_[i].velocity_mps);
       if (ended) continue;
       const Eigen::Vector3d& x_m = vehicles_[i].position_m;
-      measure_.position(i, tick, x_m);
-      judge_.see(i, tick, x_m);
+      const auto id = static_cast<AgentId>(i);
+      const bool covers = !rests(mission_, id, tick) &&
+                          (tick == 0 || !charges(mission_, id, x_m, vehicles_[i].velocity_mps));
+      measure_.position(i, tick, x_m, covers);
+      if (covers) judge_.see(i, tick, x_m);
     }
     if (!ended) measure_.pass(tick);
     if (ended || !measure_.wants_metric(tick)) return;

@@ -40,6 +40,7 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       team_sum_(sampling_.layout()) {
   const BlockLayout& layout = sampling_.layout();
   if (!layout.in_basis_order()) by_slot_.resize(static_cast<std::size_t>(layout.slot_count()));
+  if (any_battery(mission)) charges_.resize(mission.starts_m.size());
   if (!any_station(mission)) return;
   for (AgentId id = 0; id < std::ssize(mission.starts_m); ++id)
     rest_from_.push_back(ergocast::rest_from(mission, id));
@@ -56,8 +57,18 @@ void Forecast::note_ends(const Mission& mission, const EndSchedule& ends, Tick c
     rest_from_[at] = ends.rest_from(mission, static_cast<AgentId>(at), counted);
 }
 
-void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
-  if (!dead_reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
+bool Forecast::charges(AgentId id) const {
+  const auto at = static_cast<std::size_t>(id);
+  return at < charges_.size() && charges_[at].goes_on;
+}
+
+void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m, bool charges) {
+  if (agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
+  if (const auto at = static_cast<std::size_t>(agent); at < charges_.size()) {
+    if (tick <= charges_[at].tick) return;
+    charges_[at] = {tick, charges};
+  }
+  if (!dead_reckons_ || charges) return;
   if (!sampling_.domain().contains(x_m)) return;
   tracks_.try_emplace(agent, most_places_).first->second.see(tick, x_m);
 }
@@ -81,6 +92,7 @@ void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>
     if (entry == roster.size() || roster[entry].author != author || author == self_) continue;
     if (!table.counts(row) || !is_newest(roster, entry, tick)) continue;
     if (tick >= rest_from(author.agent) || roster[entry].recalled_at(revision_)) continue;
+    if (charges(author.agent)) continue;
     outlooks_[row].any = true;
     if (dead_reckons_) outlooks_[row].track = extended_track(table, row, roster[entry]);
   }

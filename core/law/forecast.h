@@ -14,7 +14,7 @@
 // changed, the forecast is never sent, and the next block replaces these additions.
 //
 // A teammate that will rest (core/mission/station.h) is assumed to continue no longer than until
-// then: h of its w_j is at most that time.
+// then: h of its w_j is at most that time. One whose battery is charged has no forecast meanwhile.
 //
 // Where kinds differ (core/mission/kinds.h), each row's part has its quality q_j in both sums, and
 // f at a place of teammate j is g_j f.
@@ -62,7 +62,9 @@ class Forecast {
 
   /// Notes that a vehicle was at `x_m` at `tick`. It has no effect without dead reckoning, for our
   /// own vehicle, for a tick that is already known, and outside the domain.
-  void see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m);
+  /// @param charges  its battery is charged: the place is not covered, and its agent rests until a
+  ///                 later tick shows otherwise; also without dead reckoning
+  void see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m, bool charges = false);
 
   /// The revision of the roster that the world uses from now on: it decides which of the recalled
   /// agents rest.
@@ -98,6 +100,7 @@ class Forecast {
   bool uniform_blocks(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   Tick rest_from(AgentId id) const;
+  bool charges(AgentId id) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
   Correction correction(const CoverageTable& table, int block, Tick tick) const;
   void add_steps(Tick newest, std::int64_t steps, std::int64_t halvings, double each_s,
@@ -118,6 +121,11 @@ class Forecast {
   std::int64_t revision_ = 0;
   const TargetShift* shift_ = nullptr;  // null: no target has changed
   std::vector<Tick> rest_from_;         // by number, where any agent has a station
+  struct Charge {
+    Tick tick = -1;
+    bool goes_on = false;
+  };
+  std::vector<Charge> charges_;  // of the newest known place, by number; where there are batteries
   std::map<AgentId, RowTrack> tracks_;
   std::uint64_t looks_ = 0;        // calls of look_ahead()
   std::vector<Outlook> outlooks_;  // per row of the table

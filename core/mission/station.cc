@@ -54,6 +54,11 @@ bool any_station(const Mission& mission) {
                              [](const AgentKind& kind) { return !kind.stations_m.empty(); });
 }
 
+bool any_battery(const Mission& mission) {
+  return std::ranges::any_of(mission.kinds,
+                             [](const AgentKind& kind) { return kind.battery.any(); });
+}
+
 Tick rest_from(const Mission& mission, AgentId id) {
   const AgentKind* const kind = at_home(mission, id).kind;
   if (kind == nullptr) return std::numeric_limits<Tick>::max();

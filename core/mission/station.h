@@ -14,6 +14,10 @@
 // An agent that the operator sends home rests from another tick on (RosterEntry::recalled_at). It
 // then goes home whether it has a station or not.
 //
+// An agent whose battery is charged rests meanwhile, too (charges(), core/motion/home.h). It goes
+// on to broadcast when that is due, because teammates cannot know when it will be full. At its
+// first tick an agent covers in any case: without a step it has nothing to send.
+//
 // A station belongs to an agent's number, as a vehicle does, whichever process drives it. Numbers
 // beyond the plan have none.
 #pragma once
@@ -35,8 +39,9 @@ std::optional<Eigen::Vector3d> home_of(const Mission& mission, AgentId id);
 /// The battery of agent `id`; null if it has none.
 const Battery* battery_of(const Mission& mission, AgentId id);
 
-/// Whether any agent has a station.
+/// Whether any agent has a station, or a battery.
 bool any_station(const Mission& mission);
+bool any_battery(const Mission& mission);
 
 /// R of agent `id`; the greatest number if it has no station.
 Tick rest_from(const Mission& mission, AgentId id);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/geometry.h"
 #include "core/mission/kinds.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
@@ -45,6 +46,16 @@ double home_m(const Mission& mission, AgentId id) {
   return 2 * home_speed_mps(mission, id) * dt_s + 2 * loiter_radius_m(motion) +
          2 * kPushDeviations * mission.disturbance_intensity * std::sqrt(dt_s) +
          2 * mission.separation.position_error_m;
+}
+
+bool charges(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m,
+             const Eigen::Vector3d& v_mps) {
+  if (battery_of(mission, id) == nullptr) return false;
+  const Motion motion = motion_of(mission, id);
+  if (loiter_radius_m(motion) == 0 && length_of(v_mps) >= home_speed_mps(mission, id) / 2)
+    return false;
+  return length_of(anchor_m(motion, x_m, v_mps) - *station_of(mission, id)) <=
+         home_m(mission, id) - 2 * loiter_radius_m(motion);
 }
 
 std::optional<std::pair<AgentId, AgentId>> too_near_at_home(const Mission& mission, AgentId team) {

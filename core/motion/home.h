@@ -23,6 +23,13 @@ double home_speed_mps(const Mission& mission, AgentId id);
 /// diameter of its loiter circle, and in addition what disturbances and position errors may add.
 double home_m(const Mission& mission, AgentId id);
 
+/// Whether the battery of agent `id` is charged at a tick, by what the world's state has of its
+/// vehicle: it is at its station (home_m()), and slower than half of home_speed_mps(). A fixed wing
+/// has its loiter centre there instead. Nothing else decides it, so all that receive the state
+/// agree. Such an agent rests, but for its first tick: core/mission/station.h.
+bool charges(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m,
+             const Eigen::Vector3d& v_mps);
+
 /// The first two of the first `team` agents whose stations are nearer to each other than
 /// start_distance_m(), the later one first; nothing if there are none.
 std::optional<std::pair<AgentId, AgentId>> too_near_at_home(const Mission& mission, AgentId team);

@@ -20,6 +20,7 @@ WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl",
 WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi", const CoverageTable*, const Author&, int)
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
+WRAPPED(void, see, "_ZN8ergocast8Forecast3seeEilRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEEb", Forecast*, AgentId, Tick, const Eigen::Vector3d&, bool)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
 WRAPPED(void, note_notes, "_ZN8ergocast7Efforts4noteESt4spanIKNS_10SearchNoteELm18446744073709551615EES1_IKNS_4HoldELm18446744073709551615EE", Efforts*, std::span<const SearchNote>, std::span<const Hold>)
 WRAPPED(bool, merge_looks, "_ZN8ergocast7Efforts5mergeERKNS_6AuthorEmNS_10EffortTileEl", Efforts*, const Author&, std::size_t, EffortTile, Tick)
@@ -204,6 +205,10 @@ void bug_make_forecast(Forecast* self, const Mission& mission, const Author& aut
     for (AgentKind& kind : changed.kinds) kind.stations_m.clear();
   }
   real_make_forecast(self, changed, foresees_itself() ? Author{} : author);
+}
+
+void bug_see(Forecast* self, AgentId agent, Tick tick, const Eigen::Vector3d& x_m, bool charges) {
+  real_see(self, agent, tick, x_m, charges && !bug("charging agents are foreseen"));
 }
 
 void bug_look_ahead(Forecast* self, const CoverageTable& table,

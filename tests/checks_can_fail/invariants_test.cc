@@ -139,6 +139,10 @@ const char* const kBatteries =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } battery { capacity_wh: 1 "
     "power_w: 180 charge_w: 900 reserve: 0 } } kind { name: \"b\" count: 2 } }";
 
+const char* const kBatteriesByRowsAlone =
+    "agents { dead_reckoning: false kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } battery "
+    "{ capacity_wh: 1 power_w: 180 charge_w: 900 reserve: 0 } } kind { name: \"b\" count: 2 } }";
+
 const char* const kShortRests =
     "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 1 } "
     "kind { name: \"b\" count: 2 } }";
@@ -208,6 +212,12 @@ const Plant kPlants[] = {
     {Invariant::kEmptyOnlyAtHome, "the way home needs no charge", "", kBatteries, "", "--lockstep"},
     {Invariant::kChargesAreTrue, "batteries are charged anywhere", "", kBatteries, "",
      "--lockstep"},
+    {Invariant::kNothingCountsWhilePaused, "charging agents add samples", "", kBatteries},
+    {Invariant::kNothingCountsWhilePaused, "charging agents add samples", "", kBatteries, "",
+     "--lockstep"},
+    {Invariant::kForecastOfWhatIsKnown, "charging agents are foreseen", "", kBatteries},
+    {Invariant::kForecastOfWhatIsKnown, "charging agents are foreseen", "", kBatteriesByRowsAlone,
+     "", "--lockstep"},
     {Invariant::kHomeInTime, "an agent goes home late", kEarlyZones, kShortRests, "", "--lockstep"},
     {Invariant::kHomeInTime, "agents go home by the plan's end", kManyEnds, kStationsForAll, "",
      "--lockstep"},

@@ -25,6 +25,7 @@ WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", S
 WRAPPED(bool, goes_home, "_ZN8ergocast7WayHome5begunElRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEE", WayHome*, Tick, const Eigen::Vector3d&)
 WRAPPED(bool, must_go, "_ZN8ergocast11ChargeWatch7must_goEd", ChargeWatch*, double)
 WRAPPED(double, share_after, "_ZN8ergocast11share_afterERKNS_7BatteryEdbd", const Battery&, double, bool, double)
+WRAPPED(bool, charges, "_ZN8ergocast7chargesERKNS_7MissionEiRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEES7_", const Mission&, AgentId, const Eigen::Vector3d&, const Eigen::Vector3d&)
 WRAPPED(Eigen::Vector3d, go_home, "_ZN8ergocast7WayHome12velocity_mpsERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEES5_", WayHome*, const Eigen::Vector3d&, const Eigen::Vector3d&)
 WRAPPED(bool, filters_again, "_ZN8ergocast13filters_againERKNS_7MissionE", const Mission&)
 WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
@@ -259,6 +260,11 @@ bool bug_must_go(ChargeWatch* self, double way_s) {
 double bug_share_after(const Battery& battery, double share, bool at_station, double dt_s) {
   return real_share_after(battery, share, at_station || bug("batteries are charged anywhere"),
                           dt_s);
+}
+
+bool bug_charges(const Mission& mission, AgentId id, const Eigen::Vector3d& x_m,
+                 const Eigen::Vector3d& v_mps) {
+  return !bug("charging agents add samples") && real_charges(mission, id, x_m, v_mps);
 }
 
 bool bug_goes_home(WayHome* self, Tick counted, const Eigen::Vector3d& x_m) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,7 +94,8 @@ struct Known {
   std::vector<Contribution> heard;  // in the order of arrival
   std::vector<RosterEntry> roster;  // ascending by author
   std::vector<Author> forgotten;
-  std::map<AgentId, std::vector<Tick>> seen;  // ascending
+  std::map<AgentId, std::vector<Tick>> seen;    // ascending
+  std::set<std::pair<AgentId, Tick>> charging;  // of these
   Tick joined = 0, tick = 0;
 };
 
@@ -114,7 +116,9 @@ inline CoverageTable table_of(const Known& known, const Mission& mission) {
 inline Coefficients foreseen(const Known& known, const Mission& mission) {
   Forecast forecast(mission, kSelf);
   for (const auto& [agent, ticks] : known.seen) {
-    for (const Tick tick : ticks) forecast.see(agent, tick, place(agent, tick, mission));
+    for (const Tick tick : ticks)
+      forecast.see(agent, tick, place(agent, tick, mission),
+                   known.charging.contains({agent, tick}));
   }
   Coefficients coverage = Coefficients::Constant(144, 77);
   forecast.look_ahead(table_of(known, mission), known.roster, known.tick, coverage);
@@ -177,6 +181,9 @@ inline bool has_forecast(const Author& author, const Known& known) {
   for (const RosterEntry& entry : known.roster) {
     if (entry.author == author && entry.active_at(known.tick)) own = &entry;
   }
+  const auto seen = known.seen.find(author.agent);
+  if (seen != known.seen.end() && known.charging.contains({author.agent, seen->second.back()}))
+    return false;
   return own != nullptr && author != kSelf &&
          std::none_of(known.roster.begin(), known.roster.end(), [&](const RosterEntry& entry) {
            return entry.author.agent == author.agent && entry.active_from <= known.tick &&
@@ -184,10 +191,13 @@ inline bool has_forecast(const Author& author, const Known& known) {
          });
 }
 
-/// Where a vehicle was: the seen places, and those on the line between two of them that lack at
-/// most 8 ticks, if the first one is not from before its author took part.
-inline std::map<Tick, Eigen::Vector3d> places_of(AgentId id, const std::vector<Tick>& seen,
-                                                 Tick active_from, const Mission& mission) {
+/// Where a vehicle was: the seen places at which its battery was not charged, and those on the line
+/// between two of them that lack at most 8 ticks, if the first one is not from before its author
+/// took part.
+inline std::map<Tick, Eigen::Vector3d> places_of(AgentId id, std::vector<Tick> seen,
+                                                 Tick active_from, const Known& known,
+                                                 const Mission& mission) {
+  std::erase_if(seen, [&](Tick tick) { return known.charging.contains({id, tick}); });
   std::map<Tick, Eigen::Vector3d> all;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     all[seen[i]] = place(id, seen[i], mission);
@@ -209,7 +219,7 @@ inline void dead_reckon(const Author& author, int block, const Known& known, con
   const auto entry = std::find_if(known.roster.begin(), known.roster.end(),
                                   [&](const RosterEntry& one) { return one.author == author; });
   for (const auto& [tick, x_m] :
-       places_of(author.agent, seen->second, entry->active_from, mission)) {
+       places_of(author.agent, seen->second, entry->active_from, known, mission)) {
     if (tick < row.tick || !entry->active_at(tick)) continue;
     const Coefficients f = basis_values(x_m, mission.domain, mission.basis);
     const double left = left_at(known.tick, tick, mission);

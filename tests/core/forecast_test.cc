@@ -134,6 +134,26 @@ TEST_P(Foreseen, IsTheFormulaInSpaceToo) {
   });
 }
 
+/// Each vehicle is charged for some time, which half of them have not ended yet.
+TEST_P(Foreseen, IsTheFormulaWhereBatteriesAreCharged) {
+  mission_.kinds = {{.name = "robots", .count = 6, .battery = {.capacity_wh = 1}}};
+  mission_.starts_m.assign(6, mission_.domain.center_m());
+  int differ = 0;
+  in_every_history([&](Known known, Dice& dice) {
+    const Coefficients uncharged = foreseen(known, mission_);
+    ASSERT_LT((uncharged - by_the_formula(known, mission_)).cwiseAbs().maxCoeff(), 1e-12);
+    for (const auto& [agent, ticks] : known.seen) {
+      const Tick from = dice.tick(0, kEnd), until = dice.one_in(2) ? kEnd : dice.tick(from, kEnd);
+      for (const Tick tick : ticks)
+        if (tick >= from && tick < until) known.charging.emplace(agent, tick);
+    }
+    const Coefficients actual = foreseen(known, mission_);
+    ASSERT_LT((actual - by_the_formula(known, mission_)).cwiseAbs().maxCoeff(), 1e-12);
+    differ += actual != uncharged;
+  });
+  EXPECT_GT(differ, 10);
+}
+
 TEST_P(Foreseen, IsAnAverageWhateverAnAgentClaims) {
   in_every_history([&](Known known, Dice& dice) {
     for (Contribution& block : known.heard) {

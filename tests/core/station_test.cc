@@ -142,5 +142,29 @@ TEST(Station, HasToBeAPlaceToStay) {
   EXPECT_FALSE(fits([](Mission& m) { m.separation.distance_m = 1; }));  // one for three
 }
 
+/// u_max is 8 m/s, so it is home within 1.6 m, and slow below 4 m/s.
+TEST(Station, ABatteryIsChargedWhereItsVehicleHasAllButStopped) {
+  Mission mission = with_station();
+  EXPECT_FALSE(charges(mission, 0, {30, 20, 0}, {0, 0, 0})) << "it has no battery";
+  mission.kinds[0].battery = {.capacity_wh = 5, .power_w = 100, .charge_w = 300};
+  EXPECT_TRUE(any_battery(mission));
+  EXPECT_TRUE(charges(mission, 2, {30, 20, 0}, {0, 0, 0}));
+  EXPECT_TRUE(charges(mission, 2, {31.5, 20, 0}, {0, 3.9, 0}));
+  EXPECT_FALSE(charges(mission, 2, {31.7, 20, 0}, {0, 0, 0})) << "it is beside its station";
+  EXPECT_FALSE(charges(mission, 2, {30, 20, 0}, {0, 4, 0})) << "it passes its station";
+  EXPECT_FALSE(charges(mission, 3, {30, 20, 0}, {0, 0, 0})) << "its kind has no battery";
+  EXPECT_FALSE(charges(mission, 9, {30, 20, 0}, {0, 0, 0})) << "it is beyond the plan";
+}
+
+/// Its circle has a radius of 5 m.
+TEST(Station, AFixedWingIsChargedWhileItCirclesAroundItsStation) {
+  Mission mission =
+      with_station({.kind = VehicleKind::kFixedWing, .max_turn_radps = 1, .min_speed_mps = 5});
+  mission.kinds[0].battery = {.capacity_wh = 5, .power_w = 100, .charge_w = 300};
+  EXPECT_TRUE(charges(mission, 0, {35, 20, 0}, {0, 5, 0}));
+  EXPECT_TRUE(charges(mission, 0, {30, 25, 0}, {-5, 0, 0}));
+  EXPECT_FALSE(charges(mission, 0, {30, 20, 0}, {5, 0, 0})) << "it passes its station";
+}
+
 }  // namespace
 }  // namespace ergocast

@@ -6,12 +6,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <fstream>
 #include <map>
 #include <set>
 #include <string>
 #include <tuple>
 
+#include "core/mission/station.h"
+#include "core/motion/home.h"
+#include "logger/run_data.h"
+#include "logger/run_record.h"
 #include "tests/support/simulated_team.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast::test {
 namespace {
@@ -60,6 +67,52 @@ TEST(Charged, BreakNoInvariantUnderFaults) {
       ASSERT_EQ(tried.problem(), "") << "seed " << seed;
     }
   }
+}
+
+/// How often each vehicle's battery is charged at a tick that would otherwise be covered.
+class ChargedTicks {
+ public:
+  explicit ChargedTicks(const Mission& mission) : mission_(mission) {}
+  void note(const WorldState& state) {
+    for (const Vehicle& vehicle : state.vehicles_in_part()) {
+      const Tick tick = state.header.tick;
+      if (tick > 0 && !rests(mission_, vehicle.id, tick) &&
+          charges(mission_, vehicle.id, vehicle.position_m, vehicle.velocity_mps))
+        ticks_[vehicle.id].insert(tick);
+    }
+  }
+  std::int64_t of(AgentId id) const { return std::ssize(ticks_.at(id)); }
+
+ private:
+  Mission mission_;
+  std::map<AgentId, std::set<Tick>> ticks_;
+};
+
+/// What agents have covered is also what the record's rows say, and what its metrics count.
+TEST(Charged, CoverNothingMeanwhileAndNeitherDoesTheRecord) {
+  const Mission mission = shipped_mission("recharge");
+  ChargedTicks charged(mission);
+  SimulatedTeam team(mission, [&](const Message& message, lab::NodeId) {
+    if (const auto* state = std::get_if<WorldState>(&message)) charged.note(*state);
+    return false;
+  });
+  ASSERT_TRUE(team.run());
+  const CoverageTable& table = *team.simulation.agent(0).coverage();
+  for (std::size_t row = 0; row < 3; ++row) {
+    const AgentId id = table.author(row).agent;
+    EXPECT_GT(charged.of(id), 500) << id;
+    EXPECT_EQ(table.steps_held(table.author(row)), rest_from(mission, id) - charged.of(id)) << id;
+  }
+  Coefficients covered(mission.basis.mode_count());
+  table.average(covered);
+  const TempFolder folder;
+  std::ofstream(folder.path() / kTrajectoryFile) << team.trajectory.str();
+  const RunData rows = read_tracks(folder.path()).value();
+  EXPECT_LT((coverage_of(rows, mission) - covered).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_NEAR(team.simulation.recorder().facts().ergodic_metric_last,
+              ergodic_metric(covered, mission.target_coefficients,
+                             sobolev_weights(mission.basis, mission.domain)),
+              1e-12);
 }
 
 /// If `drops`, no agent receives any contribution before it was repeated.

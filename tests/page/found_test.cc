@@ -85,6 +85,18 @@ TEST_F(FoundInABrowser, IsThatOfTheRecordWhereAgentsRest) {
   expect_no_errors();
 }
 
+/// The same while their batteries are charged there.
+TEST_F(FoundInABrowser, IsThatOfTheRecordWhereBatteriesAreCharged) {
+  open_report({"--duration", "250"}, "", "recharge");
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
+  EXPECT_GT(js("const { run } = ergocast.S;"
+               "return run.tracks.reduce((sum, track) => sum + Array.from({ length: run.rows },"
+               "  (_, row) => run.charges(track, row)).filter(Boolean).length, 0)")
+                .get<int>(),
+            200);
+  expect_no_errors();
+}
+
 /// The page has every second tick. Agents hardly find anything in a look, so that much is left.
 TEST_F(FoundInABrowser, IsNearThatOfTheRecordOnAPageWithFewerTicks) {
   open_report({"--duration", "4000", "--set", "time.dt_s=0.02", "--set", "law.u_max_mps=5", "--set",

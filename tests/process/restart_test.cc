@@ -204,6 +204,29 @@ TEST_F(Restart, KilledCoordinatorTakesTheMissionOver) {
   expect_identical_to_its_simulation();
 }
 
+/// It learns from the rows of the first segment which agents covered nothing at their stations.
+TEST_F(Restart, KilledLoggerGoesOnWhileBatteriesAreCharged) {
+  const std::filesystem::path tree = ERGOCAST_SOURCE_DIR;
+  hold_next("ERGOCAST_COMMAND_0", 56);  // agents 0 and 1 have been at home since tick 51
+  Child mission =
+      start_mission(tree / "tests/lab/charged_team.textproto",
+                    {"--lockstep", "--lcm-url", kUrl, "--set", "time.lockstep_timeout_s=600",
+                     "--set", "time.admission_timeout_s=600"});
+  EXPECT_TRUE(eventually([] { return stopped(pids(agent(0))); })) << printed();
+  hold_none();
+  EXPECT_TRUE(eventually([&] {
+    ergocast({"status", "--lcm-url", kUrl});
+    return output().find("charging") != std::string::npos;
+  })) << output();
+  kill_next(kLoggerProcess);
+  ASSERT_TRUE(logs("logger", "recording", 2)) << printed();
+  release();
+  EXPECT_EQ(wait_for(mission), 0) << printed();
+  EXPECT_EQ(summary()["segments"], 2);
+  EXPECT_EQ(summary()["record_complete"], true);
+  expect_identical_to_its_simulation();
+}
+
 TEST_F(Restart, KilledLoggerGoesOnInASecondSegmentAndLosesNothing) {
   Child mission = launch_endless(scenario());
   kill_next(kLoggerProcess);

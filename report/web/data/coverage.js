@@ -79,6 +79,7 @@ export class Coverage {
           const px = p[2 * k],
             py = p[2 * k + 1];
           if (run.holds.length && run.heldAt(k)) continue; // the mission is paused
+          if (k > begin && run.charges(track, k)) continue;
           if (!(px >= 0 && px <= lx && py >= 0 && py <= ly)) continue;
           const weight = weights[k - from];
           while (targets[holds + 1]?.row <= k) holds++;

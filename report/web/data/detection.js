@@ -121,7 +121,7 @@ export class Detection {
       share = row - before;
     for (const track of run.tracks) {
       if (!track.has(before) || !track.has(after) || !track.isMember(after)) continue;
-      if (run.restsAt(track.id, tick, counted)) continue;
+      if (run.restsAt(track.id, tick, counted) || run.charges(track, after)) continue;
       const { p, z } = track,
         between = (v, w) => v + share * (w - v),
         x = between(p[2 * before], p[2 * after]),

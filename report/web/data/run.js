@@ -181,6 +181,18 @@ export class Run {
   restsAt(id, tick, counted) {
     return tick >= (this.recalledFrom.get(id) ?? Infinity) || counted >= (this.restFrom.get(id) ?? Infinity);
   }
+  // Whether the battery of a track's vehicle is charged at a row: it has come slowly from the row before,
+  // and is at its station.
+  charges(track, row) {
+    const { at_m: at, charges } = this.stationOf(track.id) ?? {};
+    if (!charges || !track.has(row) || !track.has(row - 1)) return false;
+    const { p, z } = track,
+      apart = Math.hypot(p[2 * row] - at[0], p[2 * row + 1] - at[1], z ? z[row] - at[2] : 0);
+    return apart <= charges.within_m && track.between(row - 1, row) < charges.below_mps * this.step;
+  }
+  stationOf(id) {
+    return this.mission.stations?.find(station => station.id === id);
+  }
   // The first row at which an agent rests; it rests at all later ones.
   firstRest(id) {
     if (!this.recalledFrom.has(id) && !this.restFrom.has(id)) return Infinity;
