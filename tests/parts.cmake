@@ -72,6 +72,7 @@ ergocast_test(NAME team_tests LABELS unit
     team/command_window_test.cc
     plan/hostile_plan_test.cc
     plan/mission_fields_test.cc
+    plan/mission_limits_test.cc
     team/liveness_test.cc
     team/median_metric_test.cc
     team/mission_follower_test.cc
