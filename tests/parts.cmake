@@ -226,7 +226,9 @@ ergocast_test(NAME logger_tests LABELS unit
     logger/line_file_test.cc
     logger/recorder_test.cc
     report/report_test.cc
+    logger/resume_gaps_test.cc
     logger/resume_test.cc
+    logger/segments_test.cc
     report/statistics_test.cc
     logger/summary_test.cc
   LIBS ergocast::report ergocast::scenario)
