@@ -179,6 +179,8 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     page/space_test.cc
     page/study_test.cc
     page/words_test.cc
+    page/zone_cancel_test.cc
+    page/zone_requests_test.cc
     page/zone_test.cc
     support/browser.cc
     support/http.cc
