@@ -194,6 +194,7 @@ ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
     checks_can_fail/invariants_test.cc
     checks_can_fail/mistaken_files.cc
     checks_can_fail/no_metric_test.cc
+    checks_can_fail/planted_fields.cc
     checks_can_fail/refusals_test.cc
     checks_can_fail/scenario_mistakes.cc
     checks_can_fail/target_mistakes.cc
