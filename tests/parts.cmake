@@ -213,6 +213,7 @@ ergocast_test(NAME status_tests LABELS unit
     cli/run_registry_test.cc
     cli/team_history_test.cc
     cli/team_text_test.cc
+    cli/team_trouble_test.cc
     cli/team_view_test.cc
   LIBS ergocast_registry ergocast_team_page nlohmann_json::nlohmann_json)
 
