@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/require.h"
+#include "core/mission/sites.h"
 #include "core/motion/vehicle.h"
 
 namespace ergocast {
@@ -62,6 +63,7 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
   }
   if (!arrival.mission_changed) return;
   if (follower().plan_problem()) return finish(true, *follower().plan_problem());
+  if (mission().sites.any()) return finish(true, kSitesAreSimulated);
   if (follower().over()) {
     return finish(follower().state() == MissionState::kFailed, follower().reason());
   }

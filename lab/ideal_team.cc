@@ -79,6 +79,8 @@ IdealTeam::IdealTeam(Mission mission, Edges edges, const LawMaker& laws)
   if (needs_.places) places_.reserve(agents_.size());
   if (any_filtered(mission_)) separation_.emplace(mission_, 0);
   bodies_.resize(separation_ ? agents_.size() : 0);
+  const TeamSites& sites = mission_.sites;
+  if (sites.any()) divide({sites.count, sites.row_period_ticks, 0});
 }
 
 IdealTeam::IdealTeam(IdealTeam&&) noexcept = default;
@@ -89,6 +91,7 @@ bool IdealTeam::stands_for(const Mission& mission, const LawNeeds& needs) {
   const bool all_is_sent = longest_period_ticks(timing) == 1;
   const bool all_is_known = !needs.coverage || (looks_ahead(mission) && mission.dead_reckoning);
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
+  if (mission.sites.any()) return true;  // no other team has sites
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
          (all_is_sent || all_is_known) && !needs.search && !any_station(mission) &&
          mission.objects.end_when_found == 0;
@@ -96,7 +99,7 @@ bool IdealTeam::stands_for(const Mission& mission, const LawNeeds& needs) {
 
 void IdealTeam::divide(const SiteRules& rules) {
   if (rules.sites < 1 || static_cast<std::size_t>(rules.sites) > agents_.size() || !foresees_ ||
-      !mission_.dead_reckoning || HalfLife(mission_).any())
+      needs_.places || needs_.search || !mission_.dead_reckoning || HalfLife(mission_).any())
     throw std::logic_error("the laboratory cannot divide this team into sites");
   sites_ = std::make_unique<SiteExchange>(mission_, rules);
 }

@@ -46,15 +46,17 @@ class IdealTeam {
 
   /// Whether a distributed team would compute the same: it is in lockstep, every agent receives
   /// from every other, and no agent goes home; all coverage is broadcast each tick or known by dead
-  /// reckoning, without rounding. Where teammates have searched is never known at once.
+  /// reckoning, without rounding. Where teammates have searched is never known at once. A mission
+  /// with sites has no other team.
   /// @param needs  of the mission's laws
   static bool stands_for(const Mission& mission, const LawNeeds& needs);
   /// The same under make_law().
   static bool stands_for(const Mission& mission) { return stands_for(mission, law_needs(mission)); }
 
-  /// From now on agents know of other sites only by these sites' rows (lab/site_exchange.h). Call
-  /// it before the first step. Throws std::logic_error if there are fewer agents than sites, or if
-  /// agents do not look ahead with dead reckoning, or forget.
+  /// From now on agents know of other sites only by these sites' rows (lab/site_exchange.h). A
+  /// mission with sites is divided already. Call it before the first step. Throws std::logic_error
+  /// if there are fewer agents than sites, or if agents do not look ahead with dead reckoning, or
+  /// forget, or if their laws read places.
   /// @pre no amendments
   void divide(const SiteRules& rules);
 

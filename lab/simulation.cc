@@ -6,17 +6,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/base/noise.h"
+#include "lab/identity.h"
 #include "plan/plan.h"
 
 namespace ergocast::lab {
-namespace {
-
-std::uint64_t identity(const Mission& mission, std::uint32_t who, std::uint32_t start) {
-  return random_words(mission.seed, Purpose::kIncarnation, who, start).first | 1;
-}
-
-}  // namespace
 
 void SimulationObserver::advanced(NodeId, bool hurries) {
   if (hurries) throw std::logic_error("a process asks to be woken in the past");
@@ -29,7 +22,7 @@ Simulation::Simulation(SimulationOptions options, std::ostream& trajectory, std:
       metrics_(metrics),
       observer_(observer),
       mission_(decode_plan_with_table(options_.plan).value()),
-      run_(identity(mission_, ~0U, 0)),
+      run_(simulated_run(mission_)),
       agent_count_(static_cast<int>(mission_.starts_m.size())),
       network_(mission_.seed, options_.faults, agent_count_, node_count(), options_.latency),
       wire_(run_, mission_.seed),

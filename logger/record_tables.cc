@@ -27,11 +27,10 @@ void append_number(std::string& line, double value) {
 /// The member that drives this vehicle at `tick`; null if none does. Other vehicles stand still and
 /// cover nothing.
 const RosterEntry* member(const MissionFollower& follower, AgentId id, Tick tick) {
-  const auto& roster = follower.roster();
-  const auto at = std::find_if(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
-    return entry.author.agent == id && entry.active_at(tick);
-  });
-  return at == roster.end() ? nullptr : &*at;
+  const auto entries = entries_of(id, follower.roster());
+  const auto at = std::ranges::find_if(
+      entries, [&](const RosterEntry& entry) { return entry.active_at(tick); });
+  return at == entries.end() ? nullptr : &*at;
 }
 
 /// What a row of the metrics has from the agents' reports.
@@ -200,10 +199,9 @@ bool RecordTables::is_recalled(const Context& context, AgentId id) {
   const Tick tick = context.row.tick;
   if (const auto known = facts_.recalls.find(id); known != facts_.recalls.end())
     return tick >= known->second;
-  const bool recalled =
-      std::ranges::any_of(context.known.follower.roster(), [&](const RosterEntry& entry) {
-        return entry.author.agent == id && entry.recalled_at(context.roster_revision);
-      });
+  const bool recalled = std::ranges::any_of(
+      entries_of(id, context.known.follower.roster()),
+      [&](const RosterEntry& entry) { return entry.recalled_at(context.roster_revision); });
   if (recalled) facts_.recalls.emplace(id, tick);
   return recalled;
 }

@@ -215,6 +215,15 @@ void list_fields(auto& io, MaybeConst<SearchSensor> auto& sensor) {
             sensor.confirm_at);
 }
 
+void list_fields(auto& io, MaybeConst<TeamSites> auto& sites) {
+  const TeamSites usual;
+  io.number({1, "sites", limits::between(1, kMostSites), unless(sites.count, usual.count)},
+            sites.count);
+  io.number({2, "site_row_period_ticks", limits::kPeriod_ticks,
+             unless(sites.row_period_ticks, usual.row_period_ticks)},
+            sites.row_period_ticks);
+}
+
 /// Number 1 of the plan is the version of the program that wrote it.
 void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   const When limited = unless(m.speed_limit_mps, 0);
@@ -243,6 +252,7 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.part({18, "vehicle"}, m.vehicle);
   io.part({19, "separation"}, m.separation);
   io.part({25, "sensor"}, m.sensor);
+  io.part({27, "team"}, m.sites);
   io.derived({24, "cosine_target"}, m.cosine_target);
   io.derived({16, "wait_for_logger"}, m.wait_for_logger);
 }

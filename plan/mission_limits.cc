@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/law/site_row.h"
 #include "core/measure/detection.h"
 #include "core/measure/drift.h"
 #include "core/mission/amendments.h"
 #include "core/mission/kinds.h"
+#include "core/mission/sites.h"
 #include "core/mission/station.h"
 #include "core/motion/filter_rules.h"
 #include "core/motion/home.h"
@@ -244,11 +246,21 @@ bool fits(const SearchSensor& sensor, const Mission& mission) {
          (mission.domain.planar() && mission.objects.end_when_found == 0);
 }
 
+/// Each site has a member and fits in a row.
+bool sites_fit(const Mission& mission) {
+  const TeamSites& sites = mission.sites;
+  if (!sites.any()) return sites.row_period_ticks == TeamSites().row_period_ticks;
+  return static_cast<std::size_t>(sites.count) <= mission.starts_m.size() &&
+         static_cast<std::size_t>(most_members(mission)) <= kMostMemberRows &&
+         why_no_sites(mission) == nullptr;
+}
+
 bool is_team(const Mission& mission) {
   const auto size = static_cast<double>(mission.starts_m.size());
   const auto& starts_m = mission.starts_m;
   const auto inside = [&](const Eigen::Vector3d& x_m) { return in_domain(mission.domain, x_m); };
-  return limits::kTeam.contain(size) && mission.quorum <= size &&
+  const double most = mission.sites.any() ? kMostAgentsOfSites : kMaxAgents;
+  return size >= 1 && size <= most && mission.quorum <= size &&
          std::all_of(starts_m.begin(), starts_m.end(), inside);
 }
 
@@ -300,7 +312,7 @@ bool within_limits(const Mission& mission) {
          memory_fits(mission.law, mission.timing.dt_s) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
-         is_team(mission) && are_kinds(mission) && bodies_fit(mission) &&
+         is_team(mission) && sites_fit(mission) && are_kinds(mission) && bodies_fit(mission) &&
          fits(mission.separation, mission) && walls_fit(mission) && stations_fit(mission) &&
          fits(mission.objects, mission) && fits(mission.sensor, mission);
 }

@@ -48,7 +48,8 @@ inline constexpr Limits kPeriod_ticks = between(1, 1000);
 /// Limit (Time): length of a step by the wall clock in real time, at least [s]. Below it: the
 /// scenario is refused.
 inline constexpr double kMinWallStep_s = 1e-4;
-inline constexpr Limits kTeam = between(1, kMaxAgents);
+/// Without sites at most kMaxAgents.
+inline constexpr Limits kTeam = between(1, kMostAgentsOfSites);
 inline constexpr Limits kWaveNumber = between(0, 1000);  ///< |k|, a band's ends
 
 }  // namespace limits

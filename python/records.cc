@@ -210,7 +210,7 @@ void simulate(const Scenario& scenario, const fs::path& out, bool report, const 
     const py::gil_scoped_release others_may_run;
     const fs::path folder = value_or_throw(cli::prepare_run_directory(out, scenario));
     const auto record = value_or_throw(RunRecord::create(folder));
-    const auto look = [&](lab::Simulation& simulation) {
+    const auto look = [&](cli::SimulationInProgress& simulation) {
       const py::gil_scoped_acquire others_wait;
       if (interrupted || PyErr_CheckSignals() == 0) return;
       interrupted.emplace();

@@ -347,6 +347,7 @@ ergocast_test(NAME lab_tests LABELS lab OPTIMISED
     lab/planned_laws_test.cc
     lab/recall_test.cc
     lab/site_exchange_test.cc
+    lab/site_simulation_test.cc
     lab/sites_test.cc
   LIBS ergocast_lab ergocast::scenario
   PROPERTIES COST 30)

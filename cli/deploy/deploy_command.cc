@@ -13,6 +13,7 @@
 #include "cli/launch/key_pair.h"
 #include "cli/record/run_directory.h"
 #include "cli/report_error.h"
+#include "core/mission/sites.h"
 #include "core/motion/filter_rules.h"
 #include "logger/run_record.h"
 #include "modes/table_file.h"
@@ -162,6 +163,7 @@ void note_modes(const DeployOptions& options, const Basis& basis) {
 int deploy(const DeployOptions& options) {
   const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
+  if (scenario->mission().sites.any()) return report_error(kExitBadInput, kSitesAreSimulated);
   const auto read = read_hosts(options.hosts);
   if (!read) return report_error(kExitBadInput, read.error());
   const auto& hosts = *read;

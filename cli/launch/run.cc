@@ -22,6 +22,7 @@
 #include "cli/watch/progress.h"
 #include "cli/watch/run_registry.h"
 #include "cli/watch/serve_page.h"
+#include "core/mission/sites.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "modes/table_file.h"
@@ -304,6 +305,7 @@ int run(const RunOptions& options) {
   auto entry = register_early(options, setup.run);
   const auto scenario = load_with_a_note(options);
   if (!scenario) return kExitBadInput;
+  if (scenario->mission().sites.any()) return report_error(kExitBadInput, kSitesAreSimulated);
   if (!options.authenticator.can_sign())
     return report_error(kExitBadInput, cannot_sign(options.key_file));
   if (const auto problem = why_key_is_needed(scenario->mission(), options.authenticator))

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "lab/simulation.h"
+#include "lab/site_simulation.h"
 #include "logger/amendments_file.h"
 #include "logger/summary.h"
 #include "plan/plan.h"
@@ -44,12 +46,53 @@ std::optional<std::string> write_amendments(const Recorder& recorder, const Scen
                     amendments_text(recorder.amendments(), scenario.mission().timing.dt_s));
 }
 
+/// Steps until the mission is over or the disk is full. Returns the wall time [s].
+/// @param turns_between_looks  because looks take time
+template <class Simulated>
+double run(Simulated& simulation, const RunRecord& record, int turns_between_looks,
+           const std::function<void(SimulationInProgress&)>& look) {
+  const auto start = std::chrono::steady_clock::now();
+  SimulationInProgress progress{simulation.recorder(), [&simulation](std::string reason) {
+                                  simulation.end(std::move(reason));
+                                }};
+  for (int turns = 1; simulation.step() && record.good(); ++turns) {
+    if (turns % turns_between_looks == 0) look(progress);
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Writes what the recorder does not.
+Result<SimulatedRecord> write_rest(SimulatedRecord result, const Recorder& recorder,
+                                   const Scenario& scenario, RunRecord& record,
+                                   SimulatedEvents* events) {
+  auto error = record.flush();
+  if (!error && events) error = events->flush();
+  if (!error) error = write_amendments(recorder, scenario, record);
+  if (!error) error = write_file(record.folder() / kSummaryFile, to_text(result.summary));
+  if (error) return failure(*error + "; the record is incomplete");
+  return result;
+}
+
+Result<SimulatedRecord> simulate_sites_into(RunRecord& record, const Scenario& scenario,
+                                            const std::function<void(SimulationInProgress&)>& look,
+                                            const OwnLaw& law) {
+  const std::string started = wall_clock_text();
+  lab::SiteSimulation simulation(encode_plan(scenario.mission()), record.trajectory(),
+                                 record.metrics(), law.laws);
+  const double wall_time_s = run(simulation, record, 1, look);
+  const Recorder& recorder = simulation.recorder();
+  const bool failed = recorder.facts().no_metric_from.has_value();
+  return write_rest({summary_of(recorder, scenario, started, wall_time_s, 0, law.name), failed},
+                    recorder, scenario, record, nullptr);
+}
+
 }  // namespace
 
 Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
-                                      const std::function<void(lab::Simulation&)>& look,
+                                      const std::function<void(SimulationInProgress&)>& look,
                                       SimulatedEvents* events, Amendments amendments,
                                       const OwnLaw& law) {
+  if (scenario.mission().sites.any()) return simulate_sites_into(record, scenario, look, law);
   lab::Simulation simulation({.plan = encode_plan(scenario.mission()),
                               .version = version(),
                               .host = host_name(),
@@ -57,22 +100,14 @@ Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenari
                               .laws = law.laws},
                              record.trajectory(), record.metrics(), events);
   const std::string started = wall_clock_text();
-  const auto start = std::chrono::steady_clock::now();
-  for (int turns = 1; simulation.step() && record.good(); ++turns) {
-    if (turns % kTurnsBetweenLooks == 0) look(simulation);
-  }
-  const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - start;
-
-  SimulatedRecord result{summary_of(simulation.recorder(), scenario, started, wall_time.count(),
-                                    events ? events->removed() : 0, law.name),
-                         simulation.coordinator().state() == MissionState::kFailed ||
-                             simulation.recorder().facts().no_metric_from.has_value()};
-  auto error = record.flush();
-  if (!error && events) error = events->flush();
-  if (!error) error = write_amendments(simulation.recorder(), scenario, record);
-  if (!error) error = write_file(record.folder() / kSummaryFile, to_text(result.summary));
-  if (error) return failure(*error + "; the record is incomplete");
-  return result;
+  const double wall_time_s = run(simulation, record, kTurnsBetweenLooks, look);
+  const Recorder& recorder = simulation.recorder();
+  const bool failed = simulation.coordinator().state() == MissionState::kFailed ||
+                      recorder.facts().no_metric_from.has_value();
+  return write_rest({summary_of(recorder, scenario, started, wall_time_s,
+                                events ? events->removed() : 0, law.name),
+                     failed},
+                    recorder, scenario, record, events);
 }
 
 }  // namespace ergocast::cli

@@ -8,8 +8,9 @@
 
 #include "cli/record/simulated_events.h"
 #include "core/base/result.h"
+#include "core/law/law.h"
 #include "core/mission/amendments.h"
-#include "lab/simulation.h"
+#include "logger/recorder.h"
 #include "logger/run_record.h"
 #include "scenario/scenario.h"
 
@@ -27,16 +28,22 @@ struct OwnLaw {
   std::string name{};  ///< for the summary
 };
 
+/// A simulation that goes on.
+struct SimulationInProgress {
+  const Recorder& recorder;
+  std::function<void(std::string reason)> end;  ///< ends its mission in order
+};
+
 /// Simulates the mission until it is over or the disk is full, and writes the tables and
 /// summary.json.
 /// @param record  empty; in a folder of prepare_run_directory()
-/// @param look    called every few hundred events; it may end the simulation
-/// @param events  writes the event log, too; may be null
-/// @param amendments  known from the beginning; are_amendments()
+/// @param look    called now and then; it may end the simulation
+/// @param events  writes the event log, too; may be null. A team of sites has none
+/// @param amendments  known from the beginning; are_amendments(). None for a team of sites
 /// @param law     of a program's own; make_law() without
 /// @return        the error if the record is incomplete
 Result<SimulatedRecord> simulate_into(RunRecord& record, const Scenario& scenario,
-                                      const std::function<void(lab::Simulation&)>& look,
+                                      const std::function<void(SimulationInProgress&)>& look,
                                       SimulatedEvents* events = nullptr, Amendments amendments = {},
                                       const OwnLaw& law = {});
 

@@ -17,6 +17,7 @@
 #include "core/mission/amendments.h"
 #include "core/mission/end_by_finding.h"
 #include "lab/simulation.h"
+#include "lab/site_simulation.h"
 #include "logger/amendments_file.h"
 #include "logger/recorder.h"
 #include "logger/run_data.h"
@@ -36,24 +37,35 @@ constexpr int kTurnsBetweenComparisons = 256;
 
 /// The simulation of a plan, as its recorder writes it.
 struct Repetition {
-  Repetition(const Mission& mission, Amendments amendments)
-      : simulation({.plan = encode_plan(mission),
-                    .version = version(),
-                    .amendments = std::move(amendments)},
-                   trajectory, metrics) {}
+  Repetition(const Mission& mission, Amendments amendments) {
+    const std::vector<std::byte> plan = encode_plan(mission);
+    if (mission.sites.any()) {
+      sites.emplace(plan, trajectory, metrics);
+    } else {
+      simulation.emplace(
+          lab::SimulationOptions{
+              .plan = plan, .version = version(), .amendments = std::move(amendments)},
+          trajectory, metrics);
+    }
+  }
+
+  bool step() { return sites ? sites->step() : simulation->step(); }
+  const Recorder& recorder() const { return sites ? sites->recorder() : simulation->recorder(); }
 
   /// Runs until the first difference or the end of either trajectory.
   void run(TrajectoryComparison& comparison) {
     bool more = true;
     for (bool going_on = true; more && going_on;) {
-      for (int i = 0; i < kTurnsBetweenComparisons && more; ++i) more = simulation.step();
+      const int turns = sites ? 1 : kTurnsBetweenComparisons;
+      for (int i = 0; i < turns && more; ++i) more = step();
       std::istringstream rows(std::exchange(trajectory, std::ostringstream()).str());
       going_on = comparison.compare(rows);
     }
   }
 
   std::ostringstream trajectory, metrics;
-  lab::Simulation simulation;
+  std::optional<lab::Simulation> simulation;
+  std::optional<lab::SiteSimulation> sites;
 };
 
 /// A recorder that received only the recorded rows, and the tables that it writes.
@@ -180,7 +192,7 @@ std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Miss
                                              const Repetition& repetition,
                                              const TrajectoryComparison& comparison,
                                              const Json& summary) {
-  const Recorder& simulated = repetition.simulation.recorder();
+  const Recorder& simulated = repetition.recorder();
   const bool complete = !comparison.recorded_over();
   const bool whole = complete && comparison.missing() == 0 && is_simulated(summary, simulated);
   rows.amendments = amendments;  // MISSION has the newest targets only
@@ -245,7 +257,7 @@ int verify(const fs::path& run_dir) {
     print_message(run_dir.string() + ": no " + kSummaryFile +
                   ", so restarts are unknown; comparing anyway");
     summary = Json::object();
-  } else if (!is_simulated(summary, repetition->simulation.recorder())) {
+  } else if (!is_simulated(summary, repetition->recorder())) {
     const auto reason = why_not_repeatable(summary, *mission);
     if (!reason.empty())
       return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);

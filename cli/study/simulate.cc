@@ -19,8 +19,7 @@
 namespace ergocast::cli {
 namespace {
 
-void show(const lab::Simulation& simulation, const Mission& mission, ProgressDisplay& display) {
-  const Recorder& recorder = simulation.recorder();
+void show(const Recorder& recorder, const Mission& mission, ProgressDisplay& display) {
   MissionProgress at;
   at.tick = at.world_tick = recorder.next_row();
   at.tick_count = tick_count_of(mission.timing, recorder.follower().amendments().ends);
@@ -44,19 +43,30 @@ Result<SimulatedRecord> simulate_and_show(RunRecord& record, const Scenario& sce
   std::optional<SimulatedEvents> events;
   if (event_log) events.emplace(record.folder(), scenario.mission());
   std::size_t finds_told = 0;
-  const auto look = [&](lab::Simulation& simulation) {
-    const std::vector<Find>& finds = simulation.recorder().facts().finds.list();
+  const auto look = [&](SimulationInProgress& simulation) {
+    const std::vector<Find>& finds = simulation.recorder.facts().finds.list();
     for (; finds_told < finds.size(); ++finds_told) display.print(to_text(finds[finds_told]));
-    show(simulation, scenario.mission(), display);
+    show(simulation.recorder, scenario.mission(), display);
     if (signals.take() > 0) simulation.end("Ctrl-C or SIGTERM");
   };
   return simulate_into(record, scenario, look, events ? &*events : nullptr, std::move(amendments));
+}
+
+/// What a simulated team of sites does not have; empty: nothing was asked of it.
+std::string why_not_with_sites(const SimulateOptions& options, const Mission& mission) {
+  if (!mission.sites.any()) return "";
+  if (options.event_log) return "--event-log: a team of sites sends no messages yet (leave it out)";
+  if (options.amendments.empty()) return "";
+  return options.amendments.front().flag +
+         ": nothing amends a team of sites yet (leave it out, or team.sites)";
 }
 
 int simulate(const SimulateOptions& options) {
   const MissionOptions& chosen = options.mission;
   const auto scenario = load_or_complain(chosen.scenario, chosen.overrides);
   if (!scenario) return kExitBadInput;
+  if (const auto problem = why_not_with_sites(options, scenario->mission()); !problem.empty())
+    return report_error(kExitBadInput, problem);
   auto amendments = amendments_with(options.amendments, *scenario, chosen.scenario);
   if (!amendments) return kExitBadInput;
   const auto folder = prepare_run_directory(chosen.out, *scenario);

@@ -137,6 +137,9 @@ int trials(const TrialsOptions& options) {
   }
   const auto scenario = load_or_complain(options.mission.scenario, options.mission.overrides);
   if (!scenario) return kExitBadInput;
+  if (scenario->mission().sites.any())
+    return report_error(kExitBadInput,
+                        "--seeds: the laboratory has no team of sites yet; use study");
   const auto faults = faults_by_seed(options.faults);
   if (!faults) return kExitBadInput;
   const auto& path = options.mission.out;

@@ -24,6 +24,9 @@ using Tick = std::int64_t;
 
 /// Limit (Team): agents. Beyond it: no further agent is admitted.
 inline constexpr int kMaxAgents = 1024;
+/// Limit (Scenario): agents with `team { sites }`, which only a simulation has. Beyond it: the
+/// scenario is refused.
+inline constexpr int kMostAgentsOfSites = 16384;
 /// Limit (Team): incarnations of one agent. Beyond it: no further incarnation is admitted; messages
 /// are refused with `limit`.
 inline constexpr int kMaxIncarnationsPerAgent = 16;

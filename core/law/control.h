@@ -14,7 +14,7 @@
 namespace ergocast {
 
 /// Computes one agent's command from the team's coverage. Holds the mission's constant tables and a
-/// K-vector of scratch space; no step allocates.
+/// K-vector of scratch space. Only the first step of a further agent allocates.
 class Controller final : public Law {
  public:
   /// @param kind  of the agents that it steers, core/mission/kinds.h

@@ -98,7 +98,7 @@ CoverageRow* CoverageTable::find_or_add(const Author& author) {
   const auto incarnations = std::ranges::count_if(
       rows_, [&](const CoverageRow& row) { return row.author().agent == author.agent; });
   if (incarnations >= kMaxIncarnationsPerAgent) return nullptr;
-  if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
+  if (author.agent < 0 || author.agent >= kMostAgentsOfSites) return nullptr;
   scratch_.counted.resize(rows_.size() + 1);
   scratch_.qualities.resize(rows_.size() + 1);
   return &*rows_.insert(rows_.begin() + static_cast<std::ptrdiff_t>(at),

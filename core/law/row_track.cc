@@ -12,9 +12,9 @@ namespace ergocast {
 void RowTrack::see(Tick tick, const Eigen::Vector3d& x_m) {
   if (!places_.empty() && places_.back().tick >= tick) return;
   // Many are erased at a time: moving all others for each new place would cost more than using it.
-  if (places_.size() == 2 * most_places_)
-    places_.erase(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(most_places_));
-  places_.reserve(2 * most_places_);
+  if (places_.size() == most_places_ + kErasedAtOnce)
+    places_.erase(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(kErasedAtOnce));
+  places_.reserve(most_places_ + kErasedAtOnce);
   places_.push_back({tick, x_m});
 }
 

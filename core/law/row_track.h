@@ -86,6 +86,8 @@ class RowTrack {
   void add_due_steps(const Sampling& sampling, double weight = 1);
   void add_step(Tick tick, const CoverageTable& table, std::size_t row, const Sampling& sampling);
 
+  static constexpr std::size_t kErasedAtOnce = 16;
+
   std::size_t most_places_;
   std::vector<PlaceAtTick> places_;  // ascending by tick; the last most_places_ count
   Author author_;                    // author of the row that is extended

@@ -2,6 +2,8 @@
 // Draws noise by agent and tick, so that equal seeds give equal velocities.
 #include "core/law/steering.h"
 
+#include <algorithm>
+
 #include "core/base/noise.h"
 #include "core/base/portable_math.h"
 #include "core/mission/kinds.h"
@@ -26,7 +28,8 @@ Steering::Steering(const Mission& mission, int kind)
       seed_(mission.seed),
       dt_s_(mission.timing.dt_s),
       scale_(law_, dt_s_),
-      push_ticks_(push_ticks(law_, dt_s_)) {}
+      push_ticks_(push_ticks(law_, dt_s_)),
+      pushes_(1) {}
 
 void Steering::set_law(const LawNumbers& numbers) {
   if (numbers == LawNumbers{law_.u_max_mps, law_.noise_intensity, law_.noise_ceiling}) return;
@@ -52,10 +55,20 @@ Eigen::Vector3d Steering::velocity_mps(AgentId agent, Tick tick, const Eigen::Ve
   return velocity;
 }
 
+/// One agent alone needs one slot, whatever its number is. Others get theirs when they first need
+/// one.
+Steering::Push& Steering::slot_of(AgentId drawn) {
+  const AgentId first = pushes_.front().drawn;
+  if (pushes_.size() == 1 && (first == drawn || first == kUnassigned)) return pushes_.front();
+  const std::size_t at = static_cast<std::uint32_t>(drawn) % kMostAgentsOfSites;
+  pushes_.resize(std::max({pushes_.size(), at + 1, std::size_t{2}}));
+  return pushes_[at];
+}
+
 /// η of one stretch of push_ticks_ ticks.
 Eigen::Vector3d Steering::push(AgentId agent, Tick stretch) {
   const AgentId drawn = law_.paired_pushes ? agent - agent % 2 : agent;
-  Push& last = pushes_[static_cast<std::uint32_t>(drawn) % pushes_.size()];
+  Push& last = slot_of(drawn);
   if (last.drawn != drawn || last.stretch != stretch) {
     last = {drawn, stretch,
             normal_in(domain_, seed_, Purpose::kPush, static_cast<std::uint32_t>(drawn),

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <vector>
 
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
@@ -37,7 +37,7 @@ class Steering {
 
   /// The velocity command of (10) at position `x_m`:
   ///   v = u − k (x − centre) + perturbation,  a function of (seed, agent, tick) and the field.
-  /// In a plane v_z is 0. Does not allocate.
+  /// In a plane v_z is 0. Allocates only at the first step of a further agent.
   Eigen::Vector3d velocity_mps(AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
                                const FieldAt& field, double epsilon);
 
@@ -49,6 +49,7 @@ class Steering {
     Eigen::Vector3d eta{0, 0, 0};
   };
 
+  Push& slot_of(AgentId drawn);
   Eigen::Vector3d push(AgentId agent, Tick stretch);
 
   Box domain_;
@@ -57,7 +58,7 @@ class Steering {
   double dt_s_;
   PerturbationScale scale_;
   Tick push_ticks_;
-  std::array<Push, kMaxAgents> pushes_;  // the last of each agent: one is held for many ticks
+  std::vector<Push> pushes_;  // the last of each agent so far: one is held for many ticks
 };
 
 }  // namespace ergocast

@@ -173,6 +173,17 @@ struct SearchSensor {
   bool has_false_alarms() const { return false_alarms_per_s > 0; }
 };
 
+/// The most sites of a team: memory grows with the square of their number.
+inline constexpr int kMostSites = 1024;
+
+/// Sites that sum up their members' rows (core/law/site_row.h); core/mission/sites.h.
+struct TeamSites {
+  int count = 0;             ///< 0: each agent receives the rows of all others
+  int row_period_ticks = 2;  ///< between two rows of a site
+
+  bool any() const { return count > 0; }
+};
+
 struct Mission {
   std::string name;
   std::uint64_t seed = 0;
@@ -196,7 +207,8 @@ struct Mission {
   HiddenObjects objects;
   VehicleLimits vehicle;  ///< of those whose kind has none of its own
   Separation separation;
-  SearchSensor sensor;          ///< of every agent
+  SearchSensor sensor;  ///< of every agent
+  TeamSites sites;
   bool dead_reckoning = false;  ///< whether forecasts use teammates' places, core/law/forecast.h
   bool wait_for_logger =
       true;  ///< lockstep: the world runs a bounded number of ticks ahead of the record

@@ -2,7 +2,10 @@
 // The members of the team, and from which tick on their coverage counts.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <ranges>
+#include <span>
 
 #include "core/base/ids.h"
 
@@ -35,5 +38,13 @@ struct RosterEntry {
     return forgotten == (tick >= since_tick && revision >= since_revision);
   }
 };
+
+/// The entries of all incarnations under a number.
+/// @param roster  in ascending order of authors
+inline std::span<const RosterEntry> entries_of(AgentId id, std::span<const RosterEntry> roster) {
+  const auto found = std::ranges::equal_range(
+      roster, id, {}, [](const RosterEntry& entry) { return entry.author.agent; });
+  return {found.begin(), found.end()};
+}
 
 }  // namespace ergocast

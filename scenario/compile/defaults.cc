@@ -235,7 +235,7 @@ void fill_sensors(proto::Agents& agents) {
       valid("footprint_sigma_m", agents.has_footprint_sigma_m(), agents.footprint_sigma_m());
   const bool quality = valid("quality", agents.has_quality(), agents.quality());
   const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();
-  if ((sigma || quality) && agents.kind_size() == 0 && size > 0 && size <= kMaxAgents) {
+  if ((sigma || quality) && agents.kind_size() == 0 && size > 0 && size <= kMostAgentsOfSites) {
     proto::Kind& all = *agents.add_kind();
     all.set_name("all");
     all.set_count(static_cast<int>(size));
@@ -253,7 +253,7 @@ void fill_team(proto::Agents& agents) {
   std::int64_t count = 0;
   for (const proto::Kind& kind : agents.kind()) count += std::max(0, kind.count());
   agents.set_random_count(static_cast<int>(
-      std::clamp<std::int64_t>(count - agents.starts_size(), 0, std::int64_t{kMaxAgents})));
+      std::clamp<std::int64_t>(count - agents.starts_size(), 0, std::int64_t{kMostAgentsOfSites})));
 }
 
 /// @pre the constants are filled in
@@ -301,8 +301,9 @@ void put_flags_over(const Overrides& overrides, proto::Scenario& scenario, Findi
   }
   if (!overrides.agents) return;
   findings.blame("agents.random_count", "--agents");
-  const std::string limits = "1 to " + std::to_string(kMaxAgents);
-  if (*overrides.agents >= 1 && *overrides.agents <= kMaxAgents) {
+  const int most = most_agents(scenario);
+  const std::string limits = "1 to " + std::to_string(most);
+  if (*overrides.agents >= 1 && *overrides.agents <= most) {
     resize_team(*overrides.agents, *scenario.mutable_agents());
   } else {
     findings.add_to_flag("--agents",
@@ -394,7 +395,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   if (!agents.has_quorum()) {
     const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();
     // A team outside its limits is reported for its size, not also for its quorum.
-    agents.set_quorum(static_cast<int>(std::clamp<std::int64_t>(size, 1, kMaxAgents)));
+    agents.set_quorum(static_cast<int>(std::clamp<std::int64_t>(size, 1, kMostAgentsOfSites)));
   }
 }
 

@@ -163,6 +163,10 @@ TargetDensity target_of(const proto::Scenario& scenario) {
   return density;
 }
 
+int most_agents(const proto::Scenario& scenario) {
+  return scenario.team().sites() > 0 ? kMostAgentsOfSites : kMaxAgents;
+}
+
 bool has_walls(const proto::Scenario& scenario) {
   return scenario.world().walls_size() > 0 ||
          std::ranges::any_of(scenario.target().keep_outs(), &proto::Polygon::solid);

@@ -20,6 +20,9 @@ Basis basis_of(const proto::Basis& basis);
 /// The place that the contraction of `law` pulls to.
 Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain);
 
+/// How many agents the team may have.
+int most_agents(const proto::Scenario& scenario);
+
 /// Whether anything is solid: a wall, or a keep-out.
 bool has_walls(const proto::Scenario& scenario);
 

@@ -93,7 +93,7 @@ constexpr Row kRows[] = {
     {"Separation", "position_error_m", kMissions, kDefaulted, 0},
     {"Separation", "response_s", kMissions, kDefaulted, 0},
 
-    {"Agents", "random_count", between(0, kMaxAgents), kDefaulted, 0},
+    {"Agents", "random_count", between(0, kMostAgentsOfSites), kDefaulted, 0},
     {"Agents", "quorum", kMissions, kLeft},
     {"Agents", "footprint_sigma_m", between(0, 1e7), kLeft},
     {"Agents", "quality", above(0, 1e6), kLeft},

@@ -15,6 +15,7 @@
 #include "scenario/rules/validate_kinds.h"
 #include "scenario/rules/validate_objects.h"
 #include "scenario/rules/validate_separation.h"
+#include "scenario/rules/validate_sites.h"
 #include "scenario/rules/validate_stations.h"
 #include "scenario/rules/validate_target.h"
 #include "scenario/rules/validate_vehicle.h"
@@ -56,6 +57,7 @@ class Validator {
     validate_walls(scenario_, checks_);
     validate_objects(scenario_, checks_);
     validate_stations(scenario_, checks_);
+    validate_sites(scenario_, checks_);
   }
 
  private:
@@ -337,11 +339,10 @@ class Validator {
       missing("agents", "the team is empty",
               is_box() ? "add starts { x_m: … y_m: … z_m: … } or random_count"
                        : "add starts { x_m: … y_m: … } or random_count");
-    } else if (size > kMaxAgents) {
-      problem(
-          "agents",
-          "a team of " + std::to_string(size) + " is above the limit " + std::to_string(kMaxAgents),
-          "leave out " + std::to_string(size - kMaxAgents));
+    } else if (const int most = most_agents(scenario_); size > most) {
+      problem("agents",
+              "a team of " + std::to_string(size) + " is above the limit " + std::to_string(most),
+              "leave out " + std::to_string(size - most));
     } else if (agents.quorum() > size) {
       problem("agents.quorum",
               std::to_string(agents.quorum()) + " is above the limit, the team's size " +

@@ -272,6 +272,40 @@ std::vector<Mistake> mistakes_of_objects() {
   };
 }
 
+std::vector<Mistake> mistakes_of_sites() {
+  const std::string one = "team { sites: 1 } ";
+  const auto excludes = [](const char* at, const std::string& text, const std::string& field) {
+    return Mistake{at, text, field + ": cannot be with team.sites: "};
+  };
+  const auto of_time = [&](const std::string& field, const std::string& value) {
+    return excludes(kTime, "duration_s: 60 " + field + ": " + value + " } team { sites: 1",
+                    "time." + field);
+  };
+  return {
+      {kLaw, "team { sites: 2 } law {", "team.sites: 2 is above the limit, the team's size 1"},
+      {"agents {", one + "agents { random_count: 1024",
+       "team.sites: 1025 agents of a site are above the limit 1024"},
+      {kLaw, "team { site_row_period_ticks: 3 } law {",
+       "team.site_row_period_ticks: has no effect without sites"},
+      excludes(kLaw, one + "law { kind: MOW", "law.kind"),
+      excludes(kLaw, one + "law { anticipation: 0", "law.anticipation"),
+      excludes(kLaw, one + "law { memory_half_life_s: 30", "law.memory_half_life_s"),
+      excludes("agents {", one + "agents { dead_reckoning: false", "agents.dead_reckoning"),
+      of_time("pace", "REALTIME"),
+      of_time("contribution_encoding", "FIXED16"),
+      excludes(kLaw, one + "world { radio_range_m: 50 } law {", "world.radio_range_m"),
+      excludes(kLaw,
+               one + "world { speed_limit_mps: 1000 " + wall("60 10 80 10 80 30 60 30") + "} law {",
+               "world.walls"),
+      excludes(kLaw, one + keeping("distance_m: 5", ""), "separation"),
+      excludes(kLaw, one + "world { objects { count: 2 end_when_found: 1 } } law {",
+               "world.objects.end_when_found"),
+      excludes("agents {",
+               one + "agents { kind { name: \"a\" count: 1 station { x_m: 10 y_m: 20 } }",
+               "agents.kind"),
+  };
+}
+
 std::vector<Mistake> mistakes_of_room_maps() {
   const auto map = [](const std::string& file) { return "file: \"" + file + ".yaml\" "; };
   std::vector<Mistake> mistakes = {
@@ -409,7 +443,7 @@ std::vector<Mistake> scenario_mistakes() {
   for (const auto& mistakes :
        {mistakes_of_the_text(), mistakes_between_fields(), target_mistakes(), mistakes_of_kinds(),
         mistakes_of_free_domains(), mistakes_of_walls(), mistakes_of_stations(),
-        mistakes_of_objects(), mistakes_of_room_maps(), mistakes_in_space()}) {
+        mistakes_of_objects(), mistakes_of_sites(), mistakes_of_room_maps(), mistakes_in_space()}) {
     all.insert(all.end(), mistakes.begin(), mistakes.end());
   }
   return all;

@@ -115,6 +115,22 @@ TEST(Command, IsThePapersLawTermByTerm) {
   }
 }
 
+TEST(Command, IsThatOfAControllerOfItsOwnWhereOneServesManyAgents) {
+  for (const Mission& mission : every_law()) {
+    Controller shared(mission);
+    const Coefficients coverage = coverage_of(mission, 50);
+    for (Tick tick = 0; tick < 3; ++tick) {
+      for (const AgentId agent : {7, 3, 12345, 0, 2, 1}) {
+        Controller own(mission);
+        const Eigen::Vector3d x_m = place_in(mission.domain, 2000 + static_cast<unsigned>(agent));
+        EXPECT_EQ(command_at(shared, mission, x_m, coverage, agent, tick),
+                  command_at(own, mission, x_m, coverage, agent, tick))
+            << agent;
+      }
+    }
+  }
+}
+
 TEST(Command, GradientIsTheSlopeOfPhiSquaredInTheNewestSample) {
   // With S the sum before the sample and T the time after it, c = (S + f(x) dt) / T, so that
   // ∂φ²/∂x = 2 dt/T Σ λ (c − μ) ∇f = 2 dt/T · B.

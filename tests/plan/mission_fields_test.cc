@@ -63,6 +63,7 @@ TEST(MissionFields, AreAllMembers) {
   EXPECT_EQ(listed<HiddenObjects>(), members<HiddenObjects>());
   EXPECT_EQ(listed<ObjectMotion>(), members<ObjectMotion>());
   EXPECT_EQ(listed<Battery>(), members<Battery>());
+  EXPECT_EQ(listed<TeamSites>(), members<TeamSites>());
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ using test::with_free_domain;
 using test::with_inertia;
 using test::with_lease;
 using test::with_places;
+using test::with_sites;
 using test::with_stations;
 using test::with_walls;
 using test::with_wings;
@@ -302,6 +303,18 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m.sensor.position_error_m = 1e4; },
       [](Mission& m) { m.sensor.confirm_at = 1; },
       [](Mission& m) { m.sensor.false_alarms_per_s = -1; },
+      [](Mission& m) { m.sites.row_period_ticks = 3; },  // of no sites
+      [](Mission& m) { m.sites.count = 1; },             // and a distance
+      [](Mission& m) { m = with_sites(m), m.sites.count = -1; },
+      [](Mission& m) { m = with_sites(m), m.sites.count = 3; },  // of two agents
+      [](Mission& m) { m = with_sites(m), m.sites.row_period_ticks = 0; },
+      [](Mission& m) { m = with_sites(m), m.radio_range_m = 60; },
+      [](Mission& m) { m = with_sites(m), m.dead_reckoning = false; },
+      [](Mission& m) { m = with_sites(m), m.law.memory_half_life_s = 321; },
+      [](Mission& m) { m = with_sites(m), m.law.anticipation = 0; },
+      [](Mission& m) {
+        m = with_sites(m), m.kinds.clear(), m.starts_m.assign(2049, {17, 20, 0});
+      },                                           // 1025 at a site
       [](Mission& m) { m.wall_clearance_m = 1; },  // of no walls
       [](Mission& m) { m = with_walls(rich_mission_in_space()); },
       [](Mission& m) { m = with_walls(m), m.wall_clearance_m = -1; },
@@ -353,6 +366,11 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
         << "change " << i;
   }
   EXPECT_TRUE(is_taken(with_walls(rich_mission())));
+  EXPECT_TRUE(is_taken(with_sites(rich_mission())));
+  Mission crowd = with_sites(rich_mission());
+  crowd.kinds.clear();
+  crowd.starts_m.assign(2048, {17, 20, 0});
+  EXPECT_TRUE(is_taken(crowd));
   Mission wide = rich_mission();
   widen(wide);
   EXPECT_TRUE(is_taken(wide));

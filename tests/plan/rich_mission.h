@@ -86,6 +86,7 @@ inline Mission rich_mission() {
   mission.sensor.false_alarms_per_s = 0;  // needs a plane: with_false_alarms()
   mission.sensor.position_error_m = 0.25;
   mission.sensor.confirm_at = 0.95;
+  mission.sites = {};    // need a team without most of these: with_sites()
   mission.vehicle = {};  // inertia allows none of these: with_inertia()
   mission.wait_for_logger = false;
   return mission;
@@ -117,6 +118,20 @@ inline Mission with_places(Mission mission) {
 /// plane.
 inline Mission with_false_alarms(Mission mission) {
   mission.sensor.false_alarms_per_s = 0.02;
+  mission.objects.end_when_found = 0;
+  return mission;
+}
+
+/// The mission in sites, without what they exclude; it must be in a plane.
+inline Mission with_sites(Mission mission) {
+  mission.sites = {2, 5};
+  mission.law.memory_half_life_s = 0;
+  mission.dead_reckoning = true;
+  mission.law.kind = LawKind::kCover;
+  mission.timing.pace = Pace::kLockstep;
+  mission.timing.contribution_encoding = ContributionEncoding::kDouble;
+  mission.radio_range_m = 0;
+  mission.separation = {};
   mission.objects.end_when_found = 0;
   return mission;
 }

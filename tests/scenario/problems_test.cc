@@ -161,7 +161,7 @@ constexpr Mistake kFields[] = {
     {"duration_s: 60", "duration_s: 60 catch_up_limit_ticks: -1", "-1 is below the limit 0"},
     {"agents {", "agents { random_count: -1", "agents.random_count: -1 is below the limit 0"},
     {"agents {", "agents { random_count: 1024", "agents: a team of 1025 is above the limit 1024"},
-    {"agents {", "agents { random_count: 2147483647", "2147483647 is above the limit 1024"},
+    {"agents {", "agents { random_count: 2147483647", "2147483647 is above the limit 16384"},
     {"agents {", "agents { quorum: 0", "agents.quorum: 0 is below the limit 1"},
     {"agents {", "agents { quorum: 2", "agents.quorum: 2 is above the limit, the team's size 1"},
     {"agents {", "world { disturbance_intensity: -1 } agents {", "-1 is below the limit 0"},

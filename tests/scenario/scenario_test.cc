@@ -257,6 +257,17 @@ TEST(Overrides, AgentsCutTheTeamAndItsQuorum) {
   EXPECT_EQ(good(kSmall, {.agents = 6}).mission().quorum, 6);
 }
 
+TEST(Sites, AllowALargerTeam) {
+  const std::string text = small_with("agents {", "team { sites: 2 } agents {");
+  EXPECT_EQ(good(text, {.agents = 2048}).mission().starts_m.size(), 2048u);
+  EXPECT_TRUE(
+      has(joined(problems_of(text, {.agents = 2049})), "team.sites: 1025 agents of a site"));
+  EXPECT_TRUE(has(joined(problems_of(text, {.agents = 16385})),
+                  "--agents: 16385 is outside the limits 1 to 16384"));
+  EXPECT_TRUE(has(joined(problems_of(text, {.agents = 1})),
+                  "team.sites: 2 is above the limit, the team's size 1"));
+}
+
 TEST(Overrides, TakeTheBlameForWhatTheyBreak) {
   const std::vector<Problem> problems =
       problems_of(kSmall, {.duration_s = -1, .realtime_factor = std::nan(""), .agents = 1025});

@@ -67,7 +67,7 @@ TEST(MissionText, ReadsBackToEveryFieldOfAMission) {
   for (const Mission& mission :
        {rich_mission(), rich_mission_in_space(), with_inertia(rich_mission()),
         with_wings(rich_mission()), with_walls(rich_mission()), with_places(rich_mission()),
-        with_false_alarms(rich_mission())}) {
+        with_false_alarms(rich_mission()), with_sites(rich_mission())}) {
     const std::string text = mission_text(mission) + "target { uniform_weight: 1 }";
     // There is no target in walls.
     EXPECT_EQ(encode_plan(as_scenarios_know_it(good(text).mission())),
@@ -83,7 +83,8 @@ TEST(MissionText, HasNoDefaultThatAScenarioWritesOut) {
   for (const std::string written :
        {"sensor { detections_per_s: 0.5 }", "sensor { radius_m: 0 }", "sensor { }",
         "sensor { radius_m: 3 detections_per_s: 0.5 }", "vehicle { kind: POINT }",
-        "separation { distance_m: 2 lease_s: 0 } world { speed_limit_mps: 5 }"}) {
+        "separation { distance_m: 2 lease_s: 0 } world { speed_limit_mps: 5 }", "team { }",
+        "team { site_row_period_ticks: 2 }", "team { sites: 1 site_row_period_ticks: 2 }"}) {
     const Scenario scenario = good(small_with("law {", written + " law {"));
     EXPECT_EQ(without_block(scenario.print(), "target"), mission_text(scenario.mission()))
         << written;

@@ -239,6 +239,30 @@ void agree_on_stations(proto::Scenario& scenario) {
   }
 }
 
+/// One in four teams that drew sites has them, without what they exclude.
+void agree_on_sites(proto::Scenario& scenario) {
+  const proto::Team& team = scenario.team();
+  if (!team.has_sites() || team.sites() % 4 != 0) return scenario.clear_team();
+  const int size = scenario.agents().starts_size() + scenario.agents().random_count();
+  scenario.mutable_team()->set_sites(std::min(team.sites(), size));
+  proto::Law& law = *scenario.mutable_law();
+  law.clear_kind();
+  law.clear_memory_half_life_s();
+  law.clear_anticipation();
+  scenario.mutable_agents()->clear_dead_reckoning();
+  scenario.mutable_time()->clear_contribution_encoding();
+  scenario.mutable_time()->clear_pace();
+  scenario.clear_separation();
+  for (proto::Kind& kind : *scenario.mutable_agents()->mutable_kind()) kind.clear_station();
+  for (proto::Polygon& keep_out : *scenario.mutable_target()->mutable_keep_outs())
+    keep_out.clear_solid();
+  if (!scenario.has_world()) return;
+  proto::World& world = *scenario.mutable_world();
+  world.clear_radio_range_m();
+  world.clear_walls();
+  if (world.has_objects()) world.mutable_objects()->clear_end_when_found();
+}
+
 }  // namespace
 
 void agree(proto::Scenario& scenario) {
@@ -271,6 +295,7 @@ void agree(proto::Scenario& scenario) {
   proto::Agents& agents = *scenario.mutable_agents();
   const int team = agents.starts_size() + agents.random_count();
   if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), team));
+  if (scenario.has_team()) agree_on_sites(scenario);
   agree_on_kinds(team, agents);
   agree_on_free_domain(scenario);
   agree_on_vehicles(scenario);

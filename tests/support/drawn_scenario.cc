@@ -124,6 +124,9 @@ const std::map<std::string, Rule>& rules() {
       {"Scenario.vehicle", may(draw_block)},
       {"Scenario.separation", may(draw_block)},
       {"Scenario.sensor", may(draw_block)},
+      {"Scenario.team", may(draw_block)},
+      {"Team.sites", may(number(1, 20))},  // most teams stay whole: see drawn_agreement.h
+      {"Team.site_row_period_ticks", may(number(1, 5))},
       {"Sensor.radius_m", may(spread(1, 50))},
       {"Sensor.detections_per_s", may(spread(0.01, 5))},
       {"Sensor.false_alarms_per_s", may(spread(0.001, 0.5))},  // see drawn_agreement.h

@@ -65,6 +65,24 @@ TEST_F(BadInput, UnknownCommandsAndOptionsAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(out()));
 }
 
+TEST_F(BadInput, ATeamOfSitesIsOnlySimulated) {
+  const auto file = write("sites.textproto", R"(
+domain { size_x_m: 100 size_y_m: 50 } target { uniform_weight: 1 } law { u_max_mps: 5 }
+time { duration_s: 5 } agents { random_count: 4 } team { sites: 2 }
+)");
+  EXPECT_EQ(ergocast({"run", file, "--out", out()}), 2);
+  EXPECT_TRUE(printed("a team of sites runs in ergocast simulate and study only")) << output();
+  EXPECT_EQ(ergocast({"simulate", file, "--seeds", "1:2"}), 2);
+  EXPECT_TRUE(printed("--seeds: the laboratory has no team of sites yet")) << output();
+  EXPECT_EQ(ergocast({"simulate", file, "--event-log", "--out", out()}), 2);
+  EXPECT_TRUE(printed("--event-log: a team of sites sends no messages yet")) << output();
+  EXPECT_EQ(ergocast({"simulate", file, "--end", "1:+10s", "--out", out()}), 2);
+  EXPECT_TRUE(printed(": nothing amends a team of sites yet")) << output();
+  EXPECT_FALSE(std::filesystem::exists(out()));
+  EXPECT_EQ(ergocast({"simulate", file, "--out", out()}), 0) << output();
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
 TEST_F(BadInput, EveryProgramKnowsHelpAndVersion) {
   for (const char* program :
        {"ergocast", "ergocast-agent", "ergocast-coordinator", "ergocast-sim", "ergocast-logger"}) {
