@@ -47,6 +47,11 @@ ergocast_test(NAME core_tests LABELS unit OPTIMISED
     core/speed_limit_test.cc
     core/step_constraints_test.cc
     core/target_shift_test.cc
+    core/zones_test.cc
+    core/vehicle_teams_test.cc
+    core/vehicle_test.cc
+    core/wall_following_test.cc
+    core/walls_attack_test.cc
     core/station_test.cc
     core/end_schedule_test.cc
     core/walls_test.cc

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mission/station.h"
 #include "core/motion/home.h"
 #include "core/motion/push.h"
 #include "core/motion/separation.h"

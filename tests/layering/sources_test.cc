@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,50 @@ TEST(Sources, BeginWithTheirLicenceAndASentenceOfTheirOwn) {
   std::sort(sentences.begin(), sentences.end());
   const auto twice = std::adjacent_find(sentences.begin(), sentences.end());
   EXPECT_EQ(twice, sentences.end()) << *twice;
+}
+
+/// The words of a list of CMake, without comments.
+std::vector<std::string> words_of(const std::filesystem::path& list) {
+  std::ifstream file(list);
+  std::vector<std::string> words;
+  for (std::string line; std::getline(file, line);) {
+    std::ranges::replace_if(
+        line, [](char c) { return c == '(' || c == ')'; }, ' ');
+    std::istringstream parts(line.substr(0, line.find('#')));
+    for (std::string word; parts >> word;) words.push_back(word);
+  }
+  return words;
+}
+
+/// What the lists of tests name: files relative to the list's folder, or to tests/.
+std::set<std::string> listed_files() {
+  namespace fs = std::filesystem;
+  const fs::path root(ERGOCAST_SOURCE_DIR);
+  std::set<std::string> files;
+  for (const auto& list : fs::recursive_directory_iterator(root / "tests")) {
+    const fs::path& path = list.path();
+    if (path.extension() != ".cmake" && path.filename() != "CMakeLists.txt") continue;
+    const fs::path folder = fs::relative(path.parent_path(), root);
+    for (const std::string& word : words_of(path))
+      files.insert({(folder / word).string(), (fs::path("tests") / word).string()});
+  }
+  return files;
+}
+
+// A test that no list names is never built, and nothing else reports that.
+TEST(Sources, EachTestIsInAListOfTests) {
+  namespace fs = std::filesystem;
+  const fs::path root(ERGOCAST_SOURCE_DIR);
+  const std::set<std::string> listed = listed_files();
+  int tests = 0;
+  for (const auto& file : fs::recursive_directory_iterator(root / "tests")) {
+    const std::string path = fs::relative(file.path(), root).string();
+    if (!path.ends_with("_test.cc")) continue;
+    ++tests;
+    EXPECT_TRUE(listed.contains(path))
+        << path << ": name it in tests/parts.cmake or programs.cmake";
+  }
+  EXPECT_GE(tests, 200);
 }
 
 // A longer list of files shows no architecture.
