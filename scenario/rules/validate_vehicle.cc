@@ -8,6 +8,7 @@
 
 #include "core/mission/kinds.h"
 #include "core/motion/filter_rules.h"
+#include "core/motion/vehicle.h"
 #include "scenario/parse/convert.h"
 
 namespace ergocast {

@@ -103,7 +103,8 @@ TEST_F(RecordedTeam, ReportsWhenAnAgentWasSilentAndWhatEachKnew) {
   EXPECT_EQ(team["agents"]["0"]["age_s"].back(), 1.5);
   const Json& phase = team["agents"]["0"]["phase"];
   ASSERT_EQ(phase.size(), team["t"].size());
-  const auto first = std::ranges::find_if(phase, [](const Json& one) { return !one.is_null(); });
+  const auto first =
+      std::ranges::find_if(phase, [](const Json& value) { return !value.is_null(); });
   EXPECT_EQ(team["phases"][first->get<std::size_t>()], "running");
   EXPECT_EQ(team["phases"][phase.back().get<std::size_t>()], "returning");
 }

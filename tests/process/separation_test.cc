@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/process/support/mission.h"
 #include "tests/process/support/programs.h"
 
 namespace ergocast::test {
