@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/checks_can_fail/mistaken_files.h"
 #include "tests/checks_can_fail/scenario_mistakes.h"
 #include "tests/process/support/programs.h"
 
