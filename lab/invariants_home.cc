@@ -11,7 +11,7 @@
 #include "core/motion/filter_rules.h"
 #include "core/motion/vehicle.h"
 #include "lab/invariants.h"
-#include "lab/shadow_equations.h"
+#include "lab/shadow/shadow_equations.h"
 
 namespace ergocast::lab {
 namespace {

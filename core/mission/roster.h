@@ -3,8 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <ranges>
 #include <span>
 
 #include "core/base/ids.h"
@@ -42,9 +42,15 @@ struct RosterEntry {
 /// The entries of all incarnations under a number.
 /// @param roster  in ascending order of authors
 inline std::span<const RosterEntry> entries_of(AgentId id, std::span<const RosterEntry> roster) {
-  const auto found = std::ranges::equal_range(
-      roster, id, {}, [](const RosterEntry& entry) { return entry.author.agent; });
-  return {found.begin(), found.end()};
+  const auto is_before = [](const RosterEntry& entry, AgentId number) {
+    return entry.author.agent < number;
+  };
+  const auto first = std::lower_bound(roster.begin(), roster.end(), id, is_before);
+  const auto last = std::upper_bound(
+      first, roster.end(), id,
+      [](AgentId number, const RosterEntry& entry) { return number < entry.author.agent; });
+  return roster.subspan(static_cast<std::size_t>(first - roster.begin()),
+                        static_cast<std::size_t>(last - first));
 }
 
 }  // namespace ergocast

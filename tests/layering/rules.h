@@ -137,7 +137,10 @@ inline const std::vector<Rule> kRules = {
      {"text", "core", "target", "target/geo", "team", "logger", "report"},
      {kFiles, kJson}},
     // The same participants in one process: no network, no clock, no threads.
-    {"lab", {"core", "plan", "team", "lcmtypes", "agent", "coordinator", "sim", "logger"}, {}},
+    {"lab/shadow", {"core", "team"}, {}},
+    {"lab",
+     {"core", "plan", "team", "lcmtypes", "agent", "coordinator", "sim", "logger", "lab/shadow"},
+     {}},
     {"studies",
      {"text", "core", "plan", "target", "team", "scenario", "scenario/rules", "logger", "report",
       "lab"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Integrates cosines against powers of the place, mode by mode.
-#include "lab/target_covariance.h"
+#include "lab/shadow/target_covariance.h"
 
 #include <numbers>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Evaluates each equation as it is written, without recurrences.
-#include "lab/shadow_equations.h"
+#include "lab/shadow/shadow_equations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Computes ĉ a second time from received messages alone, and shares no code of the look-ahead
 // with core/.
-#include "lab/shadow.h"
+#include "lab/shadow/shadow.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/law/forecast.h"
-#include "lab/shadow_equations.h"
-#include "lab/target_covariance.h"
+#include "lab/shadow/shadow_equations.h"
+#include "lab/shadow/target_covariance.h"
 
 namespace ergocast::lab {
 namespace {

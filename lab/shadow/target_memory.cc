@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Replaces what a newer list replaces.
-#include "lab/target_memory.h"
+#include "lab/shadow/target_memory.h"
 
 #include "core/law/target_shift.h"
 #include "core/mission/hold.h"

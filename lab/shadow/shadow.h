@@ -17,9 +17,9 @@
 #include "core/base/ids.h"
 #include "core/basis/basis.h"
 #include "core/mission/mission.h"
-#include "lab/table_view.h"
-#include "lab/target_memory.h"
-#include "lab/wire_modes.h"
+#include "lab/shadow/table_view.h"
+#include "lab/shadow/target_memory.h"
+#include "lab/shadow/wire_modes.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {
