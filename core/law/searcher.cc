@@ -14,8 +14,20 @@ namespace ergocast {
 namespace {
 
 constexpr double kRenewal_s = 1;
-/// a and ℓ, in radii of the sensor.
-constexpr double kSmoothing = 3.2, kSpread = 6;
+/// a, as a part of the side of an agent's share of the domain, but between two numbers of the
+/// sensor's radii; ℓ, in radii.
+constexpr double kSmoothing = 0.3, kLeastSmoothing = 3.2, kMostSmoothing = 6, kSpread = 6;
+
+double smoothing_m(const Mission& mission, double radius_m) {
+  const auto agents = static_cast<double>(std::max<std::size_t>(1, mission.starts_m.size()));
+  const double side_m = std::sqrt(mission.domain.content() / agents);
+  return std::clamp(kSmoothing * side_m, kLeastSmoothing * radius_m, kMostSmoothing * radius_m);
+}
+
+/// γ of a sensor with the radius of the cells.
+double rate_per_s(const SearchCells& cells, const Mission& mission) {
+  return cells.nats_per_look / (static_cast<double>(cells.ticks_per_look) * mission.timing.dt_s);
+}
 
 }  // namespace
 
@@ -25,9 +37,12 @@ Searcher::Searcher(const Mission& mission, int kind)
       steering_(mission, kind),
       cells_(mission),
       spread_m_(kSpread * cells_.radius_m),
-      potential_(cells_.cells, mission.walls, kSmoothing * cells_.radius_m),
+      potential_(cells_.cells, mission.walls, smoothing_m(mission, cells_.radius_m)),
+      heading_(cells_, mission.walls, rate_per_s(cells_, mission)),
       contacts_(mission),
-      source_(static_cast<Eigen::Index>(cells_.cells.total())),
+      left_(static_cast<Eigen::Index>(cells_.cells.total())),
+      missed_(left_.size()),
+      source_(left_.size()),
       along_x_(cells_.cells.count.x()),
       along_y_(cells_.cells.count.y()),
       renewal_ticks_(std::max<Tick>(1, std::llround(kRenewal_s / mission.timing.dt_s))) {
@@ -50,22 +65,23 @@ Eigen::Vector3d Searcher::wanted_mps(const LawInput& input) {
     turn_ = turn;
     renew(input);
   }
-  gradient_ = potential_.gradient(input.x_m);
   return steering_.velocity_mps(input.agent, input.tick, input.x_m, {.gradient = gradient_}, 0);
 }
 
 void Searcher::renew(const LawInput& input) {
   ERGOCAST_REQUIRE(input.efforts != nullptr);
-  source_.setZero();
   contacts_.renew(*input.efforts);
-  add_left(input);
+  set_left(input);
+  source_ = -left_;
   add_teammates(input);
   potential_.solve(source_);
+  gradient_ = -heading_.best(input.x_m, {left_, missed_}, potential_.gradient(input.x_m),
+                             steering_.law().u_max_mps, kRenewal_s);
 }
 
-/// Subtracts b, as masses of cells. Only differences of efforts count, so exp() does not vanish
+/// Sets b, as masses of cells. Only differences of efforts count, so exp() does not vanish
 /// everywhere.
-void Searcher::add_left(const LawInput& input) {
+void Searcher::set_left(const LawInput& input) {
   const Efforts& efforts = *input.efforts;
   const Cells& cells = cells_.cells;
   std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max();
@@ -78,16 +94,20 @@ void Searcher::add_left(const LawInput& input) {
     }
   };
   each([&](std::size_t, std::uint32_t looks) { fewest = std::min(fewest, looks); });
+  left_.setZero();
+  missed_.setZero();
   double left = 0;
   each([&](std::size_t cell, std::uint32_t looks) {
     if (contacts_.confirmed(cell)) return;
-    const bool mine = contacts_.nats(cell) != 0 && is_nearest(input, cell);
-    const double mass = prior_[cell] * portable::exp((mine ? contacts_.nats(cell) : 0.0) -
-                                                     cells_.nats_per_look * (looks - fewest));
-    source_[static_cast<Eigen::Index>(cell)] = -mass;
-    left += mass;
+    const auto at = static_cast<Eigen::Index>(cell);
+    const double nats = cells_.nats_per_look * (looks - fewest);
+    missed_[at] = portable::exp(-nats);
+    left_[at] = prior_[cell] * missed_[at];
+    if (contacts_.nats(cell) != 0 && is_nearest(input, cell))
+      left_[at] = prior_[cell] * portable::exp(contacts_.nats(cell) - nats);
+    left += left_[at];
   });
-  if (left > 0) source_ /= left;
+  if (left > 0) left_ /= left;
 }
 
 /// Whether no teammate is nearer to a cell.

@@ -6,13 +6,15 @@
 //   sensors have false alarms (core/search/contacts.h)
 //   p   = (1/N) Σ_j G_j      what teammates take care of: a Gaussian of width ℓ around each
 //
-// The agent descends the potential u of core/search/search_field.h with the source p − b, always at
-// full speed: law.epsilon counts as 0. It solves for u each second, agents in turn. Without p all
-// agents would go to the same place. Contraction and noise are those of the default law.
+// Each second, in turn, an agent solves for the potential u of core/search/search_field.h with the
+// source p − b, and chooses a heading by it and by what it would find on the next metres
+// (core/search/search_heading.h). It goes there at full speed: law.epsilon counts as 0. Without p
+// all agents would go to the same place. Contraction and noise are those of the default law.
 //
 // Where all has been searched alike, b is the target again: the law goes on for ever.
 //
-// a = 3.2 r and ℓ = 6 r with the sensor's radius r of core/search/search_cells.h.
+// With the sensor's radius r of core/search/search_cells.h, ℓ = 6 r. a = 0.3 √(A / N), where A is
+// the domain's area and N how many agents start, but at least 3.2 r and at most 6 r.
 #pragma once
 
 #include <vector>
@@ -22,6 +24,7 @@
 #include "core/search/contacts.h"
 #include "core/search/search_cells.h"
 #include "core/search/search_field.h"
+#include "core/search/search_heading.h"
 
 namespace ergocast {
 
@@ -36,11 +39,12 @@ class Searcher final : public Law {
   void set_law(const LawNumbers& numbers) override { steering_.set_law(numbers); }
   /// @pre input.efforts is there
   Eigen::Vector3d wanted_mps(const LawInput& input) override;
+  /// Against the heading, of length 1: only its direction counts.
   Eigen::Vector3d spectral_gradient() const override { return gradient_; }
 
  private:
   void renew(const LawInput& input);
-  void add_left(const LawInput& input);
+  void set_left(const LawInput& input);
   bool is_nearest(const LawInput& input, std::size_t cell) const;
   void add_teammates(const LawInput& input);
   void set_gaussian(int axis, const Eigen::Vector3d& x_m, Eigen::VectorXd& along) const;
@@ -51,9 +55,11 @@ class Searcher final : public Law {
   SearchCells cells_;
   double spread_m_;
   SearchField potential_;
+  SearchHeading heading_;
   std::vector<double> prior_;  // mass of each cell
   Contacts contacts_;
-  Eigen::VectorXd free_;  // 1 for each cell that is not in a wall, else 0
+  Eigen::VectorXd free_;           // 1 for each cell that is not in a wall, else 0
+  Eigen::VectorXd left_, missed_;  // b, and exp(−E) but for a factor: 1 where least was searched
   Eigen::VectorXd source_;
   Eigen::VectorXd along_x_, along_y_;  // a Gaussian at the middles of columns and rows
   Tick renewal_ticks_, turn_ = -1;
