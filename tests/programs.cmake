@@ -312,11 +312,13 @@ if(TARGET ergocast_python)
   ergocast_nightly_script_test(package_pip package package/pip_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 endif()
 ergocast_nightly_script_test(package_lintian package package/lintian_test.sh ${CMAKE_BINARY_DIR})
-# They compile the release, on both Debians.
+# They compile the release, on both Debians, and for arm64.
 foreach(suite bookworm trixie)
   ergocast_nightly_script_test(package_release_${suite} package package/release_test.sh ${CMAKE_BINARY_DIR})
   set_tests_properties(package_release_${suite} PROPERTIES ENVIRONMENT suite=${suite} TIMEOUT 14400)
 endforeach()
+ergocast_nightly_script_test(package_release_arm64 package package/release_test.sh ${CMAKE_BINARY_DIR})
+set_tests_properties(package_release_arm64 PROPERTIES ENVIRONMENT arch=arm64 TIMEOUT 14400)
 ergocast_nightly_script_test(package_arm64 package package/arm64_test.sh
   ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR})
 ergocast_nightly_script_test(package_services package package/services_test.sh ${CMAKE_BINARY_DIR})

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by the tests of the Debian package (bash): a separate bare Debian for the test, 12 or $suite.
+# Sourced by the tests of the Debian package (bash): a separate bare Debian for the test, 12 or $suite,
+# for amd64 or $arch. Programs for arm64 are emulated.
 #   SCRIPT BUILD_DIR
 # It is in memory, and its mounts and processes are in namespaces that end with the test. So nothing
 # remains in any case.
@@ -11,6 +12,12 @@ build=$(cd "$1" && pwd)
 cache=${ERGOCAST_DEBIAN_CACHE:-$build/debian}
 root=$cache/root
 suite=${suite:-bookworm}
+arch=${arch:-amd64}
+system=$suite emulated=()
+if [ "$arch" = arm64 ]; then
+  system=$suite-arm64 emulated=("$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/with_arm64")
+  more_tools="${more_tools:-} qemu-aarch64-static"
+fi
 # shellcheck source=packaging/bare_debian.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../../packaging/bare_debian.sh"
 
@@ -29,7 +36,7 @@ if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
   flock 9
   status=0
   ! declare -F before_all >/dev/null || before_all
-  ERGOCAST_IN_NAMESPACE=yes unshare --mount --pid --fork --kill-child --propagation private \
+  ERGOCAST_IN_NAMESPACE=yes "${emulated[@]}" unshare --mount --pid --fork --kill-child --propagation private \
     "$0" "$build" || status=$?
   ! declare -F after_all >/dev/null || after_all
   exit "$status"
@@ -54,7 +61,7 @@ offline() { "${offline[@]}" "$@"; }
 apt_install() {
   local status=0
   in_root apt-get -qq install -y --no-install-recommends "$@" >"$work/apt.log" 2>&1 || status=$?
-  keep_archives "$suite" "$root" "$cache"
+  keep_archives "$system" "$root" "$cache"
   [ "$status" = 0 ] || { cat "$work/apt.log" >&2; fail "apt install $*"; }
 }
 
@@ -97,7 +104,7 @@ expect_version() {
 }
 
 make_bare_system() {
-  bare_debian "$suite" "$root" "$cache" || fail debootstrap
+  bare_debian "$system" "$root" "$cache" || fail debootstrap
   # dpkg starts no service here, because systemd does not run.
   mount -t proc proc "$root/proc"
 }

@@ -4,6 +4,7 @@
 # of packaging/release from a web server, and run a team.
 #   release_test.sh BUILD_DIR
 #   suite=bookworm|trixie   which Debian
+#   arch=arm64              under emulation; then one of its agents runs in a team with those of BUILD_DIR
 #   ERGOCAST_RELEASE        the folder of a release; without: packaging/release makes one
 # shellcheck disable=SC2034
 more_tools='dpkg-scanpackages python3 git'
@@ -14,7 +15,7 @@ make_release() {
   ERGOCAST_RELEASE=$cache/release
   local debian=12
   [ "$suite" = bookworm ] || debian=13
-  ERGOCAST_DEBIAN_CACHE=$cache "$source/packaging/release" --debian "$debian" --out "$ERGOCAST_RELEASE"
+  ERGOCAST_DEBIAN_CACHE=$cache "$source/packaging/release" --debian "$debian" --arch "$arch" --out "$ERGOCAST_RELEASE"
 }
 before_all() { make_release; export ERGOCAST_RELEASE; }
 
@@ -39,7 +40,7 @@ serve() {
 }
 publish_old() {
   mkdir "$work/web/$suite"
-  make_old_package "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*.deb "$work/web/$suite/ergocast_0.2.0_all.deb"
+  make_old_package "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*_"$arch".deb "$work/web/$suite/ergocast_0.2.0_all.deb"
   # Older than the release, because apt ignores lists that are older than those it has.
   SOURCE_DATE_EPOCH=1700000000 "$source/packaging/apt-index" "$work/web/$suite"
 }
@@ -53,7 +54,7 @@ follow() {
   commands_of "$1" | sed "s/SERVER:8000/127.0.0.1:$port/" >"$work/commands"
   grep -q ergocast "$work/commands" || fail "the page has no commands: $1"
   in_root sh -e /tmp/test/commands >"$work/said" 2>&1 || { tail -n 20 "$work/said"; fail "the page's $1"; }
-  keep_archives "$suite" "$root" "$cache"
+  keep_archives "$system" "$root" "$cache"
 }
 
 make_bare_system
@@ -64,7 +65,7 @@ expect_version 0.2.0
 use_package
 publish_release
 follow 'Upgrade and removal'
-expect_version "$(dpkg-deb -f "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*.deb Version)"
+expect_version "$(dpkg-deb -f "$ERGOCAST_RELEASE/apt/$suite"/ergocast_*_"$arch".deb Version)"
 expect_kept upgraded
 for compiler in cc c++ g++ clang; do
   ! in_root sh -c "command -v $compiler" >/dev/null || fail "$compiler was installed"
@@ -77,6 +78,11 @@ commands_of 'The first team' >"$work/team"
 offline sh -e /tmp/test/team >"$work/said" 2>&1 || { cat "$work/said"; fail 'the first team'; }
 grep -q '^done: mission complete' "$work/said" || { cat "$work/said"; fail 'the first team has not ended'; }
 
+if [ "$arch" = arm64 ]; then
+  bin=$build/bin root=$root work=$work unshare --net --mount --propagation private \
+    "$source/tests/package/mixed_team" || fail 'a team of both processors'
+fi
+
 kill "$server"
 in_root apt-get -qq remove -y ergocast >"$work/said" 2>&1 || { cat "$work/said"; fail remove; }
 expect_kept removed
@@ -84,4 +90,4 @@ in_root apt-get -qq purge -y ergocast >"$work/said" 2>&1 || { cat "$work/said"; 
 for file in etc/ergocast var/lib/ergocast; do
   [ ! -e "$root/$file" ] || fail "purged, and there still is $file: $(ls "$root/$file")"
 done
-echo "docs/installing.md leads to a team on $suite"
+echo "docs/installing.md leads to a team on $suite for $arch"
