@@ -110,7 +110,7 @@ make_bare_system() {
 }
 
 mount -t proc proc /proc
-mount -t tmpfs -o mode=755,size=2g tmpfs "$root"
+mount -t tmpfs -o mode=755,size=3g tmpfs "$root"
 work=$root/tmp/test
 mkdir -m 1777 "$root/tmp"
 mkdir "$work"
