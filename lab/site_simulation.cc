@@ -13,6 +13,9 @@
 namespace ergocast::lab {
 namespace {
 
+/// No process receives what has its own incarnation.
+constexpr Incarnation kRecorderStart = 1, kWorldStart = 2, kCoordinatorStart = 3;
+
 /// Longer than a recorder waits for anything after the end.
 constexpr double kAfterTheEnd_s = 10;
 
@@ -23,8 +26,8 @@ SiteSimulation::SiteSimulation(std::span<const std::byte> plan, std::ostream& tr
     : team_(decode_plan_with_table(plan).value(), Edges::kReflect, laws),
       objects_(team_.mission()),
       reports_(team_.mission()),
-      recorder_(simulated_run(team_.mission()), 1, trajectory, metrics),
-      from_{simulated_run(team_.mission()), kWorld, 1, 0, 0} {
+      recorder_(simulated_run(team_.mission()), kRecorderStart, trajectory, metrics),
+      from_{simulated_run(team_.mission()), kWorld, kWorldStart, 0, 0} {
   start(plan);
   publish_state();
 }
@@ -32,7 +35,7 @@ SiteSimulation::SiteSimulation(std::span<const std::byte> plan, std::ostream& tr
 /// One part has all: it passes no wire, which would limit it.
 void SiteSimulation::start(std::span<const std::byte> plan) {
   MissionPart part;
-  part.header = {from_.run, kCoordinator, 1, 1, 0};
+  part.header = {from_.run, kCoordinator, kCoordinatorStart, 1, 0};
   part.state = MissionState::kRunning;
   part.plan.assign(plan.begin(), plan.end());
   for (std::size_t i = 0; i < team_.size(); ++i) {
@@ -46,7 +49,7 @@ void SiteSimulation::start(std::span<const std::byte> plan) {
 }
 
 bool SiteSimulation::step() {
-  if (recorder_.finished()) return false;
+  if (recorder_.finished() || team_.tick() >= team_.mission().timing.tick_count) return false;
   team_.step();
   publish_state();
   record(team_.tick() < team_.mission().timing.tick_count ? 0 : kAfterTheEnd_s);
