@@ -255,6 +255,8 @@ TEST(AgentReckons, AndSendsNothingOfIt) {
 
 // ---- when a tick may be answered ----
 
+constexpr int kInFirstPart = kMaxVehiclesPerState;
+
 /// The two parts of the state of a team of twenty.
 std::vector<WorldState> parts_of_twenty(Tick tick) {
   std::vector<WorldState> parts;
@@ -262,10 +264,10 @@ std::vector<WorldState> parts_of_twenty(Tick tick) {
     WorldState& state = parts.emplace_back(world_state(tick, {}));
     state.part = part;
     state.parts = 2;
-    state.vehicle_count = part == 0 ? 16 : 4;
+    state.vehicle_count = part == 0 ? kInFirstPart : 20 - kInFirstPart;
     for (int i = 0; i < state.vehicle_count; ++i) {
-      Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
-      vehicle.id = 16 * part + i;
+      Vehicle& vehicle = state.vehicles.at(static_cast<std::size_t>(i));
+      vehicle.id = kInFirstPart * part + i;
       vehicle.answered_tick = tick - 1;
       vehicle.position_m = whereabouts(vehicle.id, tick);
     }
@@ -287,7 +289,7 @@ TEST(AgentInLockstep, AnswersOnceAllPartsOfTheWorldsStateAreThere) {
       EXPECT_TRUE(only<Command>(deliver(agent, parts[first], now)).empty()) << self << ' ' << tick;
       EXPECT_TRUE(only<Command>(deliver(agent, repeated[first], now)).empty())
           << "the same is no other";
-      if (static_cast<std::size_t>(self / 16) == first) {
+      if (static_cast<std::size_t>(self / kInFirstPart) == first) {
         EXPECT_EQ(status_after(agent, now).waiting_for, kWorld);
       }
       EXPECT_EQ(only<Command>(deliver(agent, parts[1 - first], now + 600ms)).size(), 1u);
