@@ -58,7 +58,7 @@ enum Stream : std::uint32_t {
   kSwarm = 1,
   kPartitions,
   kAgents,
-  kCoordinator,
+  kCoordinators,
   kWorldProcess,
   kOperator,
   kRecalls,
@@ -187,7 +187,7 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
   draw(kAgents, faults.agent_crashes_per_s, faults.downtime_max_s, [&](RandomStream& random) {
     return std::pair(kAgentCrash, random.word() % static_cast<std::uint64_t>(agents));
   });
-  draw(kCoordinator, faults.coordinator_crashes_per_s, faults.downtime_max_s,
+  draw(kCoordinators, faults.coordinator_crashes_per_s, faults.downtime_max_s,
        one_of_one(kCoordinatorCrash));
   draw(kWorldProcess, faults.world_crashes_per_s, faults.downtime_max_s, one_of_one(kWorldCrash));
   draw(kOperator, faults.pauses_per_s, faults.pause_max_s, one_of_one(kPause));

@@ -274,7 +274,8 @@ std::vector<Mistake> mistakes_of_objects() {
 
 std::vector<Mistake> mistakes_of_sites() {
   const std::string one = "team { sites: 1 } ";
-  const auto excludes = [](const char* at, const std::string& text, const std::string& field) {
+  const auto excludes = [](const std::string& at, const std::string& text,
+                           const std::string& field) {
     return Mistake{at, text, field + ": cannot be with team.sites: "};
   };
   const auto of_time = [&](const std::string& field, const std::string& value) {
