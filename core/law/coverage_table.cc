@@ -167,6 +167,8 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   }
   if (!is_possible(theirs, gain_rule_.dt_s, gain_rule_.range, gain_rule_.half_life))
     return Merge::kRefusedShift;
+  // Only a simulation has more agents, and it merges nothing.
+  if (theirs.author().agent >= kMaxAgents) return Merge::kRefusedLimit;
   CoverageRow* const row = find_or_add(theirs.author());
   if (row == nullptr) return Merge::kRefusedLimit;
   const CoverageBlock& held = row->block(theirs.block);

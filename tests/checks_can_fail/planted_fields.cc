@@ -51,6 +51,7 @@ agents {
 world { speed_limit_mps: 100 }
 vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
 separation { distance_m: 2 lease_s: 0 }
+team { sites: 1 site_row_period_ticks: 3 }
 sensor { radius_m: 5 detections_per_s: 0.5 false_alarms_per_s: 0 position_error_m: 0.5 confirm_at: 0.9 }
 )";
 

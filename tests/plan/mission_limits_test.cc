@@ -307,7 +307,7 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m.sites.count = 1; },             // and a distance
       [](Mission& m) { m = with_sites(m), m.sites.count = -1; },
       [](Mission& m) { m = with_sites(m), m.sites.count = 3; },  // of two agents
-      [](Mission& m) { m = with_sites(m), m.sites.row_period_ticks = 0; },
+      [](Mission& m) { m = with_sites(m), m.sites.row_period_ticks = -1; },
       [](Mission& m) { m = with_sites(m), m.radio_range_m = 60; },
       [](Mission& m) { m = with_sites(m), m.dead_reckoning = false; },
       [](Mission& m) { m = with_sites(m), m.law.memory_half_life_s = 321; },
@@ -363,7 +363,7 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
     kBroken[i](mission);
     EXPECT_FALSE(within_limits(mission)) << "change " << i;
     EXPECT_TRUE(has(problem_of(encode_plan(mission)), "breaks that version's rules"))
-        << "change " << i;
+        << "change " << i << ": " << problem_of(encode_plan(mission));
   }
   EXPECT_TRUE(is_taken(with_walls(rich_mission())));
   EXPECT_TRUE(is_taken(with_sites(rich_mission())));

@@ -22,6 +22,7 @@ using test::with_free_domain;
 using test::with_inertia;
 using test::with_lease;
 using test::with_places;
+using test::with_sites;
 using test::with_stations;
 using test::with_walls;
 using test::with_wings;
@@ -114,12 +115,14 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
              freed = Fields(with_free_domain(rich_mission())).texts,
              leased = Fields(with_lease(mission)).texts, counted = Fields(rich_mission()).texts,
              placed = Fields(with_places(rich_mission())).texts,
-             alarmed = Fields(with_false_alarms(rich_mission())).texts;
+             alarmed = Fields(with_false_alarms(rich_mission())).texts,
+             divided = Fields(with_sites(rich_mission())).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
     EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i] || flying[i] != plain[i] ||
                 walled[i] != plain[i] || freed[i] != plain[i] || leased[i] != plain[i] ||
-                counted[i] != plain[i] || placed[i] != plain[i] || alarmed[i] != plain[i])
+                counted[i] != plain[i] || placed[i] != plain[i] || alarmed[i] != plain[i] ||
+                divided[i] != plain[i])
         << "default: field " << i;
   expect_travels(mission);
   expect_travels(rich_mission());
@@ -130,6 +133,7 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   expect_travels(with_lease(rich_mission()));
   expect_travels(with_places(rich_mission()));
   expect_travels(with_false_alarms(rich_mission()));
+  expect_travels(with_sites(rich_mission()));
   expect_travels(with_stations(rich_mission()));
   expect_travels(with_stations(rich_mission_in_space()));
 }

@@ -39,7 +39,7 @@ TEST(PlanProto, IsWhatAPlansBytesAre) {
        {rich, test::with_inertia(rich), test::with_wings(test::rich_mission()),
         test::with_walls(test::rich_mission()), test::with_free_domain(test::rich_mission()),
         test::with_lease(test::rich_mission()), test::with_stations(rich), high,
-        test::with_false_alarms(test::rich_mission())}) {
+        test::with_false_alarms(test::rich_mission()), test::with_sites(test::rich_mission())}) {
     const std::vector<std::byte> bytes = encode_plan(mission);
     proto::Plan plan;
     ASSERT_TRUE(plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
