@@ -78,7 +78,7 @@ TEST_F(Deploy, NotesThatEachRobotNeedsItsOwnDriver) {
                      hosts("ground coordinator\nrover agents=40 " + roles + "\n")});
   };
   ASSERT_EQ(deployed("driver"), 0) << output();
-  EXPECT_TRUE(printed("start it beside agent N, as ergocast-example-driver --id N")) << output();
+  EXPECT_TRUE(printed("beside agent N, such as ergocast-example-driver --id N")) << output();
   ASSERT_EQ(deployed("sim"), 0) << output();
   EXPECT_FALSE(printed("ergocast-example-driver")) << output();
 }
