@@ -51,8 +51,17 @@ agents {
 world { speed_limit_mps: 100 }
 vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
 separation { distance_m: 2 lease_s: 0 }
-team { sites: 1 site_row_period_ticks: 3 }
 sensor { radius_m: 5 detections_per_s: 0.5 false_alarms_per_s: 0 position_error_m: 0.5 confirm_at: 0.9 }
+)";
+
+/// The fields that exclude many of the others.
+constexpr const char* kDivided = R"(
+domain { size_x_m: 100 size_y_m: 50 }
+target { uniform_weight: 1 }
+law { u_max_mps: 5 }
+time { duration_s: 60 }
+team { sites: 1 site_row_period_ticks: 3 }
+agents { starts { x_m: 10 y_m: 20 } }
 )";
 
 /// The fields that its kind of vehicles does not have.
@@ -159,7 +168,7 @@ void PlantedFields::expect_limits(const FieldDescriptor& field, const std::strin
 
 void PlantedFields::plant_in_fields() {
   std::set<std::string> covered;
-  for (const char* text : {kRich, kWinged}) {
+  for (const char* text : {kRich, kWinged, kDivided}) {
     rich_ = text;
     plant_in_fields_of_rich(covered);
   }
